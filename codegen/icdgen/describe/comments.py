@@ -187,7 +187,7 @@ def field_comment(
     for part in (one for one in parts if one.counter == field.name):
         plus = f", of which there are {abs(part.plus)} {'more' if part.plus > 0 else 'less'}" if part.plus else ""
         facts.append(f"Counts {words(part.name)}{plus}: at most {part.most}.")
-    place = next((_open_place(field, part, parts[:-1]) for part in parts if part.name == field.name), _place(field))
+    place = next((_open_place(field, message, part) for part in parts if part.name == field.name), _place(field))
     head = f"{words(field.name)}: {place}{_meaning(field)}."
     return _comment(head, (sentence(field.summary), " ".join(facts)), field.errata, told)
 
@@ -215,19 +215,23 @@ def _place(field: Field) -> str:
     return ", ".join(filter(None, (where, elements, orders_text(field))))
 
 
-def _open_place(field: Field, tail: Tail, inner: tuple[Tail, ...]) -> str:
+def _open_place(field: Field, message: Message, part: Tail) -> str:
     """``from byte 4 on, up to 12 elements of 16 bits``"""
     if field.is_bytes and field.count:
-        what = f"up to {octets_text(tail.most, field.bits)}{', text filled with NUL' if field.type == 'text' else ''}"
+        what = f"up to {octets_text(part.most, field.bits)}{', text filled with NUL' if field.type == 'text' else ''}"
     elif field.type == "bytes":
-        what = f"up to {byte_count(tail.most)}"
+        what = f"up to {byte_count(part.most)}"
     elif field.type == "text":
-        what = f"text of up to {tail.most} character{'s' * (tail.most != 1)}"
+        what = f"text of up to {part.most} character{'s' * (part.most != 1)}"
     else:
-        what = f"up to {array_text(tail.most, field.bits)}"
-    before = [one.name for one in inner if 8 * one.begin < field.at]
+        what = f"up to {array_text(part.most, field.bits)}"
+    before = [one.name for one in message.open_parts[:-1] if 8 * one.begin < field.at]
     place = f"behind {words(before[-1])}" if before else f"from byte {field.at // 8} on"
-    counted = f"as many as {words(tail.counter)} says" if tail in inner else ""
+    counted = (
+        f"as many as {words(part.counter)} says"
+        if any(f.name == part.counter and not f.implied for f in message.fields)
+        else ""
+    )
     return ", ".join(filter(None, (place, what, counted, orders_text(field))))
 
 

@@ -1651,7 +1651,7 @@ static inline int32_t cubeacp_adcs_configuration_x_rate_sensor_offset_mdeg_per_s
     return message->x_rate_sensor_offset;
 }
 
-/** Sets X-Rate Sensor Offset in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_x_rate_sensor_offset_mdeg_per_s(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1670,7 +1670,7 @@ static inline int32_t cubeacp_adcs_configuration_y_rate_sensor_offset_mdeg_per_s
     return message->y_rate_sensor_offset;
 }
 
-/** Sets Y-Rate Sensor Offset in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_y_rate_sensor_offset_mdeg_per_s(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1689,7 +1689,7 @@ static inline int32_t cubeacp_adcs_configuration_z_rate_sensor_offset_mdeg_per_s
     return message->z_rate_sensor_offset;
 }
 
-/** Sets Z-Rate Sensor Offset in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_z_rate_sensor_offset_mdeg_per_s(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1707,7 +1707,7 @@ static inline int32_t cubeacp_adcs_configuration_css1_relative_scale_milli(const
     return message->css1_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS1 Relative Scale in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS1 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css1_relative_scale_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1725,7 +1725,7 @@ static inline int32_t cubeacp_adcs_configuration_css2_relative_scale_milli(const
     return message->css2_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS2 Relative Scale in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS2 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css2_relative_scale_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1743,7 +1743,7 @@ static inline int32_t cubeacp_adcs_configuration_css3_relative_scale_milli(const
     return message->css3_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS3 Relative Scale in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS3 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css3_relative_scale_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1761,7 +1761,7 @@ static inline int32_t cubeacp_adcs_configuration_css4_relative_scale_milli(const
     return message->css4_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS4 Relative Scale in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS4 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css4_relative_scale_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1779,7 +1779,7 @@ static inline int32_t cubeacp_adcs_configuration_css5_relative_scale_milli(const
     return message->css5_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS5 Relative Scale in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS5 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css5_relative_scale_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1797,7 +1797,7 @@ static inline int32_t cubeacp_adcs_configuration_css6_relative_scale_milli(const
     return message->css6_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS6 Relative Scale in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS6 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css6_relative_scale_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1815,7 +1815,7 @@ static inline int32_t cubeacp_adcs_configuration_css7_relative_scale_milli(const
     return message->css7_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS7 Relative Scale in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS7 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css7_relative_scale_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1833,7 +1833,7 @@ static inline int32_t cubeacp_adcs_configuration_css8_relative_scale_milli(const
     return message->css8_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS8 Relative Scale in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS8 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css8_relative_scale_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1851,7 +1851,7 @@ static inline int32_t cubeacp_adcs_configuration_css9_relative_scale_milli(const
     return message->css9_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS9 Relative Scale in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS9 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css9_relative_scale_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1869,7 +1869,7 @@ static inline int32_t cubeacp_adcs_configuration_css10_relative_scale_milli(cons
     return message->css10_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS10 Relative Scale in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS10 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css10_relative_scale_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1888,7 +1888,7 @@ static inline int32_t cubeacp_adcs_configuration_cam1_mounting_alpha_mdeg(const 
 }
 
 /**
- * Sets Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam1_mounting_alpha_mdeg(
@@ -1909,7 +1909,7 @@ static inline int32_t cubeacp_adcs_configuration_cam1_mounting_beta_mdeg(const c
 }
 
 /**
- * Sets Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam1_mounting_beta_mdeg(
@@ -1930,7 +1930,7 @@ static inline int32_t cubeacp_adcs_configuration_cam1_mounting_gamma_mdeg(const 
 }
 
 /**
- * Sets Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam1_mounting_gamma_mdeg(
@@ -1951,7 +1951,7 @@ static inline int32_t cubeacp_adcs_configuration_cam1_boresight_x_milli_pixels(
     return message->cam1_boresight_x * INT32_C(10);
 }
 
-/** Sets Cam1 Boresight X in thousandths of pixels to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Cam1 Boresight X in thousandths of pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam1_boresight_x_milli_pixels(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1970,7 +1970,7 @@ static inline int32_t cubeacp_adcs_configuration_cam1_boresight_y_milli_pixels(
     return message->cam1_boresight_y * INT32_C(10);
 }
 
-/** Sets Cam1 Boresight Y in thousandths of pixels to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Cam1 Boresight Y in thousandths of pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam1_boresight_y_milli_pixels(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1989,7 +1989,7 @@ static inline int32_t cubeacp_adcs_configuration_cam2_mounting_alpha_mdeg(const 
 }
 
 /**
- * Sets Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam2_mounting_alpha_mdeg(
@@ -2010,7 +2010,7 @@ static inline int32_t cubeacp_adcs_configuration_cam2_mounting_beta_mdeg(const c
 }
 
 /**
- * Sets Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam2_mounting_beta_mdeg(
@@ -2031,7 +2031,7 @@ static inline int32_t cubeacp_adcs_configuration_cam2_mounting_gamma_mdeg(const 
 }
 
 /**
- * Sets Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam2_mounting_gamma_mdeg(
@@ -2052,7 +2052,7 @@ static inline int32_t cubeacp_adcs_configuration_cam2_boresight_x_milli_pixels(
     return message->cam2_boresight_x * INT32_C(10);
 }
 
-/** Sets Cam2 Boresight X in thousandths of pixels to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Cam2 Boresight X in thousandths of pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam2_boresight_x_milli_pixels(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2071,7 +2071,7 @@ static inline int32_t cubeacp_adcs_configuration_cam2_boresight_y_milli_pixels(
     return message->cam2_boresight_y * INT32_C(10);
 }
 
-/** Sets Cam2 Boresight Y in thousandths of pixels to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Cam2 Boresight Y in thousandths of pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam2_boresight_y_milli_pixels(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2091,7 +2091,7 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_mounting_alpha_mde
 }
 
 /**
- * Sets Magnetometer Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Magnetometer Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_alpha_mdeg(
@@ -2113,7 +2113,7 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_mounting_beta_mdeg
 }
 
 /**
- * Sets Magnetometer Mounting Transform Beta Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Magnetometer Mounting Transform Beta Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_beta_mdeg(
@@ -2135,7 +2135,7 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_mounting_gamma_mde
 }
 
 /**
- * Sets Magnetometer Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Magnetometer Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_gamma_mdeg(
@@ -2156,7 +2156,7 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_channel_1_offset_m
     return message->magnetometer_channel_1_offset;
 }
 
-/** Sets Magnetometer Channel 1 Offset in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetometer Channel 1 Offset in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_channel_1_offset_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2175,7 +2175,7 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_channel_2_offset_m
     return message->magnetometer_channel_2_offset;
 }
 
-/** Sets Magnetometer Channel 2 Offset in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetometer Channel 2 Offset in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_channel_2_offset_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2194,7 +2194,7 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_channel_3_offset_m
     return message->magnetometer_channel_3_offset;
 }
 
-/** Sets Magnetometer Channel 3 Offset in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetometer Channel 3 Offset in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_channel_3_offset_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2214,7 +2214,7 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s11_mi
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S11 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Sensitivity Matrix S11 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s11_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2235,7 +2235,7 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s22_mi
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S22 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Sensitivity Matrix S22 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s22_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2256,7 +2256,7 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s33_mi
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S33 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Sensitivity Matrix S33 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s33_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2277,7 +2277,7 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s12_mi
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S12 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Sensitivity Matrix S12 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s12_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2298,7 +2298,7 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s13_mi
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S13 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Sensitivity Matrix S13 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s13_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2319,7 +2319,7 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s21_mi
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S21 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Sensitivity Matrix S21 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s21_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2340,7 +2340,7 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s23_mi
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S23 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Sensitivity Matrix S23 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s23_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2361,7 +2361,7 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s31_mi
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S31 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Sensitivity Matrix S31 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s31_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2382,7 +2382,7 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s32_mi
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S32 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Sensitivity Matrix S32 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s32_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2403,7 +2403,7 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_mounting_alpha_md
 }
 
 /**
- * Sets Redundant Magnetometer Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value;
+ * Sets Redundant Magnetometer Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw value;
  * ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_mounting_alpha_mdeg(
@@ -2425,7 +2425,7 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_mounting_beta_mde
 }
 
 /**
- * Sets Redundant Magnetometer Mounting Transform Beta Angle in thousandths of deg to the nearest raw value;
+ * Sets Redundant Magnetometer Mounting Transform Beta Angle in thousandths of deg, to the nearest raw value;
  * ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_mounting_beta_mdeg(
@@ -2447,7 +2447,7 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_mounting_gamma_md
 }
 
 /**
- * Sets Redundant Magnetometer Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value;
+ * Sets Redundant Magnetometer Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw value;
  * ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_mounting_gamma_mdeg(
@@ -2469,7 +2469,7 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_channel_1_offset_
 }
 
 /**
- * Sets Redundant Magnetometer Channel 1 Offset in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Redundant Magnetometer Channel 1 Offset in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_channel_1_offset_milli(
@@ -2491,7 +2491,7 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_channel_2_offset_
 }
 
 /**
- * Sets Redundant Magnetometer Channel 2 Offset in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Redundant Magnetometer Channel 2 Offset in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_channel_2_offset_milli(
@@ -2513,7 +2513,7 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_channel_3_offset_
 }
 
 /**
- * Sets Redundant Magnetometer Channel 3 Offset in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Redundant Magnetometer Channel 3 Offset in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_channel_3_offset_milli(
@@ -2535,7 +2535,7 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s11_m
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S11 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Sensitivity Matrix S11 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s11_milli(
@@ -2557,7 +2557,7 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s22_m
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S22 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Sensitivity Matrix S22 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s22_milli(
@@ -2579,7 +2579,7 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s33_m
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S33 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Sensitivity Matrix S33 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s33_milli(
@@ -2601,7 +2601,7 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s12_m
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S12 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Sensitivity Matrix S12 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s12_milli(
@@ -2623,7 +2623,7 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s13_m
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S13 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Sensitivity Matrix S13 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s13_milli(
@@ -2645,7 +2645,7 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s21_m
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S21 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Sensitivity Matrix S21 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s21_milli(
@@ -2667,7 +2667,7 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s23_m
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S23 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Sensitivity Matrix S23 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s23_milli(
@@ -2689,7 +2689,7 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s31_m
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S31 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Sensitivity Matrix S31 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s31_milli(
@@ -2711,7 +2711,7 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s32_m
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S32 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Sensitivity Matrix S32 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s32_milli(
@@ -2733,7 +2733,7 @@ static inline int32_t cubeacp_adcs_configuration_star_tracker_mounting_alpha_mde
 }
 
 /**
- * Sets StarTracker Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets StarTracker Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_alpha_mdeg(
@@ -2755,7 +2755,7 @@ static inline int32_t cubeacp_adcs_configuration_star_tracker_mounting_beta_mdeg
 }
 
 /**
- * Sets StarTracker Mounting Transform Beta Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets StarTracker Mounting Transform Beta Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_beta_mdeg(
@@ -2777,7 +2777,7 @@ static inline int32_t cubeacp_adcs_configuration_star_tracker_mounting_gamma_mde
 }
 
 /**
- * Sets StarTracker Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets StarTracker Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_gamma_mdeg(
@@ -2798,7 +2798,7 @@ static inline int32_t cubeacp_adcs_configuration_star_tracker_error_margin_milli
     return message->star_tracker_error_margin * INT32_C(10);
 }
 
-/** Sets Star Tracker Error Margin in thousandths of % to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star Tracker Error Margin in thousandths of %, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_error_margin_milli_percent(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2816,7 +2816,7 @@ static inline int32_t cubeacp_adcs_configuration_star_tracking_margin_milli(cons
     return message->star_tracking_margin * INT32_C(10);
 }
 
-/** Sets Star Tracking Margin in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star Tracking Margin in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_tracking_margin_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2835,7 +2835,7 @@ static inline int32_t cubeacp_adcs_configuration_star_validation_margin_milli(
     return message->star_validation_margin * INT32_C(10);
 }
 
-/** Sets Star Validation Margin in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star Validation Margin in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_validation_margin_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2854,7 +2854,7 @@ static inline int32_t cubeacp_adcs_configuration_star_tracking_search_width_mill
     return message->star_tracking_search_width * INT32_C(200);
 }
 
-/** Sets Star Tracking Search Width in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star Tracking Search Width in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_tracking_search_width_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2873,7 +2873,7 @@ static inline int32_t cubeacp_adcs_configuration_reference_spin_rate_mdeg_per_s(
     return message->reference_spin_rate;
 }
 
-/** Sets Reference spin rate in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Reference spin rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_reference_spin_rate_mdeg_per_s(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2891,7 +2891,7 @@ static inline int32_t cubeacp_adcs_configuration_incl_coefficient_milli(const cu
     return message->incl_coefficient;
 }
 
-/** Sets Incl. coefficient in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Incl. coefficient in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_incl_coefficient_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2909,7 +2909,7 @@ static inline int32_t cubeacp_adcs_configuration_raan_coefficient_milli(const cu
     return message->raan_coefficient;
 }
 
-/** Sets Raan coefficient in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Raan coefficient in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_raan_coefficient_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2927,7 +2927,7 @@ static inline int32_t cubeacp_adcs_configuration_ecc_coefficient_milli(const cub
     return message->ecc_coefficient;
 }
 
-/** Sets Ecc coefficient in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Ecc coefficient in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_ecc_coefficient_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2945,7 +2945,7 @@ static inline int32_t cubeacp_adcs_configuration_aop_coefficient_milli(const cub
     return message->aop_coefficient;
 }
 
-/** Sets Aop coefficient in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Aop coefficient in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_aop_coefficient_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2963,7 +2963,7 @@ static inline int32_t cubeacp_adcs_configuration_time_coefficient_milli(const cu
     return message->time_coefficient;
 }
 
-/** Sets Time coefficient in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Time coefficient in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_time_coefficient_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2981,7 +2981,7 @@ static inline int32_t cubeacp_adcs_configuration_pos_coefficient_milli(const cub
     return message->pos_coefficient;
 }
 
-/** Sets Pos coefficient in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Pos coefficient in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_pos_coefficient_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -3000,7 +3000,7 @@ static inline int32_t cubeacp_adcs_configuration_maximum_position_error_milli(
     return message->maximum_position_error * INT32_C(100);
 }
 
-/** Sets Maximum position error in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Maximum position error in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_maximum_position_error_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -3018,7 +3018,7 @@ static inline int32_t cubeacp_adcs_configuration_position_sd_milli(const cubeacp
     return message->position_sd * INT32_C(100);
 }
 
-/** Sets Position sd in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Position sd in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_position_sd_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -3036,7 +3036,7 @@ static inline int32_t cubeacp_adcs_configuration_velocity_sd_milli(const cubeacp
     return message->velocity_sd * INT32_C(10);
 }
 
-/** Sets Velocity sd in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Velocity sd in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_velocity_sd_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -3054,7 +3054,7 @@ static inline int32_t cubeacp_adcs_configuration_time_gain_milli(const cubeacp_a
     return message->time_gain * INT32_C(10);
 }
 
-/** Sets Time gain in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Time gain in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_time_gain_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -3072,7 +3072,7 @@ static inline int32_t cubeacp_adcs_configuration_max_lag_milli(const cubeacp_adc
     return message->max_lag * INT32_C(10);
 }
 
-/** Sets Max. lag in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Max. lag in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_max_lag_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -3093,7 +3093,7 @@ static inline double cubeacp_adcs_configuration_x_rate_sensor_offset_deg_per_s(
     return icdgen_quotient(message->x_rate_sensor_offset, 1000);
 }
 
-/** Sets X-Rate Sensor Offset in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X-Rate Sensor Offset in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_x_rate_sensor_offset_deg_per_s(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3108,7 +3108,7 @@ static inline double cubeacp_adcs_configuration_y_rate_sensor_offset_deg_per_s(
     return icdgen_quotient(message->y_rate_sensor_offset, 1000);
 }
 
-/** Sets Y-Rate Sensor Offset in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y-Rate Sensor Offset in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_y_rate_sensor_offset_deg_per_s(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3123,7 +3123,7 @@ static inline double cubeacp_adcs_configuration_z_rate_sensor_offset_deg_per_s(
     return icdgen_quotient(message->z_rate_sensor_offset, 1000);
 }
 
-/** Sets Z-Rate Sensor Offset in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z-Rate Sensor Offset in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_z_rate_sensor_offset_deg_per_s(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3138,7 +3138,7 @@ static inline double cubeacp_adcs_configuration_css1_relative_scale_physical(
     return icdgen_quotient(message->css1_relative_scale, 100);
 }
 
-/** Sets CSS1 Relative Scale, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS1 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css1_relative_scale_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3153,7 +3153,7 @@ static inline double cubeacp_adcs_configuration_css2_relative_scale_physical(
     return icdgen_quotient(message->css2_relative_scale, 100);
 }
 
-/** Sets CSS2 Relative Scale, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS2 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css2_relative_scale_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3168,7 +3168,7 @@ static inline double cubeacp_adcs_configuration_css3_relative_scale_physical(
     return icdgen_quotient(message->css3_relative_scale, 100);
 }
 
-/** Sets CSS3 Relative Scale, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS3 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css3_relative_scale_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3183,7 +3183,7 @@ static inline double cubeacp_adcs_configuration_css4_relative_scale_physical(
     return icdgen_quotient(message->css4_relative_scale, 100);
 }
 
-/** Sets CSS4 Relative Scale, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS4 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css4_relative_scale_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3198,7 +3198,7 @@ static inline double cubeacp_adcs_configuration_css5_relative_scale_physical(
     return icdgen_quotient(message->css5_relative_scale, 100);
 }
 
-/** Sets CSS5 Relative Scale, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS5 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css5_relative_scale_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3213,7 +3213,7 @@ static inline double cubeacp_adcs_configuration_css6_relative_scale_physical(
     return icdgen_quotient(message->css6_relative_scale, 100);
 }
 
-/** Sets CSS6 Relative Scale, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS6 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css6_relative_scale_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3228,7 +3228,7 @@ static inline double cubeacp_adcs_configuration_css7_relative_scale_physical(
     return icdgen_quotient(message->css7_relative_scale, 100);
 }
 
-/** Sets CSS7 Relative Scale, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS7 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css7_relative_scale_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3243,7 +3243,7 @@ static inline double cubeacp_adcs_configuration_css8_relative_scale_physical(
     return icdgen_quotient(message->css8_relative_scale, 100);
 }
 
-/** Sets CSS8 Relative Scale, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS8 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css8_relative_scale_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3258,7 +3258,7 @@ static inline double cubeacp_adcs_configuration_css9_relative_scale_physical(
     return icdgen_quotient(message->css9_relative_scale, 100);
 }
 
-/** Sets CSS9 Relative Scale, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS9 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css9_relative_scale_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3273,7 +3273,7 @@ static inline double cubeacp_adcs_configuration_css10_relative_scale_physical(
     return icdgen_quotient(message->css10_relative_scale, 100);
 }
 
-/** Sets CSS10 Relative Scale, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS10 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css10_relative_scale_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3288,7 +3288,7 @@ static inline double cubeacp_adcs_configuration_cam1_mounting_alpha_deg(const cu
 }
 
 /**
- * Sets Cam1 Sensor Mounting Transform Alpha Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Cam1 Sensor Mounting Transform Alpha Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam1_mounting_alpha_deg(
     cubeacp_adcs_configuration_t *message,
@@ -3303,7 +3303,9 @@ static inline double cubeacp_adcs_configuration_cam1_mounting_beta_deg(const cub
     return icdgen_quotient(message->cam1_mounting_beta, 100);
 }
 
-/** Sets Cam1 Sensor Mounting Transform Beta Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Sets Cam1 Sensor Mounting Transform Beta Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam1_mounting_beta_deg(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3318,7 +3320,7 @@ static inline double cubeacp_adcs_configuration_cam1_mounting_gamma_deg(const cu
 }
 
 /**
- * Sets Cam1 Sensor Mounting Transform Gamma Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Cam1 Sensor Mounting Transform Gamma Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam1_mounting_gamma_deg(
     cubeacp_adcs_configuration_t *message,
@@ -3333,7 +3335,7 @@ static inline double cubeacp_adcs_configuration_cam1_boresight_x_pixels(const cu
     return icdgen_quotient(message->cam1_boresight_x, 100);
 }
 
-/** Sets Cam1 Boresight X in pixels to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Cam1 Boresight X in pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam1_boresight_x_pixels(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3347,7 +3349,7 @@ static inline double cubeacp_adcs_configuration_cam1_boresight_y_pixels(const cu
     return icdgen_quotient(message->cam1_boresight_y, 100);
 }
 
-/** Sets Cam1 Boresight Y in pixels to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Cam1 Boresight Y in pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam1_boresight_y_pixels(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3362,7 +3364,7 @@ static inline double cubeacp_adcs_configuration_cam2_mounting_alpha_deg(const cu
 }
 
 /**
- * Sets Cam2 Sensor Mounting Transform Alpha Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Cam2 Sensor Mounting Transform Alpha Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam2_mounting_alpha_deg(
     cubeacp_adcs_configuration_t *message,
@@ -3377,7 +3379,9 @@ static inline double cubeacp_adcs_configuration_cam2_mounting_beta_deg(const cub
     return icdgen_quotient(message->cam2_mounting_beta, 100);
 }
 
-/** Sets Cam2 Sensor Mounting Transform Beta Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Sets Cam2 Sensor Mounting Transform Beta Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam2_mounting_beta_deg(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3392,7 +3396,7 @@ static inline double cubeacp_adcs_configuration_cam2_mounting_gamma_deg(const cu
 }
 
 /**
- * Sets Cam2 Sensor Mounting Transform Gamma Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Cam2 Sensor Mounting Transform Gamma Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam2_mounting_gamma_deg(
     cubeacp_adcs_configuration_t *message,
@@ -3407,7 +3411,7 @@ static inline double cubeacp_adcs_configuration_cam2_boresight_x_pixels(const cu
     return icdgen_quotient(message->cam2_boresight_x, 100);
 }
 
-/** Sets Cam2 Boresight X in pixels to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Cam2 Boresight X in pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam2_boresight_x_pixels(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3421,7 +3425,7 @@ static inline double cubeacp_adcs_configuration_cam2_boresight_y_pixels(const cu
     return icdgen_quotient(message->cam2_boresight_y, 100);
 }
 
-/** Sets Cam2 Boresight Y in pixels to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Cam2 Boresight Y in pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam2_boresight_y_pixels(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3437,7 +3441,7 @@ static inline double cubeacp_adcs_configuration_magnetometer_mounting_alpha_deg(
 }
 
 /**
- * Sets Magnetometer Mounting Transform Alpha Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Mounting Transform Alpha Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_alpha_deg(
     cubeacp_adcs_configuration_t *message,
@@ -3454,7 +3458,7 @@ static inline double cubeacp_adcs_configuration_magnetometer_mounting_beta_deg(
 }
 
 /**
- * Sets Magnetometer Mounting Transform Beta Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Mounting Transform Beta Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_beta_deg(
     cubeacp_adcs_configuration_t *message,
@@ -3471,7 +3475,7 @@ static inline double cubeacp_adcs_configuration_magnetometer_mounting_gamma_deg(
 }
 
 /**
- * Sets Magnetometer Mounting Transform Gamma Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Mounting Transform Gamma Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_gamma_deg(
     cubeacp_adcs_configuration_t *message,
@@ -3488,7 +3492,7 @@ static inline double cubeacp_adcs_configuration_magnetometer_channel_1_offset_ph
 }
 
 /**
- * Sets Magnetometer Channel 1 Offset, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Channel 1 Offset, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_channel_1_offset_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3505,7 +3509,7 @@ static inline double cubeacp_adcs_configuration_magnetometer_channel_2_offset_ph
 }
 
 /**
- * Sets Magnetometer Channel 2 Offset, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Channel 2 Offset, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_channel_2_offset_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3522,7 +3526,7 @@ static inline double cubeacp_adcs_configuration_magnetometer_channel_3_offset_ph
 }
 
 /**
- * Sets Magnetometer Channel 3 Offset, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Channel 3 Offset, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_channel_3_offset_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3539,7 +3543,7 @@ static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s11_phy
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S11, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Magnetometer Sensitivity Matrix S11, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s11_physical(
@@ -3557,7 +3561,7 @@ static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s22_phy
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S22, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Magnetometer Sensitivity Matrix S22, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s22_physical(
@@ -3575,7 +3579,7 @@ static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s33_phy
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S33, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Magnetometer Sensitivity Matrix S33, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s33_physical(
@@ -3593,7 +3597,7 @@ static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s12_phy
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S12, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Magnetometer Sensitivity Matrix S12, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s12_physical(
@@ -3611,7 +3615,7 @@ static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s13_phy
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S13, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Magnetometer Sensitivity Matrix S13, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s13_physical(
@@ -3629,7 +3633,7 @@ static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s21_phy
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S21, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Magnetometer Sensitivity Matrix S21, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s21_physical(
@@ -3647,7 +3651,7 @@ static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s23_phy
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S23, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Magnetometer Sensitivity Matrix S23, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s23_physical(
@@ -3665,7 +3669,7 @@ static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s31_phy
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S31, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Magnetometer Sensitivity Matrix S31, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s31_physical(
@@ -3683,7 +3687,7 @@ static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s32_phy
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S32, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Magnetometer Sensitivity Matrix S32, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s32_physical(
@@ -3701,7 +3705,7 @@ static inline double cubeacp_adcs_configuration_redundant_mag_mounting_alpha_deg
 }
 
 /**
- * Sets Redundant Magnetometer Mounting Transform Alpha Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Mounting Transform Alpha Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_mounting_alpha_deg(
@@ -3719,7 +3723,7 @@ static inline double cubeacp_adcs_configuration_redundant_mag_mounting_beta_deg(
 }
 
 /**
- * Sets Redundant Magnetometer Mounting Transform Beta Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Mounting Transform Beta Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_mounting_beta_deg(
@@ -3737,7 +3741,7 @@ static inline double cubeacp_adcs_configuration_redundant_mag_mounting_gamma_deg
 }
 
 /**
- * Sets Redundant Magnetometer Mounting Transform Gamma Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Mounting Transform Gamma Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_mounting_gamma_deg(
@@ -3755,7 +3759,7 @@ static inline double cubeacp_adcs_configuration_redundant_mag_channel_1_offset_p
 }
 
 /**
- * Sets Redundant Magnetometer Channel 1 Offset, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Channel 1 Offset, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_channel_1_offset_physical(
@@ -3773,7 +3777,7 @@ static inline double cubeacp_adcs_configuration_redundant_mag_channel_2_offset_p
 }
 
 /**
- * Sets Redundant Magnetometer Channel 2 Offset, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Channel 2 Offset, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_channel_2_offset_physical(
@@ -3791,7 +3795,7 @@ static inline double cubeacp_adcs_configuration_redundant_mag_channel_3_offset_p
 }
 
 /**
- * Sets Redundant Magnetometer Channel 3 Offset, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Channel 3 Offset, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_channel_3_offset_physical(
@@ -3809,7 +3813,7 @@ static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s11_ph
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S11, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Redundant Magnetometer Sensitivity Matrix S11, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s11_physical(
@@ -3827,7 +3831,7 @@ static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s22_ph
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S22, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Redundant Magnetometer Sensitivity Matrix S22, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s22_physical(
@@ -3845,7 +3849,7 @@ static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s33_ph
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S33, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Redundant Magnetometer Sensitivity Matrix S33, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s33_physical(
@@ -3863,7 +3867,7 @@ static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s12_ph
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S12, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Redundant Magnetometer Sensitivity Matrix S12, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s12_physical(
@@ -3881,7 +3885,7 @@ static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s13_ph
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S13, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Redundant Magnetometer Sensitivity Matrix S13, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s13_physical(
@@ -3899,7 +3903,7 @@ static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s21_ph
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S21, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Redundant Magnetometer Sensitivity Matrix S21, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s21_physical(
@@ -3917,7 +3921,7 @@ static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s23_ph
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S23, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Redundant Magnetometer Sensitivity Matrix S23, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s23_physical(
@@ -3935,7 +3939,7 @@ static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s31_ph
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S31, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Redundant Magnetometer Sensitivity Matrix S31, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s31_physical(
@@ -3953,7 +3957,7 @@ static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s32_ph
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S32, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Redundant Magnetometer Sensitivity Matrix S32, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s32_physical(
@@ -3971,7 +3975,7 @@ static inline double cubeacp_adcs_configuration_star_tracker_mounting_alpha_deg(
 }
 
 /**
- * Sets StarTracker Mounting Transform Alpha Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets StarTracker Mounting Transform Alpha Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_alpha_deg(
     cubeacp_adcs_configuration_t *message,
@@ -3987,7 +3991,9 @@ static inline double cubeacp_adcs_configuration_star_tracker_mounting_beta_deg(
     return icdgen_quotient(message->star_tracker_mounting_beta, 100);
 }
 
-/** Sets StarTracker Mounting Transform Beta Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Sets StarTracker Mounting Transform Beta Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_beta_deg(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4003,7 +4009,7 @@ static inline double cubeacp_adcs_configuration_star_tracker_mounting_gamma_deg(
 }
 
 /**
- * Sets StarTracker Mounting Transform Gamma Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets StarTracker Mounting Transform Gamma Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_gamma_deg(
     cubeacp_adcs_configuration_t *message,
@@ -4019,7 +4025,7 @@ static inline double cubeacp_adcs_configuration_star_tracker_error_margin_percen
     return icdgen_quotient(message->star_tracker_error_margin, 100);
 }
 
-/** Sets Star Tracker Error Margin in % to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star Tracker Error Margin in %, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_error_margin_percent(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4034,7 +4040,7 @@ static inline double cubeacp_adcs_configuration_star_tracking_margin_physical(
     return icdgen_quotient(message->star_tracking_margin, 100);
 }
 
-/** Sets Star Tracking Margin, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star Tracking Margin, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_tracking_margin_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4049,7 +4055,7 @@ static inline double cubeacp_adcs_configuration_star_validation_margin_physical(
     return icdgen_quotient(message->star_validation_margin, 100);
 }
 
-/** Sets Star Validation Margin, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star Validation Margin, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_validation_margin_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4064,7 +4070,7 @@ static inline double cubeacp_adcs_configuration_star_tracking_search_width_physi
     return icdgen_quotient(message->star_tracking_search_width, 5);
 }
 
-/** Sets Star Tracking Search Width, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star Tracking Search Width, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_tracking_search_width_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4079,7 +4085,7 @@ static inline double cubeacp_adcs_configuration_reference_spin_rate_deg_per_s(
     return icdgen_quotient(message->reference_spin_rate, 1000);
 }
 
-/** Sets Reference spin rate in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Reference spin rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_reference_spin_rate_deg_per_s(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4093,7 +4099,7 @@ static inline double cubeacp_adcs_configuration_incl_coefficient_physical(const 
     return icdgen_quotient(message->incl_coefficient, 1000);
 }
 
-/** Sets Incl. coefficient, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Incl. coefficient, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_incl_coefficient_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4107,7 +4113,7 @@ static inline double cubeacp_adcs_configuration_raan_coefficient_physical(const 
     return icdgen_quotient(message->raan_coefficient, 1000);
 }
 
-/** Sets Raan coefficient, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Raan coefficient, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_raan_coefficient_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4121,7 +4127,7 @@ static inline double cubeacp_adcs_configuration_ecc_coefficient_physical(const c
     return icdgen_quotient(message->ecc_coefficient, 1000);
 }
 
-/** Sets Ecc coefficient, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Ecc coefficient, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_ecc_coefficient_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4135,7 +4141,7 @@ static inline double cubeacp_adcs_configuration_aop_coefficient_physical(const c
     return icdgen_quotient(message->aop_coefficient, 1000);
 }
 
-/** Sets Aop coefficient, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Aop coefficient, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_aop_coefficient_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4149,7 +4155,7 @@ static inline double cubeacp_adcs_configuration_time_coefficient_physical(const 
     return icdgen_quotient(message->time_coefficient, 1000);
 }
 
-/** Sets Time coefficient, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Time coefficient, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_time_coefficient_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4163,7 +4169,7 @@ static inline double cubeacp_adcs_configuration_pos_coefficient_physical(const c
     return icdgen_quotient(message->pos_coefficient, 1000);
 }
 
-/** Sets Pos coefficient, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Pos coefficient, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_pos_coefficient_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4178,7 +4184,7 @@ static inline double cubeacp_adcs_configuration_maximum_position_error_physical(
     return icdgen_quotient(message->maximum_position_error, 10);
 }
 
-/** Sets Maximum position error, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Maximum position error, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_maximum_position_error_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4192,7 +4198,7 @@ static inline double cubeacp_adcs_configuration_xp_coefficient_physical(const cu
     return icdgen_quotient(message->xp_coefficient, 10000000);
 }
 
-/** Sets xp coefficient, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets xp coefficient, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_xp_coefficient_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4206,7 +4212,7 @@ static inline double cubeacp_adcs_configuration_yp_coefficient_physical(const cu
     return icdgen_quotient(message->yp_coefficient, 10000000);
 }
 
-/** Sets yp coefficient, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets yp coefficient, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_yp_coefficient_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4220,7 +4226,7 @@ static inline double cubeacp_adcs_configuration_position_sd_physical(const cubea
     return icdgen_quotient(message->position_sd, 10);
 }
 
-/** Sets Position sd, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Position sd, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_position_sd_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4234,7 +4240,7 @@ static inline double cubeacp_adcs_configuration_velocity_sd_physical(const cubea
     return icdgen_quotient(message->velocity_sd, 100);
 }
 
-/** Sets Velocity sd, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Velocity sd, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_velocity_sd_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4248,7 +4254,7 @@ static inline double cubeacp_adcs_configuration_time_gain_physical(const cubeacp
     return icdgen_quotient(message->time_gain, 100);
 }
 
-/** Sets Time gain, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Time gain, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_time_gain_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4262,7 +4268,7 @@ static inline double cubeacp_adcs_configuration_max_lag_physical(const cubeacp_a
     return icdgen_quotient(message->max_lag, 100);
 }
 
-/** Sets Max. lag, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Max. lag, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_configuration_set_max_lag_physical(
     cubeacp_adcs_configuration_t *message,
     double value)

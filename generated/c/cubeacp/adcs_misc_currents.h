@@ -92,7 +92,7 @@ static inline int32_t cubeacp_adcs_misc_currents_cubestar_current_ua(const cubea
     return message->cubestar_current * INT32_C(10);
 }
 
-/** Sets CubeStarCurrent in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeStarCurrent in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_misc_currents_set_cubestar_current_ua(
     cubeacp_adcs_misc_currents_t *message,
     int32_t value)
@@ -110,7 +110,7 @@ static inline int32_t cubeacp_adcs_misc_currents_magnetorquer_current_ua(const c
     return message->magnetorquer_current * INT32_C(100);
 }
 
-/** Sets Magnetorquer Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetorquer Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_misc_currents_set_magnetorquer_current_ua(
     cubeacp_adcs_misc_currents_t *message,
     int32_t value)
@@ -129,7 +129,7 @@ static inline int32_t cubeacp_adcs_misc_currents_cubestar_mcu_temperature_mc(
     return message->cubestar_mcu_temperature * INT32_C(10);
 }
 
-/** Sets CubeStar MCU temperature in thousandths of C to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeStar MCU temperature in thousandths of C, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_misc_currents_set_cubestar_mcu_temperature_mc(
     cubeacp_adcs_misc_currents_t *message,
     int32_t value)
@@ -149,7 +149,7 @@ static inline double cubeacp_adcs_misc_currents_cubestar_current_ma(const cubeac
     return icdgen_quotient(message->cubestar_current, 100);
 }
 
-/** Sets CubeStarCurrent in mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeStarCurrent in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_misc_currents_set_cubestar_current_ma(
     cubeacp_adcs_misc_currents_t *message,
     double value)
@@ -163,7 +163,7 @@ static inline double cubeacp_adcs_misc_currents_magnetorquer_current_ma(const cu
     return icdgen_quotient(message->magnetorquer_current, 10);
 }
 
-/** Sets Magnetorquer Current in mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetorquer Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_misc_currents_set_magnetorquer_current_ma(
     cubeacp_adcs_misc_currents_t *message,
     double value)
@@ -177,7 +177,7 @@ static inline double cubeacp_adcs_misc_currents_cubestar_mcu_temperature_c(const
     return icdgen_quotient(message->cubestar_mcu_temperature, 100);
 }
 
-/** Sets CubeStar MCU temperature in C to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeStar MCU temperature in C, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_misc_currents_set_cubestar_mcu_temperature_c(
     cubeacp_adcs_misc_currents_t *message,
     double value)

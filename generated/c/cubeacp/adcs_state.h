@@ -724,7 +724,7 @@ static inline int32_t cubeacp_adcs_state_estimated_roll_angle_mdeg(const cubeacp
     return message->estimated_roll_angle * INT32_C(10);
 }
 
-/** Sets Estimated Roll Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Roll Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_estimated_roll_angle_mdeg(
     cubeacp_adcs_state_t *message,
     int32_t value)
@@ -742,7 +742,7 @@ static inline int32_t cubeacp_adcs_state_estimated_pitch_angle_mdeg(const cubeac
     return message->estimated_pitch_angle * INT32_C(10);
 }
 
-/** Sets Estimated Pitch Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Pitch Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_estimated_pitch_angle_mdeg(
     cubeacp_adcs_state_t *message,
     int32_t value)
@@ -760,7 +760,7 @@ static inline int32_t cubeacp_adcs_state_estimated_yaw_angle_mdeg(const cubeacp_
     return message->estimated_yaw_angle * INT32_C(10);
 }
 
-/** Sets Estimated Yaw Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Yaw Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_estimated_yaw_angle_mdeg(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -327685) || (value > 327674)) {
@@ -776,7 +776,9 @@ static inline int32_t cubeacp_adcs_state_estimated_x_angular_rate_mdeg_per_s(con
     return message->estimated_x_angular_rate * INT32_C(10);
 }
 
-/** Sets Estimated X Angular Rate in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Sets Estimated X Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ */
 static inline icd_status_t cubeacp_adcs_state_set_estimated_x_angular_rate_mdeg_per_s(
     cubeacp_adcs_state_t *message,
     int32_t value)
@@ -794,7 +796,9 @@ static inline int32_t cubeacp_adcs_state_estimated_y_angular_rate_mdeg_per_s(con
     return message->estimated_y_angular_rate * INT32_C(10);
 }
 
-/** Sets Estimated Y Angular Rate in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Sets Estimated Y Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ */
 static inline icd_status_t cubeacp_adcs_state_set_estimated_y_angular_rate_mdeg_per_s(
     cubeacp_adcs_state_t *message,
     int32_t value)
@@ -812,7 +816,9 @@ static inline int32_t cubeacp_adcs_state_estimated_z_angular_rate_mdeg_per_s(con
     return message->estimated_z_angular_rate * INT32_C(10);
 }
 
-/** Sets Estimated Z Angular Rate in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Sets Estimated Z Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ */
 static inline icd_status_t cubeacp_adcs_state_set_estimated_z_angular_rate_mdeg_per_s(
     cubeacp_adcs_state_t *message,
     int32_t value)
@@ -830,7 +836,7 @@ static inline int32_t cubeacp_adcs_state_x_position_m(const cubeacp_adcs_state_t
     return message->x_position * INT32_C(250);
 }
 
-/** Sets X position in m to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X position in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_x_position_m(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -8192125) || (value > 8191874)) {
@@ -846,7 +852,7 @@ static inline int32_t cubeacp_adcs_state_y_position_m(const cubeacp_adcs_state_t
     return message->y_position * INT32_C(250);
 }
 
-/** Sets Y position in m to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y position in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_y_position_m(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -8192125) || (value > 8191874)) {
@@ -862,7 +868,7 @@ static inline int32_t cubeacp_adcs_state_z_position_m(const cubeacp_adcs_state_t
     return message->z_position * INT32_C(250);
 }
 
-/** Sets Z position in m to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z position in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_z_position_m(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -8192125) || (value > 8191874)) {
@@ -878,7 +884,7 @@ static inline int32_t cubeacp_adcs_state_x_velocity_mm_per_s(const cubeacp_adcs_
     return message->x_velocity * INT32_C(250);
 }
 
-/** Sets X Velocity in mm/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X Velocity in mm/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_x_velocity_mm_per_s(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -8192125) || (value > 8191874)) {
@@ -894,7 +900,7 @@ static inline int32_t cubeacp_adcs_state_y_velocity_mm_per_s(const cubeacp_adcs_
     return message->y_velocity * INT32_C(250);
 }
 
-/** Sets Y Velocity in mm/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y Velocity in mm/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_y_velocity_mm_per_s(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -8192125) || (value > 8191874)) {
@@ -910,7 +916,7 @@ static inline int32_t cubeacp_adcs_state_z_velocity_mm_per_s(const cubeacp_adcs_
     return message->z_velocity * INT32_C(250);
 }
 
-/** Sets Z Velocity in mm/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z Velocity in mm/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_z_velocity_mm_per_s(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -8192125) || (value > 8191874)) {
@@ -926,7 +932,7 @@ static inline int32_t cubeacp_adcs_state_latitude_mdeg(const cubeacp_adcs_state_
     return message->latitude * INT32_C(10);
 }
 
-/** Sets Latitude in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Latitude in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_latitude_mdeg(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -327685) || (value > 327674)) {
@@ -942,7 +948,7 @@ static inline int32_t cubeacp_adcs_state_longitude_mdeg(const cubeacp_adcs_state
     return message->longitude * INT32_C(10);
 }
 
-/** Sets Longitude in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Longitude in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_longitude_mdeg(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -327685) || (value > 327674)) {
@@ -958,7 +964,7 @@ static inline int32_t cubeacp_adcs_state_altitude_m(const cubeacp_adcs_state_t *
     return message->altitude * INT32_C(10);
 }
 
-/** Sets Altitude in m to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Altitude in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_altitude_m(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -5) || (value > 655354)) {
@@ -976,7 +982,7 @@ static inline double cubeacp_adcs_state_estimated_roll_angle_deg(const cubeacp_a
     return icdgen_quotient(message->estimated_roll_angle, 100);
 }
 
-/** Sets Estimated Roll Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Roll Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_estimated_roll_angle_deg(cubeacp_adcs_state_t *message, double value)
 {
     return icdgen_set_i16(&message->estimated_roll_angle, value, 1, 0, 100, INT16_MIN, INT16_MAX);
@@ -988,7 +994,7 @@ static inline double cubeacp_adcs_state_estimated_pitch_angle_deg(const cubeacp_
     return icdgen_quotient(message->estimated_pitch_angle, 100);
 }
 
-/** Sets Estimated Pitch Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Pitch Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_estimated_pitch_angle_deg(cubeacp_adcs_state_t *message, double value)
 {
     return icdgen_set_i16(&message->estimated_pitch_angle, value, 1, 0, 100, INT16_MIN, INT16_MAX);
@@ -1000,7 +1006,7 @@ static inline double cubeacp_adcs_state_estimated_yaw_angle_deg(const cubeacp_ad
     return icdgen_quotient(message->estimated_yaw_angle, 100);
 }
 
-/** Sets Estimated Yaw Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Yaw Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_estimated_yaw_angle_deg(cubeacp_adcs_state_t *message, double value)
 {
     return icdgen_set_i16(&message->estimated_yaw_angle, value, 1, 0, 100, INT16_MIN, INT16_MAX);
@@ -1012,7 +1018,7 @@ static inline double cubeacp_adcs_state_estimated_x_angular_rate_deg_per_s(const
     return icdgen_quotient(message->estimated_x_angular_rate, 100);
 }
 
-/** Sets Estimated X Angular Rate in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated X Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_estimated_x_angular_rate_deg_per_s(
     cubeacp_adcs_state_t *message,
     double value)
@@ -1026,7 +1032,7 @@ static inline double cubeacp_adcs_state_estimated_y_angular_rate_deg_per_s(const
     return icdgen_quotient(message->estimated_y_angular_rate, 100);
 }
 
-/** Sets Estimated Y Angular Rate in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Y Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_estimated_y_angular_rate_deg_per_s(
     cubeacp_adcs_state_t *message,
     double value)
@@ -1040,7 +1046,7 @@ static inline double cubeacp_adcs_state_estimated_z_angular_rate_deg_per_s(const
     return icdgen_quotient(message->estimated_z_angular_rate, 100);
 }
 
-/** Sets Estimated Z Angular Rate in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Z Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_estimated_z_angular_rate_deg_per_s(
     cubeacp_adcs_state_t *message,
     double value)
@@ -1054,7 +1060,7 @@ static inline double cubeacp_adcs_state_x_position_km(const cubeacp_adcs_state_t
     return icdgen_quotient(message->x_position, 4);
 }
 
-/** Sets X position in km to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X position in km, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_x_position_km(cubeacp_adcs_state_t *message, double value)
 {
     return icdgen_set_i16(&message->x_position, value, 1, 0, 4, INT16_MIN, INT16_MAX);
@@ -1066,7 +1072,7 @@ static inline double cubeacp_adcs_state_y_position_km(const cubeacp_adcs_state_t
     return icdgen_quotient(message->y_position, 4);
 }
 
-/** Sets Y position in km to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y position in km, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_y_position_km(cubeacp_adcs_state_t *message, double value)
 {
     return icdgen_set_i16(&message->y_position, value, 1, 0, 4, INT16_MIN, INT16_MAX);
@@ -1078,7 +1084,7 @@ static inline double cubeacp_adcs_state_z_position_km(const cubeacp_adcs_state_t
     return icdgen_quotient(message->z_position, 4);
 }
 
-/** Sets Z position in km to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z position in km, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_z_position_km(cubeacp_adcs_state_t *message, double value)
 {
     return icdgen_set_i16(&message->z_position, value, 1, 0, 4, INT16_MIN, INT16_MAX);
@@ -1090,7 +1096,7 @@ static inline double cubeacp_adcs_state_x_velocity_m_per_s(const cubeacp_adcs_st
     return icdgen_quotient(message->x_velocity, 4);
 }
 
-/** Sets X Velocity in m/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X Velocity in m/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_x_velocity_m_per_s(cubeacp_adcs_state_t *message, double value)
 {
     return icdgen_set_i16(&message->x_velocity, value, 1, 0, 4, INT16_MIN, INT16_MAX);
@@ -1102,7 +1108,7 @@ static inline double cubeacp_adcs_state_y_velocity_m_per_s(const cubeacp_adcs_st
     return icdgen_quotient(message->y_velocity, 4);
 }
 
-/** Sets Y Velocity in m/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y Velocity in m/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_y_velocity_m_per_s(cubeacp_adcs_state_t *message, double value)
 {
     return icdgen_set_i16(&message->y_velocity, value, 1, 0, 4, INT16_MIN, INT16_MAX);
@@ -1114,7 +1120,7 @@ static inline double cubeacp_adcs_state_z_velocity_m_per_s(const cubeacp_adcs_st
     return icdgen_quotient(message->z_velocity, 4);
 }
 
-/** Sets Z Velocity in m/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z Velocity in m/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_z_velocity_m_per_s(cubeacp_adcs_state_t *message, double value)
 {
     return icdgen_set_i16(&message->z_velocity, value, 1, 0, 4, INT16_MIN, INT16_MAX);
@@ -1126,7 +1132,7 @@ static inline double cubeacp_adcs_state_latitude_deg(const cubeacp_adcs_state_t 
     return icdgen_quotient(message->latitude, 100);
 }
 
-/** Sets Latitude in deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Latitude in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_latitude_deg(cubeacp_adcs_state_t *message, double value)
 {
     return icdgen_set_i16(&message->latitude, value, 1, 0, 100, INT16_MIN, INT16_MAX);
@@ -1138,7 +1144,7 @@ static inline double cubeacp_adcs_state_longitude_deg(const cubeacp_adcs_state_t
     return icdgen_quotient(message->longitude, 100);
 }
 
-/** Sets Longitude in deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Longitude in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_longitude_deg(cubeacp_adcs_state_t *message, double value)
 {
     return icdgen_set_i16(&message->longitude, value, 1, 0, 100, INT16_MIN, INT16_MAX);
@@ -1150,7 +1156,7 @@ static inline double cubeacp_adcs_state_altitude_km(const cubeacp_adcs_state_t *
     return icdgen_quotient(message->altitude, 100);
 }
 
-/** Sets Altitude in km to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Altitude in km, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_altitude_km(cubeacp_adcs_state_t *message, double value)
 {
     return icdgen_set_u16(&message->altitude, value, 1, 0, 100, UINT16_MAX);

@@ -95,7 +95,7 @@ static inline int32_t cubeacp_adcs_temperatures_magnetometer_temperature_mc(cons
     return message->magnetometer_temperature * INT32_C(100);
 }
 
-/** Sets Magnetometer Temperature in thousandths of C to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetometer Temperature in thousandths of C, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_temperatures_set_magnetometer_temperature_mc(
     cubeacp_adcs_temperatures_t *message,
     int32_t value)
@@ -114,7 +114,7 @@ static inline int32_t cubeacp_adcs_temperatures_redundant_mag_temperature_mc(con
 }
 
 /**
- * Sets Redundant Magnetometer Temperature in thousandths of C to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Redundant Magnetometer Temperature in thousandths of C, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_adcs_temperatures_set_redundant_mag_temperature_mc(
@@ -136,7 +136,7 @@ static inline double cubeacp_adcs_temperatures_magnetometer_temperature_c(const 
     return icdgen_quotient(message->magnetometer_temperature, 10);
 }
 
-/** Sets Magnetometer Temperature in C to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetometer Temperature in C, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_temperatures_set_magnetometer_temperature_c(
     cubeacp_adcs_temperatures_t *message,
     double value)
@@ -150,7 +150,7 @@ static inline double cubeacp_adcs_temperatures_redundant_mag_temperature_c(const
     return icdgen_quotient(message->redundant_mag_temperature, 10);
 }
 
-/** Sets Redundant Magnetometer Temperature in C to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Redundant Magnetometer Temperature in C, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_temperatures_set_redundant_mag_temperature_c(
     cubeacp_adcs_temperatures_t *message,
     double value)

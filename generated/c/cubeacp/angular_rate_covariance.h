@@ -91,7 +91,7 @@ static inline int32_t cubeacp_angular_rate_covariance_x_angular_rate_covariance_
     return message->x_angular_rate_covariance;
 }
 
-/** Sets X Angular Rate Covariance in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X Angular Rate Covariance in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_angular_rate_covariance_set_x_angular_rate_covariance_milli(
     cubeacp_angular_rate_covariance_t *message,
     int32_t value)
@@ -110,7 +110,7 @@ static inline int32_t cubeacp_angular_rate_covariance_y_angular_rate_covariance_
     return message->y_angular_rate_covariance;
 }
 
-/** Sets Y Angular Rate Covariance in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y Angular Rate Covariance in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_angular_rate_covariance_set_y_angular_rate_covariance_milli(
     cubeacp_angular_rate_covariance_t *message,
     int32_t value)
@@ -129,7 +129,7 @@ static inline int32_t cubeacp_angular_rate_covariance_z_angular_rate_covariance_
     return message->z_angular_rate_covariance;
 }
 
-/** Sets Z Angular Rate Covariance in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z Angular Rate Covariance in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_angular_rate_covariance_set_z_angular_rate_covariance_milli(
     cubeacp_angular_rate_covariance_t *message,
     int32_t value)
@@ -150,7 +150,7 @@ static inline double cubeacp_angular_rate_covariance_x_angular_rate_covariance_p
     return icdgen_quotient(message->x_angular_rate_covariance, 1000);
 }
 
-/** Sets X Angular Rate Covariance, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X Angular Rate Covariance, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_angular_rate_covariance_set_x_angular_rate_covariance_physical(
     cubeacp_angular_rate_covariance_t *message,
     double value)
@@ -165,7 +165,7 @@ static inline double cubeacp_angular_rate_covariance_y_angular_rate_covariance_p
     return icdgen_quotient(message->y_angular_rate_covariance, 1000);
 }
 
-/** Sets Y Angular Rate Covariance, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y Angular Rate Covariance, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_angular_rate_covariance_set_y_angular_rate_covariance_physical(
     cubeacp_angular_rate_covariance_t *message,
     double value)
@@ -180,7 +180,7 @@ static inline double cubeacp_angular_rate_covariance_z_angular_rate_covariance_p
     return icdgen_quotient(message->z_angular_rate_covariance, 1000);
 }
 
-/** Sets Z Angular Rate Covariance, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z Angular Rate Covariance, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_angular_rate_covariance_set_z_angular_rate_covariance_physical(
     cubeacp_angular_rate_covariance_t *message,
     double value)

@@ -84,7 +84,7 @@ static inline int32_t cubeacp_coarse_sun_vector_coarse_sun_x_micro(const cubeacp
     return message->coarse_sun_x * INT32_C(100);
 }
 
-/** Sets Coarse Sun X in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Coarse Sun X in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_coarse_sun_vector_set_coarse_sun_x_micro(
     cubeacp_coarse_sun_vector_t *message,
     int32_t value)
@@ -102,7 +102,7 @@ static inline int32_t cubeacp_coarse_sun_vector_coarse_sun_y_micro(const cubeacp
     return message->coarse_sun_y * INT32_C(100);
 }
 
-/** Sets Coarse Sun Y in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Coarse Sun Y in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_coarse_sun_vector_set_coarse_sun_y_micro(
     cubeacp_coarse_sun_vector_t *message,
     int32_t value)
@@ -120,7 +120,7 @@ static inline int32_t cubeacp_coarse_sun_vector_coarse_sun_z_micro(const cubeacp
     return message->coarse_sun_z * INT32_C(100);
 }
 
-/** Sets Coarse Sun Z in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Coarse Sun Z in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_coarse_sun_vector_set_coarse_sun_z_micro(
     cubeacp_coarse_sun_vector_t *message,
     int32_t value)
@@ -140,7 +140,7 @@ static inline double cubeacp_coarse_sun_vector_coarse_sun_x_physical(const cubea
     return icdgen_quotient(message->coarse_sun_x, 10000);
 }
 
-/** Sets Coarse Sun X, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Coarse Sun X, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_coarse_sun_vector_set_coarse_sun_x_physical(
     cubeacp_coarse_sun_vector_t *message,
     double value)
@@ -154,7 +154,7 @@ static inline double cubeacp_coarse_sun_vector_coarse_sun_y_physical(const cubea
     return icdgen_quotient(message->coarse_sun_y, 10000);
 }
 
-/** Sets Coarse Sun Y, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Coarse Sun Y, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_coarse_sun_vector_set_coarse_sun_y_physical(
     cubeacp_coarse_sun_vector_t *message,
     double value)
@@ -168,7 +168,7 @@ static inline double cubeacp_coarse_sun_vector_coarse_sun_z_physical(const cubea
     return icdgen_quotient(message->coarse_sun_z, 10000);
 }
 
-/** Sets Coarse Sun Z, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Coarse Sun Z, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_coarse_sun_vector_set_coarse_sun_z_physical(
     cubeacp_coarse_sun_vector_t *message,
     double value)

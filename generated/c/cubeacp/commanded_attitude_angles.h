@@ -84,7 +84,7 @@ static inline int32_t cubeacp_commanded_attitude_angles_commanded_roll_angle_mde
     return message->commanded_roll_angle * INT32_C(10);
 }
 
-/** Sets Commanded Roll Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Commanded Roll Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_commanded_attitude_angles_set_commanded_roll_angle_mdeg(
     cubeacp_commanded_attitude_angles_t *message,
     int32_t value)
@@ -103,7 +103,7 @@ static inline int32_t cubeacp_commanded_attitude_angles_commanded_pitch_angle_md
     return message->commanded_pitch_angle * INT32_C(10);
 }
 
-/** Sets Commanded Pitch Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Commanded Pitch Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_commanded_attitude_angles_set_commanded_pitch_angle_mdeg(
     cubeacp_commanded_attitude_angles_t *message,
     int32_t value)
@@ -122,7 +122,7 @@ static inline int32_t cubeacp_commanded_attitude_angles_commanded_yaw_angle_mdeg
     return message->commanded_yaw_angle * INT32_C(10);
 }
 
-/** Sets Commanded Yaw Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Commanded Yaw Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_commanded_attitude_angles_set_commanded_yaw_angle_mdeg(
     cubeacp_commanded_attitude_angles_t *message,
     int32_t value)
@@ -143,7 +143,7 @@ static inline double cubeacp_commanded_attitude_angles_commanded_roll_angle_deg(
     return icdgen_quotient(message->commanded_roll_angle, 100);
 }
 
-/** Sets Commanded Roll Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Commanded Roll Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_commanded_attitude_angles_set_commanded_roll_angle_deg(
     cubeacp_commanded_attitude_angles_t *message,
     double value)
@@ -158,7 +158,7 @@ static inline double cubeacp_commanded_attitude_angles_commanded_pitch_angle_deg
     return icdgen_quotient(message->commanded_pitch_angle, 100);
 }
 
-/** Sets Commanded Pitch Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Commanded Pitch Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_commanded_attitude_angles_set_commanded_pitch_angle_deg(
     cubeacp_commanded_attitude_angles_t *message,
     double value)
@@ -173,7 +173,7 @@ static inline double cubeacp_commanded_attitude_angles_commanded_yaw_angle_deg(
     return icdgen_quotient(message->commanded_yaw_angle, 100);
 }
 
-/** Sets Commanded Yaw Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Commanded Yaw Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_commanded_attitude_angles_set_commanded_yaw_angle_deg(
     cubeacp_commanded_attitude_angles_t *message,
     double value)

@@ -137,7 +137,7 @@ static inline int32_t cubeacp_css_configuration_css1_relative_scale_milli(const 
     return message->css1_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS1 Relative Scale in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS1 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_css_configuration_set_css1_relative_scale_milli(
     cubeacp_css_configuration_t *message,
     int32_t value)
@@ -155,7 +155,7 @@ static inline int32_t cubeacp_css_configuration_css2_relative_scale_milli(const 
     return message->css2_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS2 Relative Scale in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS2 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_css_configuration_set_css2_relative_scale_milli(
     cubeacp_css_configuration_t *message,
     int32_t value)
@@ -173,7 +173,7 @@ static inline int32_t cubeacp_css_configuration_css3_relative_scale_milli(const 
     return message->css3_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS3 Relative Scale in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS3 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_css_configuration_set_css3_relative_scale_milli(
     cubeacp_css_configuration_t *message,
     int32_t value)
@@ -191,7 +191,7 @@ static inline int32_t cubeacp_css_configuration_css4_relative_scale_milli(const 
     return message->css4_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS4 Relative Scale in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS4 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_css_configuration_set_css4_relative_scale_milli(
     cubeacp_css_configuration_t *message,
     int32_t value)
@@ -209,7 +209,7 @@ static inline int32_t cubeacp_css_configuration_css5_relative_scale_milli(const 
     return message->css5_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS5 Relative Scale in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS5 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_css_configuration_set_css5_relative_scale_milli(
     cubeacp_css_configuration_t *message,
     int32_t value)
@@ -227,7 +227,7 @@ static inline int32_t cubeacp_css_configuration_css6_relative_scale_milli(const 
     return message->css6_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS6 Relative Scale in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS6 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_css_configuration_set_css6_relative_scale_milli(
     cubeacp_css_configuration_t *message,
     int32_t value)
@@ -245,7 +245,7 @@ static inline int32_t cubeacp_css_configuration_css7_relative_scale_milli(const 
     return message->css7_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS7 Relative Scale in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS7 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_css_configuration_set_css7_relative_scale_milli(
     cubeacp_css_configuration_t *message,
     int32_t value)
@@ -263,7 +263,7 @@ static inline int32_t cubeacp_css_configuration_css8_relative_scale_milli(const 
     return message->css8_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS8 Relative Scale in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS8 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_css_configuration_set_css8_relative_scale_milli(
     cubeacp_css_configuration_t *message,
     int32_t value)
@@ -281,7 +281,7 @@ static inline int32_t cubeacp_css_configuration_css9_relative_scale_milli(const 
     return message->css9_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS9 Relative Scale in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS9 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_css_configuration_set_css9_relative_scale_milli(
     cubeacp_css_configuration_t *message,
     int32_t value)
@@ -299,7 +299,7 @@ static inline int32_t cubeacp_css_configuration_css10_relative_scale_milli(const
     return message->css10_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS10 Relative Scale in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS10 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_css_configuration_set_css10_relative_scale_milli(
     cubeacp_css_configuration_t *message,
     int32_t value)
@@ -319,7 +319,7 @@ static inline double cubeacp_css_configuration_css1_relative_scale_physical(cons
     return icdgen_quotient(message->css1_relative_scale, 100);
 }
 
-/** Sets CSS1 Relative Scale, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS1 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_css_configuration_set_css1_relative_scale_physical(
     cubeacp_css_configuration_t *message,
     double value)
@@ -333,7 +333,7 @@ static inline double cubeacp_css_configuration_css2_relative_scale_physical(cons
     return icdgen_quotient(message->css2_relative_scale, 100);
 }
 
-/** Sets CSS2 Relative Scale, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS2 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_css_configuration_set_css2_relative_scale_physical(
     cubeacp_css_configuration_t *message,
     double value)
@@ -347,7 +347,7 @@ static inline double cubeacp_css_configuration_css3_relative_scale_physical(cons
     return icdgen_quotient(message->css3_relative_scale, 100);
 }
 
-/** Sets CSS3 Relative Scale, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS3 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_css_configuration_set_css3_relative_scale_physical(
     cubeacp_css_configuration_t *message,
     double value)
@@ -361,7 +361,7 @@ static inline double cubeacp_css_configuration_css4_relative_scale_physical(cons
     return icdgen_quotient(message->css4_relative_scale, 100);
 }
 
-/** Sets CSS4 Relative Scale, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS4 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_css_configuration_set_css4_relative_scale_physical(
     cubeacp_css_configuration_t *message,
     double value)
@@ -375,7 +375,7 @@ static inline double cubeacp_css_configuration_css5_relative_scale_physical(cons
     return icdgen_quotient(message->css5_relative_scale, 100);
 }
 
-/** Sets CSS5 Relative Scale, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS5 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_css_configuration_set_css5_relative_scale_physical(
     cubeacp_css_configuration_t *message,
     double value)
@@ -389,7 +389,7 @@ static inline double cubeacp_css_configuration_css6_relative_scale_physical(cons
     return icdgen_quotient(message->css6_relative_scale, 100);
 }
 
-/** Sets CSS6 Relative Scale, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS6 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_css_configuration_set_css6_relative_scale_physical(
     cubeacp_css_configuration_t *message,
     double value)
@@ -403,7 +403,7 @@ static inline double cubeacp_css_configuration_css7_relative_scale_physical(cons
     return icdgen_quotient(message->css7_relative_scale, 100);
 }
 
-/** Sets CSS7 Relative Scale, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS7 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_css_configuration_set_css7_relative_scale_physical(
     cubeacp_css_configuration_t *message,
     double value)
@@ -417,7 +417,7 @@ static inline double cubeacp_css_configuration_css8_relative_scale_physical(cons
     return icdgen_quotient(message->css8_relative_scale, 100);
 }
 
-/** Sets CSS8 Relative Scale, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS8 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_css_configuration_set_css8_relative_scale_physical(
     cubeacp_css_configuration_t *message,
     double value)
@@ -431,7 +431,7 @@ static inline double cubeacp_css_configuration_css9_relative_scale_physical(cons
     return icdgen_quotient(message->css9_relative_scale, 100);
 }
 
-/** Sets CSS9 Relative Scale, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS9 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_css_configuration_set_css9_relative_scale_physical(
     cubeacp_css_configuration_t *message,
     double value)
@@ -445,7 +445,7 @@ static inline double cubeacp_css_configuration_css10_relative_scale_physical(con
     return icdgen_quotient(message->css10_relative_scale, 100);
 }
 
-/** Sets CSS10 Relative Scale, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CSS10 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_css_configuration_set_css10_relative_scale_physical(
     cubeacp_css_configuration_t *message,
     double value)

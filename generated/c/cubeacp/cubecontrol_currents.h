@@ -83,7 +83,7 @@ static inline double cubeacp_cubecontrol_currents_cubecontrol_3v3_current_ma(
     return icdgen_quotient(message->cubecontrol_3v3_current * INT64_C(125), 256);
 }
 
-/** Sets CubeControl 3V3 Current in mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeControl 3V3 Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubecontrol_currents_set_cubecontrol_3v3_current_ma(
     cubeacp_cubecontrol_currents_t *message,
     double value)
@@ -98,7 +98,7 @@ static inline double cubeacp_cubecontrol_currents_cubecontrol_5v_current_ma(
     return icdgen_quotient(message->cubecontrol_5v_current * INT64_C(125), 256);
 }
 
-/** Sets CubeControl 5V Current in mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeControl 5V Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubecontrol_currents_set_cubecontrol_5v_current_ma(
     cubeacp_cubecontrol_currents_t *message,
     double value)
@@ -113,7 +113,7 @@ static inline double cubeacp_cubecontrol_currents_cubecontrol_vbat_current_ma(
     return icdgen_quotient(message->cubecontrol_vbat_current * INT64_C(125), 256);
 }
 
-/** Sets CubeControl Vbat Current in mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeControl Vbat Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubecontrol_currents_set_cubecontrol_vbat_current_ma(
     cubeacp_cubecontrol_currents_t *message,
     double value)

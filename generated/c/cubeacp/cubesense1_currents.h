@@ -78,7 +78,7 @@ static inline int32_t cubeacp_cubesense1_currents_cubesense1_3v3_current_ua(
     return message->cubesense1_3v3_current * INT32_C(100);
 }
 
-/** Sets CubeSense1 3V3 Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeSense1 3V3 Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubesense1_currents_set_cubesense1_3v3_current_ua(
     cubeacp_cubesense1_currents_t *message,
     int32_t value)
@@ -97,7 +97,7 @@ static inline int32_t cubeacp_cubesense1_currents_cubesense1_cam_sram_current_ua
     return message->cubesense1_cam_sram_current * INT32_C(100);
 }
 
-/** Sets CubeSense1 Cam SRAM Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeSense1 Cam SRAM Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubesense1_currents_set_cubesense1_cam_sram_current_ua(
     cubeacp_cubesense1_currents_t *message,
     int32_t value)
@@ -117,7 +117,7 @@ static inline double cubeacp_cubesense1_currents_cubesense1_3v3_current_ma(const
     return icdgen_quotient(message->cubesense1_3v3_current, 10);
 }
 
-/** Sets CubeSense1 3V3 Current in mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeSense1 3V3 Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubesense1_currents_set_cubesense1_3v3_current_ma(
     cubeacp_cubesense1_currents_t *message,
     double value)
@@ -132,7 +132,7 @@ static inline double cubeacp_cubesense1_currents_cubesense1_cam_sram_current_ma(
     return icdgen_quotient(message->cubesense1_cam_sram_current, 10);
 }
 
-/** Sets CubeSense1 Cam SRAM Current in mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeSense1 Cam SRAM Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubesense1_currents_set_cubesense1_cam_sram_current_ma(
     cubeacp_cubesense1_currents_t *message,
     double value)

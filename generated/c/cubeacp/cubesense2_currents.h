@@ -80,7 +80,7 @@ static inline int32_t cubeacp_cubesense2_currents_cubesense2_3v3_current_ua(
     return message->cubesense2_3v3_current * INT32_C(100);
 }
 
-/** Sets CubeSense2 3V3 Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeSense2 3V3 Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubesense2_currents_set_cubesense2_3v3_current_ua(
     cubeacp_cubesense2_currents_t *message,
     int32_t value)
@@ -99,7 +99,7 @@ static inline int32_t cubeacp_cubesense2_currents_cubesense2_cam_sram_current_ua
     return message->cubesense2_cam_sram_current * INT32_C(100);
 }
 
-/** Sets CubeSense2 Cam SRAM Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeSense2 Cam SRAM Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubesense2_currents_set_cubesense2_cam_sram_current_ua(
     cubeacp_cubesense2_currents_t *message,
     int32_t value)
@@ -119,7 +119,7 @@ static inline double cubeacp_cubesense2_currents_cubesense2_3v3_current_ma(const
     return icdgen_quotient(message->cubesense2_3v3_current, 10);
 }
 
-/** Sets CubeSense2 3V3 Current in mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeSense2 3V3 Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubesense2_currents_set_cubesense2_3v3_current_ma(
     cubeacp_cubesense2_currents_t *message,
     double value)
@@ -134,7 +134,7 @@ static inline double cubeacp_cubesense2_currents_cubesense2_cam_sram_current_ma(
     return icdgen_quotient(message->cubesense2_cam_sram_current, 10);
 }
 
-/** Sets CubeSense2 Cam SRAM Current in mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeSense2 Cam SRAM Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubesense2_currents_set_cubesense2_cam_sram_current_ma(
     cubeacp_cubesense2_currents_t *message,
     double value)

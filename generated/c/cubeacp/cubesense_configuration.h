@@ -492,7 +492,7 @@ static inline int32_t cubeacp_cubesense_configuration_cam1_mounting_alpha_mdeg(
 }
 
 /**
- * Sets Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_mounting_alpha_mdeg(
@@ -514,7 +514,7 @@ static inline int32_t cubeacp_cubesense_configuration_cam1_mounting_beta_mdeg(
 }
 
 /**
- * Sets Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_mounting_beta_mdeg(
@@ -536,7 +536,7 @@ static inline int32_t cubeacp_cubesense_configuration_cam1_mounting_gamma_mdeg(
 }
 
 /**
- * Sets Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_mounting_gamma_mdeg(
@@ -557,7 +557,7 @@ static inline int32_t cubeacp_cubesense_configuration_cam1_boresight_x_milli_pix
     return message->cam1_boresight_x * INT32_C(10);
 }
 
-/** Sets Cam1 Boresight X in thousandths of pixels to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Cam1 Boresight X in thousandths of pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_boresight_x_milli_pixels(
     cubeacp_cubesense_configuration_t *message,
     int32_t value)
@@ -576,7 +576,7 @@ static inline int32_t cubeacp_cubesense_configuration_cam1_boresight_y_milli_pix
     return message->cam1_boresight_y * INT32_C(10);
 }
 
-/** Sets Cam1 Boresight Y in thousandths of pixels to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Cam1 Boresight Y in thousandths of pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_boresight_y_milli_pixels(
     cubeacp_cubesense_configuration_t *message,
     int32_t value)
@@ -596,7 +596,7 @@ static inline int32_t cubeacp_cubesense_configuration_cam2_mounting_alpha_mdeg(
 }
 
 /**
- * Sets Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_mounting_alpha_mdeg(
@@ -618,7 +618,7 @@ static inline int32_t cubeacp_cubesense_configuration_cam2_mounting_beta_mdeg(
 }
 
 /**
- * Sets Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_mounting_beta_mdeg(
@@ -640,7 +640,7 @@ static inline int32_t cubeacp_cubesense_configuration_cam2_mounting_gamma_mdeg(
 }
 
 /**
- * Sets Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_mounting_gamma_mdeg(
@@ -661,7 +661,7 @@ static inline int32_t cubeacp_cubesense_configuration_cam2_boresight_x_milli_pix
     return message->cam2_boresight_x * INT32_C(10);
 }
 
-/** Sets Cam2 Boresight X in thousandths of pixels to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Cam2 Boresight X in thousandths of pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_boresight_x_milli_pixels(
     cubeacp_cubesense_configuration_t *message,
     int32_t value)
@@ -680,7 +680,7 @@ static inline int32_t cubeacp_cubesense_configuration_cam2_boresight_y_milli_pix
     return message->cam2_boresight_y * INT32_C(10);
 }
 
-/** Sets Cam2 Boresight Y in thousandths of pixels to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Cam2 Boresight Y in thousandths of pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_boresight_y_milli_pixels(
     cubeacp_cubesense_configuration_t *message,
     int32_t value)
@@ -702,7 +702,7 @@ static inline double cubeacp_cubesense_configuration_cam1_mounting_alpha_deg(
 }
 
 /**
- * Sets Cam1 Sensor Mounting Transform Alpha Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Cam1 Sensor Mounting Transform Alpha Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_mounting_alpha_deg(
     cubeacp_cubesense_configuration_t *message,
@@ -718,7 +718,9 @@ static inline double cubeacp_cubesense_configuration_cam1_mounting_beta_deg(
     return icdgen_quotient(message->cam1_mounting_beta, 100);
 }
 
-/** Sets Cam1 Sensor Mounting Transform Beta Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Sets Cam1 Sensor Mounting Transform Beta Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_mounting_beta_deg(
     cubeacp_cubesense_configuration_t *message,
     double value)
@@ -734,7 +736,7 @@ static inline double cubeacp_cubesense_configuration_cam1_mounting_gamma_deg(
 }
 
 /**
- * Sets Cam1 Sensor Mounting Transform Gamma Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Cam1 Sensor Mounting Transform Gamma Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_mounting_gamma_deg(
     cubeacp_cubesense_configuration_t *message,
@@ -750,7 +752,7 @@ static inline double cubeacp_cubesense_configuration_cam1_boresight_x_pixels(
     return icdgen_quotient(message->cam1_boresight_x, 100);
 }
 
-/** Sets Cam1 Boresight X in pixels to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Cam1 Boresight X in pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_boresight_x_pixels(
     cubeacp_cubesense_configuration_t *message,
     double value)
@@ -765,7 +767,7 @@ static inline double cubeacp_cubesense_configuration_cam1_boresight_y_pixels(
     return icdgen_quotient(message->cam1_boresight_y, 100);
 }
 
-/** Sets Cam1 Boresight Y in pixels to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Cam1 Boresight Y in pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_boresight_y_pixels(
     cubeacp_cubesense_configuration_t *message,
     double value)
@@ -781,7 +783,7 @@ static inline double cubeacp_cubesense_configuration_cam2_mounting_alpha_deg(
 }
 
 /**
- * Sets Cam2 Sensor Mounting Transform Alpha Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Cam2 Sensor Mounting Transform Alpha Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_mounting_alpha_deg(
     cubeacp_cubesense_configuration_t *message,
@@ -797,7 +799,9 @@ static inline double cubeacp_cubesense_configuration_cam2_mounting_beta_deg(
     return icdgen_quotient(message->cam2_mounting_beta, 100);
 }
 
-/** Sets Cam2 Sensor Mounting Transform Beta Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Sets Cam2 Sensor Mounting Transform Beta Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_mounting_beta_deg(
     cubeacp_cubesense_configuration_t *message,
     double value)
@@ -813,7 +817,7 @@ static inline double cubeacp_cubesense_configuration_cam2_mounting_gamma_deg(
 }
 
 /**
- * Sets Cam2 Sensor Mounting Transform Gamma Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Cam2 Sensor Mounting Transform Gamma Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_mounting_gamma_deg(
     cubeacp_cubesense_configuration_t *message,
@@ -829,7 +833,7 @@ static inline double cubeacp_cubesense_configuration_cam2_boresight_x_pixels(
     return icdgen_quotient(message->cam2_boresight_x, 100);
 }
 
-/** Sets Cam2 Boresight X in pixels to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Cam2 Boresight X in pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_boresight_x_pixels(
     cubeacp_cubesense_configuration_t *message,
     double value)
@@ -844,7 +848,7 @@ static inline double cubeacp_cubesense_configuration_cam2_boresight_y_pixels(
     return icdgen_quotient(message->cam2_boresight_y, 100);
 }
 
-/** Sets Cam2 Boresight Y in pixels to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Cam2 Boresight Y in pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_boresight_y_pixels(
     cubeacp_cubesense_configuration_t *message,
     double value)

@@ -97,7 +97,7 @@ static inline int32_t cubeacp_cubestar_estimated_quaternion_q0_micro(
     return message->q0 * INT32_C(100);
 }
 
-/** Sets Q0 in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Q0 in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubestar_estimated_quaternion_set_q0_micro(
     cubeacp_cubestar_estimated_quaternion_t *message,
     int32_t value)
@@ -116,7 +116,7 @@ static inline int32_t cubeacp_cubestar_estimated_quaternion_q1_micro(
     return message->q1 * INT32_C(100);
 }
 
-/** Sets Q1 in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Q1 in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubestar_estimated_quaternion_set_q1_micro(
     cubeacp_cubestar_estimated_quaternion_t *message,
     int32_t value)
@@ -135,7 +135,7 @@ static inline int32_t cubeacp_cubestar_estimated_quaternion_q2_micro(
     return message->q2 * INT32_C(100);
 }
 
-/** Sets Q2 in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Q2 in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubestar_estimated_quaternion_set_q2_micro(
     cubeacp_cubestar_estimated_quaternion_t *message,
     int32_t value)
@@ -156,7 +156,7 @@ static inline double cubeacp_cubestar_estimated_quaternion_q0_physical(
     return icdgen_quotient(message->q0, 10000);
 }
 
-/** Sets Q0, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Q0, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubestar_estimated_quaternion_set_q0_physical(
     cubeacp_cubestar_estimated_quaternion_t *message,
     double value)
@@ -171,7 +171,7 @@ static inline double cubeacp_cubestar_estimated_quaternion_q1_physical(
     return icdgen_quotient(message->q1, 10000);
 }
 
-/** Sets Q1, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Q1, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubestar_estimated_quaternion_set_q1_physical(
     cubeacp_cubestar_estimated_quaternion_t *message,
     double value)
@@ -186,7 +186,7 @@ static inline double cubeacp_cubestar_estimated_quaternion_q2_physical(
     return icdgen_quotient(message->q2, 10000);
 }
 
-/** Sets Q2, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Q2, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubestar_estimated_quaternion_set_q2_physical(
     cubeacp_cubestar_estimated_quaternion_t *message,
     double value)

@@ -94,7 +94,7 @@ static inline int32_t cubeacp_cubestar_estimated_rates_x_axis_rate_micro(
     return message->x_axis_rate * INT32_C(100);
 }
 
-/** Sets x-Axis rate in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets x-Axis rate in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubestar_estimated_rates_set_x_axis_rate_micro(
     cubeacp_cubestar_estimated_rates_t *message,
     int32_t value)
@@ -113,7 +113,7 @@ static inline int32_t cubeacp_cubestar_estimated_rates_y_axis_rate_micro(
     return message->y_axis_rate * INT32_C(100);
 }
 
-/** Sets y-Axis rate in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets y-Axis rate in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubestar_estimated_rates_set_y_axis_rate_micro(
     cubeacp_cubestar_estimated_rates_t *message,
     int32_t value)
@@ -132,7 +132,7 @@ static inline int32_t cubeacp_cubestar_estimated_rates_z_axis_rate_micro(
     return message->z_axis_rate * INT32_C(100);
 }
 
-/** Sets z-Axis rate in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets z-Axis rate in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubestar_estimated_rates_set_z_axis_rate_micro(
     cubeacp_cubestar_estimated_rates_t *message,
     int32_t value)
@@ -153,7 +153,7 @@ static inline double cubeacp_cubestar_estimated_rates_x_axis_rate_physical(
     return icdgen_quotient(message->x_axis_rate, 10000);
 }
 
-/** Sets x-Axis rate, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets x-Axis rate, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubestar_estimated_rates_set_x_axis_rate_physical(
     cubeacp_cubestar_estimated_rates_t *message,
     double value)
@@ -168,7 +168,7 @@ static inline double cubeacp_cubestar_estimated_rates_y_axis_rate_physical(
     return icdgen_quotient(message->y_axis_rate, 10000);
 }
 
-/** Sets y-Axis rate, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets y-Axis rate, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubestar_estimated_rates_set_y_axis_rate_physical(
     cubeacp_cubestar_estimated_rates_t *message,
     double value)
@@ -183,7 +183,7 @@ static inline double cubeacp_cubestar_estimated_rates_z_axis_rate_physical(
     return icdgen_quotient(message->z_axis_rate, 10000);
 }
 
-/** Sets z-Axis rate, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets z-Axis rate, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubestar_estimated_rates_set_z_axis_rate_physical(
     cubeacp_cubestar_estimated_rates_t *message,
     double value)

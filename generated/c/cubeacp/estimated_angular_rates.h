@@ -82,7 +82,9 @@ static inline int32_t cubeacp_estimated_angular_rates_estimated_x_angular_rate_m
     return message->estimated_x_angular_rate * INT32_C(10);
 }
 
-/** Sets Estimated X Angular Rate in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Sets Estimated X Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ */
 static inline icd_status_t cubeacp_estimated_angular_rates_set_estimated_x_angular_rate_mdeg_per_s(
     cubeacp_estimated_angular_rates_t *message,
     int32_t value)
@@ -101,7 +103,9 @@ static inline int32_t cubeacp_estimated_angular_rates_estimated_y_angular_rate_m
     return message->estimated_y_angular_rate * INT32_C(10);
 }
 
-/** Sets Estimated Y Angular Rate in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Sets Estimated Y Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ */
 static inline icd_status_t cubeacp_estimated_angular_rates_set_estimated_y_angular_rate_mdeg_per_s(
     cubeacp_estimated_angular_rates_t *message,
     int32_t value)
@@ -120,7 +124,9 @@ static inline int32_t cubeacp_estimated_angular_rates_estimated_z_angular_rate_m
     return message->estimated_z_angular_rate * INT32_C(10);
 }
 
-/** Sets Estimated Z Angular Rate in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Sets Estimated Z Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ */
 static inline icd_status_t cubeacp_estimated_angular_rates_set_estimated_z_angular_rate_mdeg_per_s(
     cubeacp_estimated_angular_rates_t *message,
     int32_t value)
@@ -141,7 +147,7 @@ static inline double cubeacp_estimated_angular_rates_estimated_x_angular_rate_de
     return icdgen_quotient(message->estimated_x_angular_rate, 100);
 }
 
-/** Sets Estimated X Angular Rate in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated X Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimated_angular_rates_set_estimated_x_angular_rate_deg_per_s(
     cubeacp_estimated_angular_rates_t *message,
     double value)
@@ -156,7 +162,7 @@ static inline double cubeacp_estimated_angular_rates_estimated_y_angular_rate_de
     return icdgen_quotient(message->estimated_y_angular_rate, 100);
 }
 
-/** Sets Estimated Y Angular Rate in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Y Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimated_angular_rates_set_estimated_y_angular_rate_deg_per_s(
     cubeacp_estimated_angular_rates_t *message,
     double value)
@@ -171,7 +177,7 @@ static inline double cubeacp_estimated_angular_rates_estimated_z_angular_rate_de
     return icdgen_quotient(message->estimated_z_angular_rate, 100);
 }
 
-/** Sets Estimated Z Angular Rate in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Z Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimated_angular_rates_set_estimated_z_angular_rate_deg_per_s(
     cubeacp_estimated_angular_rates_t *message,
     double value)

@@ -83,7 +83,7 @@ static inline int32_t cubeacp_estimated_attitude_angles_estimated_roll_angle_mde
     return message->estimated_roll_angle * INT32_C(10);
 }
 
-/** Sets Estimated Roll Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Roll Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimated_attitude_angles_set_estimated_roll_angle_mdeg(
     cubeacp_estimated_attitude_angles_t *message,
     int32_t value)
@@ -102,7 +102,7 @@ static inline int32_t cubeacp_estimated_attitude_angles_estimated_pitch_angle_md
     return message->estimated_pitch_angle * INT32_C(10);
 }
 
-/** Sets Estimated Pitch Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Pitch Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimated_attitude_angles_set_estimated_pitch_angle_mdeg(
     cubeacp_estimated_attitude_angles_t *message,
     int32_t value)
@@ -121,7 +121,7 @@ static inline int32_t cubeacp_estimated_attitude_angles_estimated_yaw_angle_mdeg
     return message->estimated_yaw_angle * INT32_C(10);
 }
 
-/** Sets Estimated Yaw Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Yaw Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimated_attitude_angles_set_estimated_yaw_angle_mdeg(
     cubeacp_estimated_attitude_angles_t *message,
     int32_t value)
@@ -142,7 +142,7 @@ static inline double cubeacp_estimated_attitude_angles_estimated_roll_angle_deg(
     return icdgen_quotient(message->estimated_roll_angle, 100);
 }
 
-/** Sets Estimated Roll Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Roll Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimated_attitude_angles_set_estimated_roll_angle_deg(
     cubeacp_estimated_attitude_angles_t *message,
     double value)
@@ -157,7 +157,7 @@ static inline double cubeacp_estimated_attitude_angles_estimated_pitch_angle_deg
     return icdgen_quotient(message->estimated_pitch_angle, 100);
 }
 
-/** Sets Estimated Pitch Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Pitch Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimated_attitude_angles_set_estimated_pitch_angle_deg(
     cubeacp_estimated_attitude_angles_t *message,
     double value)
@@ -172,7 +172,7 @@ static inline double cubeacp_estimated_attitude_angles_estimated_yaw_angle_deg(
     return icdgen_quotient(message->estimated_yaw_angle, 100);
 }
 
-/** Sets Estimated Yaw Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Yaw Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimated_attitude_angles_set_estimated_yaw_angle_deg(
     cubeacp_estimated_attitude_angles_t *message,
     double value)

@@ -82,7 +82,7 @@ static inline int32_t cubeacp_estimated_gyro_bias_estimated_x_gyro_bias_mdeg_per
     return message->estimated_x_gyro_bias;
 }
 
-/** Sets Estimated X-gyro Bias in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated X-gyro Bias in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimated_gyro_bias_set_estimated_x_gyro_bias_mdeg_per_s(
     cubeacp_estimated_gyro_bias_t *message,
     int32_t value)
@@ -101,7 +101,7 @@ static inline int32_t cubeacp_estimated_gyro_bias_estimated_y_gyro_bias_mdeg_per
     return message->estimated_y_gyro_bias;
 }
 
-/** Sets Estimated Y-gyro Bias in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Y-gyro Bias in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimated_gyro_bias_set_estimated_y_gyro_bias_mdeg_per_s(
     cubeacp_estimated_gyro_bias_t *message,
     int32_t value)
@@ -120,7 +120,7 @@ static inline int32_t cubeacp_estimated_gyro_bias_estimated_z_gyro_bias_mdeg_per
     return message->estimated_z_gyro_bias;
 }
 
-/** Sets Estimated Z-gyro Bias in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Z-gyro Bias in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimated_gyro_bias_set_estimated_z_gyro_bias_mdeg_per_s(
     cubeacp_estimated_gyro_bias_t *message,
     int32_t value)
@@ -141,7 +141,7 @@ static inline double cubeacp_estimated_gyro_bias_estimated_x_gyro_bias_deg_per_s
     return icdgen_quotient(message->estimated_x_gyro_bias, 1000);
 }
 
-/** Sets Estimated X-gyro Bias in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated X-gyro Bias in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimated_gyro_bias_set_estimated_x_gyro_bias_deg_per_s(
     cubeacp_estimated_gyro_bias_t *message,
     double value)
@@ -156,7 +156,7 @@ static inline double cubeacp_estimated_gyro_bias_estimated_y_gyro_bias_deg_per_s
     return icdgen_quotient(message->estimated_y_gyro_bias, 1000);
 }
 
-/** Sets Estimated Y-gyro Bias in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Y-gyro Bias in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimated_gyro_bias_set_estimated_y_gyro_bias_deg_per_s(
     cubeacp_estimated_gyro_bias_t *message,
     double value)
@@ -171,7 +171,7 @@ static inline double cubeacp_estimated_gyro_bias_estimated_z_gyro_bias_deg_per_s
     return icdgen_quotient(message->estimated_z_gyro_bias, 1000);
 }
 
-/** Sets Estimated Z-gyro Bias in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Z-gyro Bias in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimated_gyro_bias_set_estimated_z_gyro_bias_deg_per_s(
     cubeacp_estimated_gyro_bias_t *message,
     double value)

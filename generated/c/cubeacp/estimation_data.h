@@ -257,7 +257,7 @@ static inline int32_t cubeacp_estimation_data_igrf_modelled_magnetic_field_x_nt(
     return message->igrf_modelled_magnetic_field_x * INT32_C(10);
 }
 
-/** Sets IGRF Modelled Magnetic Field X in nT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets IGRF Modelled Magnetic Field X in nT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_igrf_modelled_magnetic_field_x_nt(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -276,7 +276,7 @@ static inline int32_t cubeacp_estimation_data_igrf_modelled_magnetic_field_y_nt(
     return message->igrf_modelled_magnetic_field_y * INT32_C(10);
 }
 
-/** Sets IGRF Modelled Magnetic Field Y in nT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets IGRF Modelled Magnetic Field Y in nT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_igrf_modelled_magnetic_field_y_nt(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -295,7 +295,7 @@ static inline int32_t cubeacp_estimation_data_igrf_modelled_magnetic_field_z_nt(
     return message->igrf_modelled_magnetic_field_z * INT32_C(10);
 }
 
-/** Sets IGRF Modelled Magnetic Field Z in nT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets IGRF Modelled Magnetic Field Z in nT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_igrf_modelled_magnetic_field_z_nt(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -313,7 +313,7 @@ static inline int32_t cubeacp_estimation_data_modelled_sun_vector_x_micro(const 
     return message->modelled_sun_vector_x * INT32_C(100);
 }
 
-/** Sets Modelled Sun Vector X in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Modelled Sun Vector X in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_modelled_sun_vector_x_micro(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -331,7 +331,7 @@ static inline int32_t cubeacp_estimation_data_modelled_sun_vector_y_micro(const 
     return message->modelled_sun_vector_y * INT32_C(100);
 }
 
-/** Sets Modelled Sun Vector Y in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Modelled Sun Vector Y in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_modelled_sun_vector_y_micro(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -349,7 +349,7 @@ static inline int32_t cubeacp_estimation_data_modelled_sun_vector_z_micro(const 
     return message->modelled_sun_vector_z * INT32_C(100);
 }
 
-/** Sets Modelled Sun Vector Z in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Modelled Sun Vector Z in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_modelled_sun_vector_z_micro(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -367,7 +367,7 @@ static inline int32_t cubeacp_estimation_data_estimated_x_gyro_bias_mdeg_per_s(c
     return message->estimated_x_gyro_bias;
 }
 
-/** Sets Estimated X-gyro Bias in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated X-gyro Bias in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_estimated_x_gyro_bias_mdeg_per_s(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -385,7 +385,7 @@ static inline int32_t cubeacp_estimation_data_estimated_y_gyro_bias_mdeg_per_s(c
     return message->estimated_y_gyro_bias;
 }
 
-/** Sets Estimated Y-gyro Bias in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Y-gyro Bias in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_estimated_y_gyro_bias_mdeg_per_s(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -403,7 +403,7 @@ static inline int32_t cubeacp_estimation_data_estimated_z_gyro_bias_mdeg_per_s(c
     return message->estimated_z_gyro_bias;
 }
 
-/** Sets Estimated Z-gyro Bias in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Z-gyro Bias in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_estimated_z_gyro_bias_mdeg_per_s(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -421,7 +421,7 @@ static inline int32_t cubeacp_estimation_data_innovation_vector_x_micro(const cu
     return message->innovation_vector_x * INT32_C(100);
 }
 
-/** Sets Innovation Vector X in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Innovation Vector X in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_innovation_vector_x_micro(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -439,7 +439,7 @@ static inline int32_t cubeacp_estimation_data_innovation_vector_y_micro(const cu
     return message->innovation_vector_y * INT32_C(100);
 }
 
-/** Sets Innovation Vector Y in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Innovation Vector Y in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_innovation_vector_y_micro(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -457,7 +457,7 @@ static inline int32_t cubeacp_estimation_data_innovation_vector_z_micro(const cu
     return message->innovation_vector_z * INT32_C(100);
 }
 
-/** Sets Innovation Vector Z in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Innovation Vector Z in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_innovation_vector_z_micro(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -475,7 +475,7 @@ static inline int32_t cubeacp_estimation_data_quaternion_error_q1_micro(const cu
     return message->quaternion_error_q1 * INT32_C(100);
 }
 
-/** Sets Quaternion Error - Q1 in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Quaternion Error - Q1 in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_quaternion_error_q1_micro(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -493,7 +493,7 @@ static inline int32_t cubeacp_estimation_data_quaternion_error_q2_micro(const cu
     return message->quaternion_error_q2 * INT32_C(100);
 }
 
-/** Sets Quaternion Error - Q2 in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Quaternion Error - Q2 in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_quaternion_error_q2_micro(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -511,7 +511,7 @@ static inline int32_t cubeacp_estimation_data_quaternion_error_q3_micro(const cu
     return message->quaternion_error_q3 * INT32_C(100);
 }
 
-/** Sets Quaternion Error - Q3 in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Quaternion Error - Q3 in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_quaternion_error_q3_micro(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -530,7 +530,7 @@ static inline int32_t cubeacp_estimation_data_quaternion_covariance_q1_rms_milli
     return message->quaternion_covariance_q1_rms;
 }
 
-/** Sets Quaternion Covariance - Q1 RMS in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Quaternion Covariance - Q1 RMS in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_quaternion_covariance_q1_rms_milli(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -549,7 +549,7 @@ static inline int32_t cubeacp_estimation_data_quaternion_covariance_q2_rms_milli
     return message->quaternion_covariance_q2_rms;
 }
 
-/** Sets Quaternion Covariance - Q2 RMS in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Quaternion Covariance - Q2 RMS in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_quaternion_covariance_q2_rms_milli(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -568,7 +568,7 @@ static inline int32_t cubeacp_estimation_data_quaternion_covariance_q3_rms_milli
     return message->quaternion_covariance_q3_rms;
 }
 
-/** Sets Quaternion Covariance - Q3 RMS in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Quaternion Covariance - Q3 RMS in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_quaternion_covariance_q3_rms_milli(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -586,7 +586,7 @@ static inline int32_t cubeacp_estimation_data_x_angular_rate_covariance_milli(co
     return message->x_angular_rate_covariance;
 }
 
-/** Sets X Angular Rate Covariance in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X Angular Rate Covariance in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_x_angular_rate_covariance_milli(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -604,7 +604,7 @@ static inline int32_t cubeacp_estimation_data_y_angular_rate_covariance_milli(co
     return message->y_angular_rate_covariance;
 }
 
-/** Sets Y Angular Rate Covariance in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y Angular Rate Covariance in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_y_angular_rate_covariance_milli(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -622,7 +622,7 @@ static inline int32_t cubeacp_estimation_data_z_angular_rate_covariance_milli(co
     return message->z_angular_rate_covariance;
 }
 
-/** Sets Z Angular Rate Covariance in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z Angular Rate Covariance in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_z_angular_rate_covariance_milli(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -642,7 +642,7 @@ static inline double cubeacp_estimation_data_igrf_modelled_magnetic_field_x_ut(c
     return icdgen_quotient(message->igrf_modelled_magnetic_field_x, 100);
 }
 
-/** Sets IGRF Modelled Magnetic Field X in uT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets IGRF Modelled Magnetic Field X in uT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_igrf_modelled_magnetic_field_x_ut(
     cubeacp_estimation_data_t *message,
     double value)
@@ -656,7 +656,7 @@ static inline double cubeacp_estimation_data_igrf_modelled_magnetic_field_y_ut(c
     return icdgen_quotient(message->igrf_modelled_magnetic_field_y, 100);
 }
 
-/** Sets IGRF Modelled Magnetic Field Y in uT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets IGRF Modelled Magnetic Field Y in uT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_igrf_modelled_magnetic_field_y_ut(
     cubeacp_estimation_data_t *message,
     double value)
@@ -670,7 +670,7 @@ static inline double cubeacp_estimation_data_igrf_modelled_magnetic_field_z_ut(c
     return icdgen_quotient(message->igrf_modelled_magnetic_field_z, 100);
 }
 
-/** Sets IGRF Modelled Magnetic Field Z in uT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets IGRF Modelled Magnetic Field Z in uT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_igrf_modelled_magnetic_field_z_ut(
     cubeacp_estimation_data_t *message,
     double value)
@@ -684,7 +684,7 @@ static inline double cubeacp_estimation_data_modelled_sun_vector_x_physical(cons
     return icdgen_quotient(message->modelled_sun_vector_x, 10000);
 }
 
-/** Sets Modelled Sun Vector X, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Modelled Sun Vector X, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_modelled_sun_vector_x_physical(
     cubeacp_estimation_data_t *message,
     double value)
@@ -698,7 +698,7 @@ static inline double cubeacp_estimation_data_modelled_sun_vector_y_physical(cons
     return icdgen_quotient(message->modelled_sun_vector_y, 10000);
 }
 
-/** Sets Modelled Sun Vector Y, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Modelled Sun Vector Y, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_modelled_sun_vector_y_physical(
     cubeacp_estimation_data_t *message,
     double value)
@@ -712,7 +712,7 @@ static inline double cubeacp_estimation_data_modelled_sun_vector_z_physical(cons
     return icdgen_quotient(message->modelled_sun_vector_z, 10000);
 }
 
-/** Sets Modelled Sun Vector Z, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Modelled Sun Vector Z, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_modelled_sun_vector_z_physical(
     cubeacp_estimation_data_t *message,
     double value)
@@ -726,7 +726,7 @@ static inline double cubeacp_estimation_data_estimated_x_gyro_bias_deg_per_s(con
     return icdgen_quotient(message->estimated_x_gyro_bias, 1000);
 }
 
-/** Sets Estimated X-gyro Bias in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated X-gyro Bias in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_estimated_x_gyro_bias_deg_per_s(
     cubeacp_estimation_data_t *message,
     double value)
@@ -740,7 +740,7 @@ static inline double cubeacp_estimation_data_estimated_y_gyro_bias_deg_per_s(con
     return icdgen_quotient(message->estimated_y_gyro_bias, 1000);
 }
 
-/** Sets Estimated Y-gyro Bias in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Y-gyro Bias in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_estimated_y_gyro_bias_deg_per_s(
     cubeacp_estimation_data_t *message,
     double value)
@@ -754,7 +754,7 @@ static inline double cubeacp_estimation_data_estimated_z_gyro_bias_deg_per_s(con
     return icdgen_quotient(message->estimated_z_gyro_bias, 1000);
 }
 
-/** Sets Estimated Z-gyro Bias in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Z-gyro Bias in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_estimated_z_gyro_bias_deg_per_s(
     cubeacp_estimation_data_t *message,
     double value)
@@ -768,7 +768,7 @@ static inline double cubeacp_estimation_data_innovation_vector_x_physical(const 
     return icdgen_quotient(message->innovation_vector_x, 10000);
 }
 
-/** Sets Innovation Vector X, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Innovation Vector X, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_innovation_vector_x_physical(
     cubeacp_estimation_data_t *message,
     double value)
@@ -782,7 +782,7 @@ static inline double cubeacp_estimation_data_innovation_vector_y_physical(const 
     return icdgen_quotient(message->innovation_vector_y, 10000);
 }
 
-/** Sets Innovation Vector Y, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Innovation Vector Y, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_innovation_vector_y_physical(
     cubeacp_estimation_data_t *message,
     double value)
@@ -796,7 +796,7 @@ static inline double cubeacp_estimation_data_innovation_vector_z_physical(const 
     return icdgen_quotient(message->innovation_vector_z, 10000);
 }
 
-/** Sets Innovation Vector Z, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Innovation Vector Z, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_innovation_vector_z_physical(
     cubeacp_estimation_data_t *message,
     double value)
@@ -810,7 +810,7 @@ static inline double cubeacp_estimation_data_quaternion_error_q1_physical(const 
     return icdgen_quotient(message->quaternion_error_q1, 10000);
 }
 
-/** Sets Quaternion Error - Q1, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Quaternion Error - Q1, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_quaternion_error_q1_physical(
     cubeacp_estimation_data_t *message,
     double value)
@@ -824,7 +824,7 @@ static inline double cubeacp_estimation_data_quaternion_error_q2_physical(const 
     return icdgen_quotient(message->quaternion_error_q2, 10000);
 }
 
-/** Sets Quaternion Error - Q2, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Quaternion Error - Q2, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_quaternion_error_q2_physical(
     cubeacp_estimation_data_t *message,
     double value)
@@ -838,7 +838,7 @@ static inline double cubeacp_estimation_data_quaternion_error_q3_physical(const 
     return icdgen_quotient(message->quaternion_error_q3, 10000);
 }
 
-/** Sets Quaternion Error - Q3, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Quaternion Error - Q3, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_quaternion_error_q3_physical(
     cubeacp_estimation_data_t *message,
     double value)
@@ -854,7 +854,7 @@ static inline double cubeacp_estimation_data_quaternion_covariance_q1_rms_physic
 }
 
 /**
- * Sets Quaternion Covariance - Q1 RMS, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Quaternion Covariance - Q1 RMS, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_estimation_data_set_quaternion_covariance_q1_rms_physical(
     cubeacp_estimation_data_t *message,
@@ -871,7 +871,7 @@ static inline double cubeacp_estimation_data_quaternion_covariance_q2_rms_physic
 }
 
 /**
- * Sets Quaternion Covariance - Q2 RMS, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Quaternion Covariance - Q2 RMS, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_estimation_data_set_quaternion_covariance_q2_rms_physical(
     cubeacp_estimation_data_t *message,
@@ -888,7 +888,7 @@ static inline double cubeacp_estimation_data_quaternion_covariance_q3_rms_physic
 }
 
 /**
- * Sets Quaternion Covariance - Q3 RMS, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Quaternion Covariance - Q3 RMS, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_estimation_data_set_quaternion_covariance_q3_rms_physical(
     cubeacp_estimation_data_t *message,
@@ -904,7 +904,7 @@ static inline double cubeacp_estimation_data_x_angular_rate_covariance_physical(
     return icdgen_quotient(message->x_angular_rate_covariance, 1000);
 }
 
-/** Sets X Angular Rate Covariance, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X Angular Rate Covariance, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_x_angular_rate_covariance_physical(
     cubeacp_estimation_data_t *message,
     double value)
@@ -919,7 +919,7 @@ static inline double cubeacp_estimation_data_y_angular_rate_covariance_physical(
     return icdgen_quotient(message->y_angular_rate_covariance, 1000);
 }
 
-/** Sets Y Angular Rate Covariance, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y Angular Rate Covariance, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_y_angular_rate_covariance_physical(
     cubeacp_estimation_data_t *message,
     double value)
@@ -934,7 +934,7 @@ static inline double cubeacp_estimation_data_z_angular_rate_covariance_physical(
     return icdgen_quotient(message->z_angular_rate_covariance, 1000);
 }
 
-/** Sets Z Angular Rate Covariance, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z Angular Rate Covariance, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_data_set_z_angular_rate_covariance_physical(
     cubeacp_estimation_data_t *message,
     double value)

@@ -91,7 +91,7 @@ static inline int32_t cubeacp_estimation_innovation_vector_innovation_vector_x_m
     return message->innovation_vector_x * INT32_C(100);
 }
 
-/** Sets Innovation Vector X in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Innovation Vector X in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_innovation_vector_set_innovation_vector_x_micro(
     cubeacp_estimation_innovation_vector_t *message,
     int32_t value)
@@ -110,7 +110,7 @@ static inline int32_t cubeacp_estimation_innovation_vector_innovation_vector_y_m
     return message->innovation_vector_y * INT32_C(100);
 }
 
-/** Sets Innovation Vector Y in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Innovation Vector Y in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_innovation_vector_set_innovation_vector_y_micro(
     cubeacp_estimation_innovation_vector_t *message,
     int32_t value)
@@ -129,7 +129,7 @@ static inline int32_t cubeacp_estimation_innovation_vector_innovation_vector_z_m
     return message->innovation_vector_z * INT32_C(100);
 }
 
-/** Sets Innovation Vector Z in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Innovation Vector Z in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_innovation_vector_set_innovation_vector_z_micro(
     cubeacp_estimation_innovation_vector_t *message,
     int32_t value)
@@ -150,7 +150,7 @@ static inline double cubeacp_estimation_innovation_vector_innovation_vector_x_ph
     return icdgen_quotient(message->innovation_vector_x, 10000);
 }
 
-/** Sets Innovation Vector X, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Innovation Vector X, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_innovation_vector_set_innovation_vector_x_physical(
     cubeacp_estimation_innovation_vector_t *message,
     double value)
@@ -165,7 +165,7 @@ static inline double cubeacp_estimation_innovation_vector_innovation_vector_y_ph
     return icdgen_quotient(message->innovation_vector_y, 10000);
 }
 
-/** Sets Innovation Vector Y, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Innovation Vector Y, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_innovation_vector_set_innovation_vector_y_physical(
     cubeacp_estimation_innovation_vector_t *message,
     double value)
@@ -180,7 +180,7 @@ static inline double cubeacp_estimation_innovation_vector_innovation_vector_z_ph
     return icdgen_quotient(message->innovation_vector_z, 10000);
 }
 
-/** Sets Innovation Vector Z, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Innovation Vector Z, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_estimation_innovation_vector_set_innovation_vector_z_physical(
     cubeacp_estimation_innovation_vector_t *message,
     double value)

@@ -96,7 +96,9 @@ static inline int32_t cubeacp_fine_angular_rates_estimated_x_angular_rate_mdeg_p
     return message->estimated_x_angular_rate;
 }
 
-/** Sets Estimated X Angular Rate in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Sets Estimated X Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ */
 static inline icd_status_t cubeacp_fine_angular_rates_set_estimated_x_angular_rate_mdeg_per_s(
     cubeacp_fine_angular_rates_t *message,
     int32_t value)
@@ -115,7 +117,9 @@ static inline int32_t cubeacp_fine_angular_rates_estimated_y_angular_rate_mdeg_p
     return message->estimated_y_angular_rate;
 }
 
-/** Sets Estimated Y Angular Rate in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Sets Estimated Y Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ */
 static inline icd_status_t cubeacp_fine_angular_rates_set_estimated_y_angular_rate_mdeg_per_s(
     cubeacp_fine_angular_rates_t *message,
     int32_t value)
@@ -134,7 +138,9 @@ static inline int32_t cubeacp_fine_angular_rates_estimated_z_angular_rate_mdeg_p
     return message->estimated_z_angular_rate;
 }
 
-/** Sets Estimated Z Angular Rate in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Sets Estimated Z Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ */
 static inline icd_status_t cubeacp_fine_angular_rates_set_estimated_z_angular_rate_mdeg_per_s(
     cubeacp_fine_angular_rates_t *message,
     int32_t value)
@@ -155,7 +161,7 @@ static inline double cubeacp_fine_angular_rates_estimated_x_angular_rate_deg_per
     return icdgen_quotient(message->estimated_x_angular_rate, 1000);
 }
 
-/** Sets Estimated X Angular Rate in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated X Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_fine_angular_rates_set_estimated_x_angular_rate_deg_per_s(
     cubeacp_fine_angular_rates_t *message,
     double value)
@@ -170,7 +176,7 @@ static inline double cubeacp_fine_angular_rates_estimated_y_angular_rate_deg_per
     return icdgen_quotient(message->estimated_y_angular_rate, 1000);
 }
 
-/** Sets Estimated Y Angular Rate in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Y Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_fine_angular_rates_set_estimated_y_angular_rate_deg_per_s(
     cubeacp_fine_angular_rates_t *message,
     double value)
@@ -185,7 +191,7 @@ static inline double cubeacp_fine_angular_rates_estimated_z_angular_rate_deg_per
     return icdgen_quotient(message->estimated_z_angular_rate, 1000);
 }
 
-/** Sets Estimated Z Angular Rate in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Estimated Z Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_fine_angular_rates_set_estimated_z_angular_rate_deg_per_s(
     cubeacp_fine_angular_rates_t *message,
     double value)

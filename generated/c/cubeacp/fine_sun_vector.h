@@ -84,7 +84,7 @@ static inline int32_t cubeacp_fine_sun_vector_sun_x_micro(const cubeacp_fine_sun
     return message->sun_x * INT32_C(100);
 }
 
-/** Sets Sun X in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Sun X in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_fine_sun_vector_set_sun_x_micro(cubeacp_fine_sun_vector_t *message, int32_t value)
 {
     if ((value < -3276850) || (value > 3276749)) {
@@ -100,7 +100,7 @@ static inline int32_t cubeacp_fine_sun_vector_sun_y_micro(const cubeacp_fine_sun
     return message->sun_y * INT32_C(100);
 }
 
-/** Sets Sun Y in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Sun Y in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_fine_sun_vector_set_sun_y_micro(cubeacp_fine_sun_vector_t *message, int32_t value)
 {
     if ((value < -3276850) || (value > 3276749)) {
@@ -116,7 +116,7 @@ static inline int32_t cubeacp_fine_sun_vector_sun_z_micro(const cubeacp_fine_sun
     return message->sun_z * INT32_C(100);
 }
 
-/** Sets Sun Z in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Sun Z in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_fine_sun_vector_set_sun_z_micro(cubeacp_fine_sun_vector_t *message, int32_t value)
 {
     if ((value < -3276850) || (value > 3276749)) {
@@ -134,7 +134,7 @@ static inline double cubeacp_fine_sun_vector_sun_x_physical(const cubeacp_fine_s
     return icdgen_quotient(message->sun_x, 10000);
 }
 
-/** Sets Sun X, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Sun X, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_fine_sun_vector_set_sun_x_physical(cubeacp_fine_sun_vector_t *message, double value)
 {
     return icdgen_set_i16(&message->sun_x, value, 1, 0, 10000, INT16_MIN, INT16_MAX);
@@ -146,7 +146,7 @@ static inline double cubeacp_fine_sun_vector_sun_y_physical(const cubeacp_fine_s
     return icdgen_quotient(message->sun_y, 10000);
 }
 
-/** Sets Sun Y, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Sun Y, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_fine_sun_vector_set_sun_y_physical(cubeacp_fine_sun_vector_t *message, double value)
 {
     return icdgen_set_i16(&message->sun_y, value, 1, 0, 10000, INT16_MIN, INT16_MAX);
@@ -158,7 +158,7 @@ static inline double cubeacp_fine_sun_vector_sun_z_physical(const cubeacp_fine_s
     return icdgen_quotient(message->sun_z, 10000);
 }
 
-/** Sets Sun Z, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Sun Z, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_fine_sun_vector_set_sun_z_physical(cubeacp_fine_sun_vector_t *message, double value)
 {
     return icdgen_set_i16(&message->sun_z, value, 1, 0, 10000, INT16_MIN, INT16_MAX);

@@ -87,7 +87,7 @@ static inline int32_t cubeacp_igrf_modelled_magnetic_field_vector_field_x_nt(
     return message->field_x * INT32_C(10);
 }
 
-/** Sets IGRF Modelled Magnetic Field X in nT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets IGRF Modelled Magnetic Field X in nT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field_x_nt(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     int32_t value)
@@ -106,7 +106,7 @@ static inline int32_t cubeacp_igrf_modelled_magnetic_field_vector_field_y_nt(
     return message->field_y * INT32_C(10);
 }
 
-/** Sets IGRF Modelled Magnetic Field Y in nT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets IGRF Modelled Magnetic Field Y in nT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field_y_nt(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     int32_t value)
@@ -125,7 +125,7 @@ static inline int32_t cubeacp_igrf_modelled_magnetic_field_vector_field_z_nt(
     return message->field_z * INT32_C(10);
 }
 
-/** Sets IGRF Modelled Magnetic Field Z in nT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets IGRF Modelled Magnetic Field Z in nT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field_z_nt(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     int32_t value)
@@ -146,7 +146,7 @@ static inline double cubeacp_igrf_modelled_magnetic_field_vector_field_x_ut(
     return icdgen_quotient(message->field_x, 100);
 }
 
-/** Sets IGRF Modelled Magnetic Field X in uT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets IGRF Modelled Magnetic Field X in uT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field_x_ut(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     double value)
@@ -161,7 +161,7 @@ static inline double cubeacp_igrf_modelled_magnetic_field_vector_field_y_ut(
     return icdgen_quotient(message->field_y, 100);
 }
 
-/** Sets IGRF Modelled Magnetic Field Y in uT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets IGRF Modelled Magnetic Field Y in uT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field_y_ut(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     double value)
@@ -176,7 +176,7 @@ static inline double cubeacp_igrf_modelled_magnetic_field_vector_field_z_ut(
     return icdgen_quotient(message->field_z, 100);
 }
 
-/** Sets IGRF Modelled Magnetic Field Z in uT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets IGRF Modelled Magnetic Field Z in uT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field_z_ut(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     double value)

@@ -97,7 +97,7 @@ static inline int32_t cubeacp_inertial_pointing_reference_vector_reference_x_mic
     return message->reference_x * INT32_C(100);
 }
 
-/** Sets Inertial Reference X in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Inertial Reference X in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_reference_x_micro(
     cubeacp_inertial_pointing_reference_vector_t *message,
     int32_t value)
@@ -116,7 +116,7 @@ static inline int32_t cubeacp_inertial_pointing_reference_vector_reference_y_mic
     return message->reference_y * INT32_C(100);
 }
 
-/** Sets Inertial Reference Y in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Inertial Reference Y in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_reference_y_micro(
     cubeacp_inertial_pointing_reference_vector_t *message,
     int32_t value)
@@ -135,7 +135,7 @@ static inline int32_t cubeacp_inertial_pointing_reference_vector_reference_z_mic
     return message->reference_z * INT32_C(100);
 }
 
-/** Sets Inertial Reference Z in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Inertial Reference Z in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_reference_z_micro(
     cubeacp_inertial_pointing_reference_vector_t *message,
     int32_t value)
@@ -156,7 +156,7 @@ static inline double cubeacp_inertial_pointing_reference_vector_reference_x_phys
     return icdgen_quotient(message->reference_x, 10000);
 }
 
-/** Sets Inertial Reference X, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Inertial Reference X, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_reference_x_physical(
     cubeacp_inertial_pointing_reference_vector_t *message,
     double value)
@@ -171,7 +171,7 @@ static inline double cubeacp_inertial_pointing_reference_vector_reference_y_phys
     return icdgen_quotient(message->reference_y, 10000);
 }
 
-/** Sets Inertial Reference Y, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Inertial Reference Y, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_reference_y_physical(
     cubeacp_inertial_pointing_reference_vector_t *message,
     double value)
@@ -186,7 +186,7 @@ static inline double cubeacp_inertial_pointing_reference_vector_reference_z_phys
     return icdgen_quotient(message->reference_z, 10000);
 }
 
-/** Sets Inertial Reference Z, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Inertial Reference Z, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_reference_z_physical(
     cubeacp_inertial_pointing_reference_vector_t *message,
     double value)

@@ -84,7 +84,7 @@ static inline int32_t cubeacp_magnetic_field_vector_magnetic_field_x_nt(const cu
     return message->magnetic_field_x * INT32_C(10);
 }
 
-/** Sets Magnetic Field X in nT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetic Field X in nT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_magnetic_field_vector_set_magnetic_field_x_nt(
     cubeacp_magnetic_field_vector_t *message,
     int32_t value)
@@ -102,7 +102,7 @@ static inline int32_t cubeacp_magnetic_field_vector_magnetic_field_y_nt(const cu
     return message->magnetic_field_y * INT32_C(10);
 }
 
-/** Sets Magnetic Field Y in nT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetic Field Y in nT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_magnetic_field_vector_set_magnetic_field_y_nt(
     cubeacp_magnetic_field_vector_t *message,
     int32_t value)
@@ -120,7 +120,7 @@ static inline int32_t cubeacp_magnetic_field_vector_magnetic_field_z_nt(const cu
     return message->magnetic_field_z * INT32_C(10);
 }
 
-/** Sets Magnetic Field Z in nT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetic Field Z in nT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_magnetic_field_vector_set_magnetic_field_z_nt(
     cubeacp_magnetic_field_vector_t *message,
     int32_t value)
@@ -140,7 +140,7 @@ static inline double cubeacp_magnetic_field_vector_magnetic_field_x_ut(const cub
     return icdgen_quotient(message->magnetic_field_x, 100);
 }
 
-/** Sets Magnetic Field X in uT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetic Field X in uT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_magnetic_field_vector_set_magnetic_field_x_ut(
     cubeacp_magnetic_field_vector_t *message,
     double value)
@@ -154,7 +154,7 @@ static inline double cubeacp_magnetic_field_vector_magnetic_field_y_ut(const cub
     return icdgen_quotient(message->magnetic_field_y, 100);
 }
 
-/** Sets Magnetic Field Y in uT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetic Field Y in uT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_magnetic_field_vector_set_magnetic_field_y_ut(
     cubeacp_magnetic_field_vector_t *message,
     double value)
@@ -168,7 +168,7 @@ static inline double cubeacp_magnetic_field_vector_magnetic_field_z_ut(const cub
     return icdgen_quotient(message->magnetic_field_z, 100);
 }
 
-/** Sets Magnetic Field Z in uT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetic Field Z in uT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_magnetic_field_vector_set_magnetic_field_z_ut(
     cubeacp_magnetic_field_vector_t *message,
     double value)

@@ -173,7 +173,7 @@ static inline int32_t cubeacp_magnetometer_configuration_mounting_alpha_mdeg(
 }
 
 /**
- * Sets Magnetometer Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Magnetometer Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_mounting_alpha_mdeg(
@@ -195,7 +195,7 @@ static inline int32_t cubeacp_magnetometer_configuration_mounting_beta_mdeg(
 }
 
 /**
- * Sets Magnetometer Mounting Transform Beta Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Magnetometer Mounting Transform Beta Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_mounting_beta_mdeg(
@@ -217,7 +217,7 @@ static inline int32_t cubeacp_magnetometer_configuration_mounting_gamma_mdeg(
 }
 
 /**
- * Sets Magnetometer Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Magnetometer Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_mounting_gamma_mdeg(
@@ -238,7 +238,7 @@ static inline int32_t cubeacp_magnetometer_configuration_channel_1_offset_milli(
     return message->channel_1_offset;
 }
 
-/** Sets Magnetometer Channel 1 Offset in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetometer Channel 1 Offset in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_channel_1_offset_milli(
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
@@ -257,7 +257,7 @@ static inline int32_t cubeacp_magnetometer_configuration_channel_2_offset_milli(
     return message->channel_2_offset;
 }
 
-/** Sets Magnetometer Channel 2 Offset in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetometer Channel 2 Offset in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_channel_2_offset_milli(
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
@@ -276,7 +276,7 @@ static inline int32_t cubeacp_magnetometer_configuration_channel_3_offset_milli(
     return message->channel_3_offset;
 }
 
-/** Sets Magnetometer Channel 3 Offset in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetometer Channel 3 Offset in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_channel_3_offset_milli(
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
@@ -296,7 +296,7 @@ static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s11_milli(
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S11 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Sensitivity Matrix S11 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s11_milli(
     cubeacp_magnetometer_configuration_t *message,
@@ -317,7 +317,7 @@ static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s22_milli(
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S22 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Sensitivity Matrix S22 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s22_milli(
     cubeacp_magnetometer_configuration_t *message,
@@ -338,7 +338,7 @@ static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s33_milli(
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S33 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Sensitivity Matrix S33 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s33_milli(
     cubeacp_magnetometer_configuration_t *message,
@@ -359,7 +359,7 @@ static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s12_milli(
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S12 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Sensitivity Matrix S12 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s12_milli(
     cubeacp_magnetometer_configuration_t *message,
@@ -380,7 +380,7 @@ static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s13_milli(
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S13 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Sensitivity Matrix S13 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s13_milli(
     cubeacp_magnetometer_configuration_t *message,
@@ -401,7 +401,7 @@ static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s21_milli(
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S21 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Sensitivity Matrix S21 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s21_milli(
     cubeacp_magnetometer_configuration_t *message,
@@ -422,7 +422,7 @@ static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s23_milli(
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S23 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Sensitivity Matrix S23 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s23_milli(
     cubeacp_magnetometer_configuration_t *message,
@@ -443,7 +443,7 @@ static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s31_milli(
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S31 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Sensitivity Matrix S31 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s31_milli(
     cubeacp_magnetometer_configuration_t *message,
@@ -464,7 +464,7 @@ static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s32_milli(
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S32 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Sensitivity Matrix S32 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s32_milli(
     cubeacp_magnetometer_configuration_t *message,
@@ -487,7 +487,7 @@ static inline double cubeacp_magnetometer_configuration_mounting_alpha_deg(
 }
 
 /**
- * Sets Magnetometer Mounting Transform Alpha Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Mounting Transform Alpha Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_mounting_alpha_deg(
     cubeacp_magnetometer_configuration_t *message,
@@ -504,7 +504,7 @@ static inline double cubeacp_magnetometer_configuration_mounting_beta_deg(
 }
 
 /**
- * Sets Magnetometer Mounting Transform Beta Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Mounting Transform Beta Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_mounting_beta_deg(
     cubeacp_magnetometer_configuration_t *message,
@@ -521,7 +521,7 @@ static inline double cubeacp_magnetometer_configuration_mounting_gamma_deg(
 }
 
 /**
- * Sets Magnetometer Mounting Transform Gamma Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Mounting Transform Gamma Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_mounting_gamma_deg(
     cubeacp_magnetometer_configuration_t *message,
@@ -538,7 +538,7 @@ static inline double cubeacp_magnetometer_configuration_channel_1_offset_physica
 }
 
 /**
- * Sets Magnetometer Channel 1 Offset, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Channel 1 Offset, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_channel_1_offset_physical(
     cubeacp_magnetometer_configuration_t *message,
@@ -555,7 +555,7 @@ static inline double cubeacp_magnetometer_configuration_channel_2_offset_physica
 }
 
 /**
- * Sets Magnetometer Channel 2 Offset, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Channel 2 Offset, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_channel_2_offset_physical(
     cubeacp_magnetometer_configuration_t *message,
@@ -572,7 +572,7 @@ static inline double cubeacp_magnetometer_configuration_channel_3_offset_physica
 }
 
 /**
- * Sets Magnetometer Channel 3 Offset, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Magnetometer Channel 3 Offset, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_channel_3_offset_physical(
     cubeacp_magnetometer_configuration_t *message,
@@ -589,7 +589,7 @@ static inline double cubeacp_magnetometer_configuration_sensitivity_s11_physical
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S11, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Magnetometer Sensitivity Matrix S11, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s11_physical(
@@ -607,7 +607,7 @@ static inline double cubeacp_magnetometer_configuration_sensitivity_s22_physical
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S22, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Magnetometer Sensitivity Matrix S22, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s22_physical(
@@ -625,7 +625,7 @@ static inline double cubeacp_magnetometer_configuration_sensitivity_s33_physical
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S33, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Magnetometer Sensitivity Matrix S33, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s33_physical(
@@ -643,7 +643,7 @@ static inline double cubeacp_magnetometer_configuration_sensitivity_s12_physical
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S12, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Magnetometer Sensitivity Matrix S12, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s12_physical(
@@ -661,7 +661,7 @@ static inline double cubeacp_magnetometer_configuration_sensitivity_s13_physical
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S13, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Magnetometer Sensitivity Matrix S13, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s13_physical(
@@ -679,7 +679,7 @@ static inline double cubeacp_magnetometer_configuration_sensitivity_s21_physical
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S21, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Magnetometer Sensitivity Matrix S21, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s21_physical(
@@ -697,7 +697,7 @@ static inline double cubeacp_magnetometer_configuration_sensitivity_s23_physical
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S23, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Magnetometer Sensitivity Matrix S23, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s23_physical(
@@ -715,7 +715,7 @@ static inline double cubeacp_magnetometer_configuration_sensitivity_s31_physical
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S31, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Magnetometer Sensitivity Matrix S31, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s31_physical(
@@ -733,7 +733,7 @@ static inline double cubeacp_magnetometer_configuration_sensitivity_s32_physical
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S32, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Magnetometer Sensitivity Matrix S32, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s32_physical(

@@ -82,7 +82,7 @@ static inline int32_t cubeacp_modelled_sun_vector_modelled_sun_vector_x_micro(
     return message->modelled_sun_vector_x * INT32_C(100);
 }
 
-/** Sets Modelled Sun Vector X in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Modelled Sun Vector X in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_modelled_sun_vector_set_modelled_sun_vector_x_micro(
     cubeacp_modelled_sun_vector_t *message,
     int32_t value)
@@ -101,7 +101,7 @@ static inline int32_t cubeacp_modelled_sun_vector_modelled_sun_vector_y_micro(
     return message->modelled_sun_vector_y * INT32_C(100);
 }
 
-/** Sets Modelled Sun Vector Y in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Modelled Sun Vector Y in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_modelled_sun_vector_set_modelled_sun_vector_y_micro(
     cubeacp_modelled_sun_vector_t *message,
     int32_t value)
@@ -120,7 +120,7 @@ static inline int32_t cubeacp_modelled_sun_vector_modelled_sun_vector_z_micro(
     return message->modelled_sun_vector_z * INT32_C(100);
 }
 
-/** Sets Modelled Sun Vector Z in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Modelled Sun Vector Z in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_modelled_sun_vector_set_modelled_sun_vector_z_micro(
     cubeacp_modelled_sun_vector_t *message,
     int32_t value)
@@ -141,7 +141,7 @@ static inline double cubeacp_modelled_sun_vector_modelled_sun_vector_x_physical(
     return icdgen_quotient(message->modelled_sun_vector_x, 10000);
 }
 
-/** Sets Modelled Sun Vector X, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Modelled Sun Vector X, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_modelled_sun_vector_set_modelled_sun_vector_x_physical(
     cubeacp_modelled_sun_vector_t *message,
     double value)
@@ -156,7 +156,7 @@ static inline double cubeacp_modelled_sun_vector_modelled_sun_vector_y_physical(
     return icdgen_quotient(message->modelled_sun_vector_y, 10000);
 }
 
-/** Sets Modelled Sun Vector Y, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Modelled Sun Vector Y, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_modelled_sun_vector_set_modelled_sun_vector_y_physical(
     cubeacp_modelled_sun_vector_t *message,
     double value)
@@ -171,7 +171,7 @@ static inline double cubeacp_modelled_sun_vector_modelled_sun_vector_z_physical(
     return icdgen_quotient(message->modelled_sun_vector_z, 10000);
 }
 
-/** Sets Modelled Sun Vector Z, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Modelled Sun Vector Z, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_modelled_sun_vector_set_modelled_sun_vector_z_physical(
     cubeacp_modelled_sun_vector_t *message,
     double value)

@@ -84,7 +84,7 @@ static inline int32_t cubeacp_nadir_vector_nadir_x_micro(const cubeacp_nadir_vec
     return message->nadir_x * INT32_C(100);
 }
 
-/** Sets Nadir X in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Nadir X in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_nadir_vector_set_nadir_x_micro(cubeacp_nadir_vector_t *message, int32_t value)
 {
     if ((value < -3276850) || (value > 3276749)) {
@@ -100,7 +100,7 @@ static inline int32_t cubeacp_nadir_vector_nadir_y_micro(const cubeacp_nadir_vec
     return message->nadir_y * INT32_C(100);
 }
 
-/** Sets Nadir Y in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Nadir Y in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_nadir_vector_set_nadir_y_micro(cubeacp_nadir_vector_t *message, int32_t value)
 {
     if ((value < -3276850) || (value > 3276749)) {
@@ -116,7 +116,7 @@ static inline int32_t cubeacp_nadir_vector_nadir_z_micro(const cubeacp_nadir_vec
     return message->nadir_z * INT32_C(100);
 }
 
-/** Sets Nadir Z in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Nadir Z in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_nadir_vector_set_nadir_z_micro(cubeacp_nadir_vector_t *message, int32_t value)
 {
     if ((value < -3276850) || (value > 3276749)) {
@@ -134,7 +134,7 @@ static inline double cubeacp_nadir_vector_nadir_x_physical(const cubeacp_nadir_v
     return icdgen_quotient(message->nadir_x, 10000);
 }
 
-/** Sets Nadir X, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Nadir X, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_nadir_vector_set_nadir_x_physical(cubeacp_nadir_vector_t *message, double value)
 {
     return icdgen_set_i16(&message->nadir_x, value, 1, 0, 10000, INT16_MIN, INT16_MAX);
@@ -146,7 +146,7 @@ static inline double cubeacp_nadir_vector_nadir_y_physical(const cubeacp_nadir_v
     return icdgen_quotient(message->nadir_y, 10000);
 }
 
-/** Sets Nadir Y, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Nadir Y, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_nadir_vector_set_nadir_y_physical(cubeacp_nadir_vector_t *message, double value)
 {
     return icdgen_set_i16(&message->nadir_y, value, 1, 0, 10000, INT16_MIN, INT16_MAX);
@@ -158,7 +158,7 @@ static inline double cubeacp_nadir_vector_nadir_z_physical(const cubeacp_nadir_v
     return icdgen_quotient(message->nadir_z, 10000);
 }
 
-/** Sets Nadir Z, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Nadir Z, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_nadir_vector_set_nadir_z_physical(cubeacp_nadir_vector_t *message, double value)
 {
     return icdgen_set_i16(&message->nadir_z, value, 1, 0, 10000, INT16_MIN, INT16_MAX);

@@ -260,7 +260,7 @@ static inline int32_t cubeacp_power_and_temperature_cubesense1_3v3_current_ua(
     return message->cubesense1_3v3_current * INT32_C(100);
 }
 
-/** Sets CubeSense1 3V3 Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeSense1 3V3 Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubesense1_3v3_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -279,7 +279,7 @@ static inline int32_t cubeacp_power_and_temperature_cubesense1_cam_sram_current_
     return message->cubesense1_cam_sram_current * INT32_C(100);
 }
 
-/** Sets CubeSense1 Cam SRAM Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeSense1 Cam SRAM Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubesense1_cam_sram_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -298,7 +298,7 @@ static inline int32_t cubeacp_power_and_temperature_cubesense2_3v3_current_ua(
     return message->cubesense2_3v3_current * INT32_C(100);
 }
 
-/** Sets CubeSense2 3V3 Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeSense2 3V3 Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubesense2_3v3_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -317,7 +317,7 @@ static inline int32_t cubeacp_power_and_temperature_cubesense2_cam_sram_current_
     return message->cubesense2_cam_sram_current * INT32_C(100);
 }
 
-/** Sets CubeSense2 Cam SRAM Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeSense2 Cam SRAM Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubesense2_cam_sram_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -335,7 +335,7 @@ static inline int32_t cubeacp_power_and_temperature_wheel1_current_ua(const cube
     return message->wheel1_current * INT32_C(10);
 }
 
-/** Sets Wheel1Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Wheel1Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_wheel1_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -353,7 +353,7 @@ static inline int32_t cubeacp_power_and_temperature_wheel2_current_ua(const cube
     return message->wheel2_current * INT32_C(10);
 }
 
-/** Sets Wheel2Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Wheel2Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_wheel2_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -371,7 +371,7 @@ static inline int32_t cubeacp_power_and_temperature_wheel3_current_ua(const cube
     return message->wheel3_current * INT32_C(10);
 }
 
-/** Sets Wheel3Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Wheel3Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_wheel3_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -389,7 +389,7 @@ static inline int32_t cubeacp_power_and_temperature_cubestar_current_ua(const cu
     return message->cubestar_current * INT32_C(10);
 }
 
-/** Sets CubeStarCurrent in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeStarCurrent in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubestar_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -408,7 +408,7 @@ static inline int32_t cubeacp_power_and_temperature_magnetorquer_current_ua(
     return message->magnetorquer_current * INT32_C(100);
 }
 
-/** Sets Magnetorquer Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetorquer Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_magnetorquer_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -427,7 +427,7 @@ static inline int32_t cubeacp_power_and_temperature_cubestar_mcu_temperature_mc(
     return message->cubestar_mcu_temperature * INT32_C(10);
 }
 
-/** Sets CubeStar MCU temperature in thousandths of C to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeStar MCU temperature in thousandths of C, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubestar_mcu_temperature_mc(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -446,7 +446,7 @@ static inline int32_t cubeacp_power_and_temperature_magnetometer_temperature_mc(
     return message->magnetometer_temperature * INT32_C(100);
 }
 
-/** Sets Magnetometer Temperature in thousandths of C to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetometer Temperature in thousandths of C, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_magnetometer_temperature_mc(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -466,7 +466,7 @@ static inline int32_t cubeacp_power_and_temperature_redundant_mag_temperature_mc
 }
 
 /**
- * Sets Redundant Magnetometer Temperature in thousandths of C to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Redundant Magnetometer Temperature in thousandths of C, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_power_and_temperature_set_redundant_mag_temperature_mc(
@@ -489,7 +489,7 @@ static inline double cubeacp_power_and_temperature_cubesense1_3v3_current_ma(
     return icdgen_quotient(message->cubesense1_3v3_current, 10);
 }
 
-/** Sets CubeSense1 3V3 Current in mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeSense1 3V3 Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubesense1_3v3_current_ma(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -504,7 +504,7 @@ static inline double cubeacp_power_and_temperature_cubesense1_cam_sram_current_m
     return icdgen_quotient(message->cubesense1_cam_sram_current, 10);
 }
 
-/** Sets CubeSense1 Cam SRAM Current in mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeSense1 Cam SRAM Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubesense1_cam_sram_current_ma(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -519,7 +519,7 @@ static inline double cubeacp_power_and_temperature_cubesense2_3v3_current_ma(
     return icdgen_quotient(message->cubesense2_3v3_current, 10);
 }
 
-/** Sets CubeSense2 3V3 Current in mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeSense2 3V3 Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubesense2_3v3_current_ma(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -534,7 +534,7 @@ static inline double cubeacp_power_and_temperature_cubesense2_cam_sram_current_m
     return icdgen_quotient(message->cubesense2_cam_sram_current, 10);
 }
 
-/** Sets CubeSense2 Cam SRAM Current in mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeSense2 Cam SRAM Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubesense2_cam_sram_current_ma(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -549,7 +549,7 @@ static inline double cubeacp_power_and_temperature_cubecontrol_3v3_current_ma(
     return icdgen_quotient(message->cubecontrol_3v3_current * INT64_C(125), 256);
 }
 
-/** Sets CubeControl 3V3 Current in mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeControl 3V3 Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubecontrol_3v3_current_ma(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -564,7 +564,7 @@ static inline double cubeacp_power_and_temperature_cubecontrol_5v_current_ma(
     return icdgen_quotient(message->cubecontrol_5v_current * INT64_C(125), 256);
 }
 
-/** Sets CubeControl 5V Current in mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeControl 5V Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubecontrol_5v_current_ma(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -579,7 +579,7 @@ static inline double cubeacp_power_and_temperature_cubecontrol_vbat_current_ma(
     return icdgen_quotient(message->cubecontrol_vbat_current * INT64_C(125), 256);
 }
 
-/** Sets CubeControl Vbat Current in mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeControl Vbat Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubecontrol_vbat_current_ma(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -593,7 +593,7 @@ static inline double cubeacp_power_and_temperature_wheel1_current_ma(const cubea
     return icdgen_quotient(message->wheel1_current, 100);
 }
 
-/** Sets Wheel1Current in mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Wheel1Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_wheel1_current_ma(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -607,7 +607,7 @@ static inline double cubeacp_power_and_temperature_wheel2_current_ma(const cubea
     return icdgen_quotient(message->wheel2_current, 100);
 }
 
-/** Sets Wheel2Current in mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Wheel2Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_wheel2_current_ma(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -621,7 +621,7 @@ static inline double cubeacp_power_and_temperature_wheel3_current_ma(const cubea
     return icdgen_quotient(message->wheel3_current, 100);
 }
 
-/** Sets Wheel3Current in mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Wheel3Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_wheel3_current_ma(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -635,7 +635,7 @@ static inline double cubeacp_power_and_temperature_cubestar_current_ma(const cub
     return icdgen_quotient(message->cubestar_current, 100);
 }
 
-/** Sets CubeStarCurrent in mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeStarCurrent in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubestar_current_ma(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -650,7 +650,7 @@ static inline double cubeacp_power_and_temperature_magnetorquer_current_ma(
     return icdgen_quotient(message->magnetorquer_current, 10);
 }
 
-/** Sets Magnetorquer Current in mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetorquer Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_magnetorquer_current_ma(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -665,7 +665,7 @@ static inline double cubeacp_power_and_temperature_cubestar_mcu_temperature_c(
     return icdgen_quotient(message->cubestar_mcu_temperature, 100);
 }
 
-/** Sets CubeStar MCU temperature in C to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeStar MCU temperature in C, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubestar_mcu_temperature_c(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -680,7 +680,7 @@ static inline double cubeacp_power_and_temperature_magnetometer_temperature_c(
     return icdgen_quotient(message->magnetometer_temperature, 10);
 }
 
-/** Sets Magnetometer Temperature in C to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetometer Temperature in C, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_magnetometer_temperature_c(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -695,7 +695,7 @@ static inline double cubeacp_power_and_temperature_redundant_mag_temperature_c(
     return icdgen_quotient(message->redundant_mag_temperature, 10);
 }
 
-/** Sets Redundant Magnetometer Temperature in C to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Redundant Magnetometer Temperature in C, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_redundant_mag_temperature_c(
     cubeacp_power_and_temperature_t *message,
     double value)

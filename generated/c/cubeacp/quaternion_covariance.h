@@ -90,7 +90,7 @@ static inline int32_t cubeacp_quaternion_covariance_q1_rms_milli(const cubeacp_q
     return message->q1_rms;
 }
 
-/** Sets Quaternion Covariance - Q1 RMS in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Quaternion Covariance - Q1 RMS in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_quaternion_covariance_set_q1_rms_milli(
     cubeacp_quaternion_covariance_t *message,
     int32_t value)
@@ -108,7 +108,7 @@ static inline int32_t cubeacp_quaternion_covariance_q2_rms_milli(const cubeacp_q
     return message->q2_rms;
 }
 
-/** Sets Quaternion Covariance - Q2 RMS in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Quaternion Covariance - Q2 RMS in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_quaternion_covariance_set_q2_rms_milli(
     cubeacp_quaternion_covariance_t *message,
     int32_t value)
@@ -126,7 +126,7 @@ static inline int32_t cubeacp_quaternion_covariance_q3_rms_milli(const cubeacp_q
     return message->q3_rms;
 }
 
-/** Sets Quaternion Covariance - Q3 RMS in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Quaternion Covariance - Q3 RMS in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_quaternion_covariance_set_q3_rms_milli(
     cubeacp_quaternion_covariance_t *message,
     int32_t value)
@@ -147,7 +147,7 @@ static inline double cubeacp_quaternion_covariance_q1_rms_physical(const cubeacp
 }
 
 /**
- * Sets Quaternion Covariance - Q1 RMS, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Quaternion Covariance - Q1 RMS, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_quaternion_covariance_set_q1_rms_physical(
     cubeacp_quaternion_covariance_t *message,
@@ -163,7 +163,7 @@ static inline double cubeacp_quaternion_covariance_q2_rms_physical(const cubeacp
 }
 
 /**
- * Sets Quaternion Covariance - Q2 RMS, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Quaternion Covariance - Q2 RMS, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_quaternion_covariance_set_q2_rms_physical(
     cubeacp_quaternion_covariance_t *message,
@@ -179,7 +179,7 @@ static inline double cubeacp_quaternion_covariance_q3_rms_physical(const cubeacp
 }
 
 /**
- * Sets Quaternion Covariance - Q3 RMS, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Quaternion Covariance - Q3 RMS, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_quaternion_covariance_set_q3_rms_physical(
     cubeacp_quaternion_covariance_t *message,

@@ -83,7 +83,7 @@ static inline int32_t cubeacp_quaternion_error_vector_quaternion_error_q1_micro(
     return message->quaternion_error_q1 * INT32_C(100);
 }
 
-/** Sets Quaternion Error - Q1 in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Quaternion Error - Q1 in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_quaternion_error_vector_set_quaternion_error_q1_micro(
     cubeacp_quaternion_error_vector_t *message,
     int32_t value)
@@ -102,7 +102,7 @@ static inline int32_t cubeacp_quaternion_error_vector_quaternion_error_q2_micro(
     return message->quaternion_error_q2 * INT32_C(100);
 }
 
-/** Sets Quaternion Error - Q2 in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Quaternion Error - Q2 in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_quaternion_error_vector_set_quaternion_error_q2_micro(
     cubeacp_quaternion_error_vector_t *message,
     int32_t value)
@@ -121,7 +121,7 @@ static inline int32_t cubeacp_quaternion_error_vector_quaternion_error_q3_micro(
     return message->quaternion_error_q3 * INT32_C(100);
 }
 
-/** Sets Quaternion Error - Q3 in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Quaternion Error - Q3 in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_quaternion_error_vector_set_quaternion_error_q3_micro(
     cubeacp_quaternion_error_vector_t *message,
     int32_t value)
@@ -142,7 +142,7 @@ static inline double cubeacp_quaternion_error_vector_quaternion_error_q1_physica
     return icdgen_quotient(message->quaternion_error_q1, 10000);
 }
 
-/** Sets Quaternion Error - Q1, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Quaternion Error - Q1, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_quaternion_error_vector_set_quaternion_error_q1_physical(
     cubeacp_quaternion_error_vector_t *message,
     double value)
@@ -157,7 +157,7 @@ static inline double cubeacp_quaternion_error_vector_quaternion_error_q2_physica
     return icdgen_quotient(message->quaternion_error_q2, 10000);
 }
 
-/** Sets Quaternion Error - Q2, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Quaternion Error - Q2, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_quaternion_error_vector_set_quaternion_error_q2_physical(
     cubeacp_quaternion_error_vector_t *message,
     double value)
@@ -172,7 +172,7 @@ static inline double cubeacp_quaternion_error_vector_quaternion_error_q3_physica
     return icdgen_quotient(message->quaternion_error_q3, 10000);
 }
 
-/** Sets Quaternion Error - Q3, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Quaternion Error - Q3, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_quaternion_error_vector_set_quaternion_error_q3_physical(
     cubeacp_quaternion_error_vector_t *message,
     double value)

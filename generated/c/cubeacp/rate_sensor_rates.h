@@ -84,7 +84,7 @@ static inline int32_t cubeacp_rate_sensor_rates_x_angular_rate_mdeg_per_s(const 
     return message->x_angular_rate * INT32_C(10);
 }
 
-/** Sets X Angular Rate in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_rate_sensor_rates_set_x_angular_rate_mdeg_per_s(
     cubeacp_rate_sensor_rates_t *message,
     int32_t value)
@@ -102,7 +102,7 @@ static inline int32_t cubeacp_rate_sensor_rates_y_angular_rate_mdeg_per_s(const 
     return message->y_angular_rate * INT32_C(10);
 }
 
-/** Sets Y Angular Rate in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_rate_sensor_rates_set_y_angular_rate_mdeg_per_s(
     cubeacp_rate_sensor_rates_t *message,
     int32_t value)
@@ -120,7 +120,7 @@ static inline int32_t cubeacp_rate_sensor_rates_z_angular_rate_mdeg_per_s(const 
     return message->z_angular_rate * INT32_C(10);
 }
 
-/** Sets Z Angular Rate in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_rate_sensor_rates_set_z_angular_rate_mdeg_per_s(
     cubeacp_rate_sensor_rates_t *message,
     int32_t value)
@@ -140,7 +140,7 @@ static inline double cubeacp_rate_sensor_rates_x_angular_rate_deg_per_s(const cu
     return icdgen_quotient(message->x_angular_rate, 100);
 }
 
-/** Sets X Angular Rate in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_rate_sensor_rates_set_x_angular_rate_deg_per_s(
     cubeacp_rate_sensor_rates_t *message,
     double value)
@@ -154,7 +154,7 @@ static inline double cubeacp_rate_sensor_rates_y_angular_rate_deg_per_s(const cu
     return icdgen_quotient(message->y_angular_rate, 100);
 }
 
-/** Sets Y Angular Rate in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_rate_sensor_rates_set_y_angular_rate_deg_per_s(
     cubeacp_rate_sensor_rates_t *message,
     double value)
@@ -168,7 +168,7 @@ static inline double cubeacp_rate_sensor_rates_z_angular_rate_deg_per_s(const cu
     return icdgen_quotient(message->z_angular_rate, 100);
 }
 
-/** Sets Z Angular Rate in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_rate_sensor_rates_set_z_angular_rate_deg_per_s(
     cubeacp_rate_sensor_rates_t *message,
     double value)

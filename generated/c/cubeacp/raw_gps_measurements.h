@@ -270,7 +270,7 @@ static inline int32_t cubeacp_raw_gps_measurements_x_pos_standard_deviation_mm(
     return message->x_pos_standard_deviation * INT32_C(100);
 }
 
-/** Sets X-pos Standard Deviation in mm to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X-pos Standard Deviation in mm, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_raw_gps_measurements_set_x_pos_standard_deviation_mm(
     cubeacp_raw_gps_measurements_t *message,
     int32_t value)
@@ -289,7 +289,7 @@ static inline int32_t cubeacp_raw_gps_measurements_y_pos_standard_deviation_mm(
     return message->y_pos_standard_deviation * INT32_C(100);
 }
 
-/** Sets Y-pos Standard Deviation in mm to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y-pos Standard Deviation in mm, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_raw_gps_measurements_set_y_pos_standard_deviation_mm(
     cubeacp_raw_gps_measurements_t *message,
     int32_t value)
@@ -308,7 +308,7 @@ static inline int32_t cubeacp_raw_gps_measurements_z_pos_standard_deviation_mm(
     return message->z_pos_standard_deviation * INT32_C(100);
 }
 
-/** Sets Z-pos Standard Deviation in mm to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z-pos Standard Deviation in mm, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_raw_gps_measurements_set_z_pos_standard_deviation_mm(
     cubeacp_raw_gps_measurements_t *message,
     int32_t value)
@@ -329,7 +329,7 @@ static inline double cubeacp_raw_gps_measurements_x_pos_standard_deviation_m(
     return icdgen_quotient(message->x_pos_standard_deviation, 10);
 }
 
-/** Sets X-pos Standard Deviation in m to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X-pos Standard Deviation in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_raw_gps_measurements_set_x_pos_standard_deviation_m(
     cubeacp_raw_gps_measurements_t *message,
     double value)
@@ -344,7 +344,7 @@ static inline double cubeacp_raw_gps_measurements_y_pos_standard_deviation_m(
     return icdgen_quotient(message->y_pos_standard_deviation, 10);
 }
 
-/** Sets Y-pos Standard Deviation in m to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y-pos Standard Deviation in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_raw_gps_measurements_set_y_pos_standard_deviation_m(
     cubeacp_raw_gps_measurements_t *message,
     double value)
@@ -359,7 +359,7 @@ static inline double cubeacp_raw_gps_measurements_z_pos_standard_deviation_m(
     return icdgen_quotient(message->z_pos_standard_deviation, 10);
 }
 
-/** Sets Z-pos Standard Deviation in m to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z-pos Standard Deviation in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_raw_gps_measurements_set_z_pos_standard_deviation_m(
     cubeacp_raw_gps_measurements_t *message,
     double value)

@@ -183,7 +183,7 @@ static inline int32_t cubeacp_redundant_mag_configuration_mounting_alpha_mdeg(
 }
 
 /**
- * Sets Redundant Magnetometer Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value;
+ * Sets Redundant Magnetometer Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw value;
  * ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_mounting_alpha_mdeg(
@@ -205,7 +205,7 @@ static inline int32_t cubeacp_redundant_mag_configuration_mounting_beta_mdeg(
 }
 
 /**
- * Sets Redundant Magnetometer Mounting Transform Beta Angle in thousandths of deg to the nearest raw value;
+ * Sets Redundant Magnetometer Mounting Transform Beta Angle in thousandths of deg, to the nearest raw value;
  * ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_mounting_beta_mdeg(
@@ -227,7 +227,7 @@ static inline int32_t cubeacp_redundant_mag_configuration_mounting_gamma_mdeg(
 }
 
 /**
- * Sets Redundant Magnetometer Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value;
+ * Sets Redundant Magnetometer Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw value;
  * ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_mounting_gamma_mdeg(
@@ -249,7 +249,7 @@ static inline int32_t cubeacp_redundant_mag_configuration_channel_1_offset_milli
 }
 
 /**
- * Sets Redundant Magnetometer Channel 1 Offset in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Redundant Magnetometer Channel 1 Offset in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_channel_1_offset_milli(
@@ -271,7 +271,7 @@ static inline int32_t cubeacp_redundant_mag_configuration_channel_2_offset_milli
 }
 
 /**
- * Sets Redundant Magnetometer Channel 2 Offset in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Redundant Magnetometer Channel 2 Offset in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_channel_2_offset_milli(
@@ -293,7 +293,7 @@ static inline int32_t cubeacp_redundant_mag_configuration_channel_3_offset_milli
 }
 
 /**
- * Sets Redundant Magnetometer Channel 3 Offset in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Redundant Magnetometer Channel 3 Offset in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_channel_3_offset_milli(
@@ -315,7 +315,7 @@ static inline int32_t cubeacp_redundant_mag_configuration_sensitivity_s11_milli(
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S11 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Sensitivity Matrix S11 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s11_milli(
@@ -337,7 +337,7 @@ static inline int32_t cubeacp_redundant_mag_configuration_sensitivity_s22_milli(
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S22 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Sensitivity Matrix S22 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s22_milli(
@@ -359,7 +359,7 @@ static inline int32_t cubeacp_redundant_mag_configuration_sensitivity_s33_milli(
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S33 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Sensitivity Matrix S33 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s33_milli(
@@ -381,7 +381,7 @@ static inline int32_t cubeacp_redundant_mag_configuration_sensitivity_s12_milli(
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S12 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Sensitivity Matrix S12 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s12_milli(
@@ -403,7 +403,7 @@ static inline int32_t cubeacp_redundant_mag_configuration_sensitivity_s13_milli(
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S13 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Sensitivity Matrix S13 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s13_milli(
@@ -425,7 +425,7 @@ static inline int32_t cubeacp_redundant_mag_configuration_sensitivity_s21_milli(
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S21 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Sensitivity Matrix S21 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s21_milli(
@@ -447,7 +447,7 @@ static inline int32_t cubeacp_redundant_mag_configuration_sensitivity_s23_milli(
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S23 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Sensitivity Matrix S23 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s23_milli(
@@ -469,7 +469,7 @@ static inline int32_t cubeacp_redundant_mag_configuration_sensitivity_s31_milli(
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S31 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Sensitivity Matrix S31 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s31_milli(
@@ -491,7 +491,7 @@ static inline int32_t cubeacp_redundant_mag_configuration_sensitivity_s32_milli(
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S32 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Sensitivity Matrix S32 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s32_milli(
@@ -515,7 +515,7 @@ static inline double cubeacp_redundant_mag_configuration_mounting_alpha_deg(
 }
 
 /**
- * Sets Redundant Magnetometer Mounting Transform Alpha Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Mounting Transform Alpha Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_mounting_alpha_deg(
@@ -533,7 +533,7 @@ static inline double cubeacp_redundant_mag_configuration_mounting_beta_deg(
 }
 
 /**
- * Sets Redundant Magnetometer Mounting Transform Beta Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Mounting Transform Beta Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_mounting_beta_deg(
@@ -551,7 +551,7 @@ static inline double cubeacp_redundant_mag_configuration_mounting_gamma_deg(
 }
 
 /**
- * Sets Redundant Magnetometer Mounting Transform Gamma Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Mounting Transform Gamma Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_mounting_gamma_deg(
@@ -569,7 +569,7 @@ static inline double cubeacp_redundant_mag_configuration_channel_1_offset_physic
 }
 
 /**
- * Sets Redundant Magnetometer Channel 1 Offset, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Channel 1 Offset, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_channel_1_offset_physical(
@@ -587,7 +587,7 @@ static inline double cubeacp_redundant_mag_configuration_channel_2_offset_physic
 }
 
 /**
- * Sets Redundant Magnetometer Channel 2 Offset, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Channel 2 Offset, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_channel_2_offset_physical(
@@ -605,7 +605,7 @@ static inline double cubeacp_redundant_mag_configuration_channel_3_offset_physic
 }
 
 /**
- * Sets Redundant Magnetometer Channel 3 Offset, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there
+ * Sets Redundant Magnetometer Channel 3 Offset, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_channel_3_offset_physical(
@@ -623,7 +623,7 @@ static inline double cubeacp_redundant_mag_configuration_sensitivity_s11_physica
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S11, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Redundant Magnetometer Sensitivity Matrix S11, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s11_physical(
@@ -641,7 +641,7 @@ static inline double cubeacp_redundant_mag_configuration_sensitivity_s22_physica
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S22, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Redundant Magnetometer Sensitivity Matrix S22, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s22_physical(
@@ -659,7 +659,7 @@ static inline double cubeacp_redundant_mag_configuration_sensitivity_s33_physica
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S33, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Redundant Magnetometer Sensitivity Matrix S33, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s33_physical(
@@ -677,7 +677,7 @@ static inline double cubeacp_redundant_mag_configuration_sensitivity_s12_physica
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S12, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Redundant Magnetometer Sensitivity Matrix S12, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s12_physical(
@@ -695,7 +695,7 @@ static inline double cubeacp_redundant_mag_configuration_sensitivity_s13_physica
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S13, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Redundant Magnetometer Sensitivity Matrix S13, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s13_physical(
@@ -713,7 +713,7 @@ static inline double cubeacp_redundant_mag_configuration_sensitivity_s21_physica
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S21, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Redundant Magnetometer Sensitivity Matrix S21, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s21_physical(
@@ -731,7 +731,7 @@ static inline double cubeacp_redundant_mag_configuration_sensitivity_s23_physica
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S23, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Redundant Magnetometer Sensitivity Matrix S23, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s23_physical(
@@ -749,7 +749,7 @@ static inline double cubeacp_redundant_mag_configuration_sensitivity_s31_physica
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S31, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Redundant Magnetometer Sensitivity Matrix S31, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s31_physical(
@@ -767,7 +767,7 @@ static inline double cubeacp_redundant_mag_configuration_sensitivity_s32_physica
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S32, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets Redundant Magnetometer Sensitivity Matrix S32, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s32_physical(

@@ -80,7 +80,7 @@ static inline int32_t cubeacp_satellite_position_eci_x_position_m(const cubeacp_
     return message->x_position * INT32_C(250);
 }
 
-/** Sets X position in m to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X position in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_satellite_position_eci_set_x_position_m(
     cubeacp_satellite_position_eci_t *message,
     int32_t value)
@@ -98,7 +98,7 @@ static inline int32_t cubeacp_satellite_position_eci_y_position_m(const cubeacp_
     return message->y_position * INT32_C(250);
 }
 
-/** Sets Y position in m to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y position in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_satellite_position_eci_set_y_position_m(
     cubeacp_satellite_position_eci_t *message,
     int32_t value)
@@ -116,7 +116,7 @@ static inline int32_t cubeacp_satellite_position_eci_z_position_m(const cubeacp_
     return message->z_position * INT32_C(250);
 }
 
-/** Sets Z position in m to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z position in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_satellite_position_eci_set_z_position_m(
     cubeacp_satellite_position_eci_t *message,
     int32_t value)
@@ -136,7 +136,7 @@ static inline double cubeacp_satellite_position_eci_x_position_km(const cubeacp_
     return icdgen_quotient(message->x_position, 4);
 }
 
-/** Sets X position in km to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X position in km, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_satellite_position_eci_set_x_position_km(
     cubeacp_satellite_position_eci_t *message,
     double value)
@@ -150,7 +150,7 @@ static inline double cubeacp_satellite_position_eci_y_position_km(const cubeacp_
     return icdgen_quotient(message->y_position, 4);
 }
 
-/** Sets Y position in km to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y position in km, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_satellite_position_eci_set_y_position_km(
     cubeacp_satellite_position_eci_t *message,
     double value)
@@ -164,7 +164,7 @@ static inline double cubeacp_satellite_position_eci_z_position_km(const cubeacp_
     return icdgen_quotient(message->z_position, 4);
 }
 
-/** Sets Z position in km to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z position in km, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_satellite_position_eci_set_z_position_km(
     cubeacp_satellite_position_eci_t *message,
     double value)

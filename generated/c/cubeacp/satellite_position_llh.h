@@ -89,7 +89,7 @@ static inline int32_t cubeacp_satellite_position_llh_latitude_mdeg(const cubeacp
     return message->latitude * INT32_C(10);
 }
 
-/** Sets Latitude in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Latitude in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_satellite_position_llh_set_latitude_mdeg(
     cubeacp_satellite_position_llh_t *message,
     int32_t value)
@@ -107,7 +107,7 @@ static inline int32_t cubeacp_satellite_position_llh_longitude_mdeg(const cubeac
     return message->longitude * INT32_C(10);
 }
 
-/** Sets Longitude in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Longitude in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_satellite_position_llh_set_longitude_mdeg(
     cubeacp_satellite_position_llh_t *message,
     int32_t value)
@@ -125,7 +125,7 @@ static inline int32_t cubeacp_satellite_position_llh_altitude_m(const cubeacp_sa
     return message->altitude * INT32_C(10);
 }
 
-/** Sets Altitude in m to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Altitude in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_satellite_position_llh_set_altitude_m(
     cubeacp_satellite_position_llh_t *message,
     int32_t value)
@@ -145,7 +145,7 @@ static inline double cubeacp_satellite_position_llh_latitude_deg(const cubeacp_s
     return icdgen_quotient(message->latitude, 100);
 }
 
-/** Sets Latitude in deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Latitude in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_satellite_position_llh_set_latitude_deg(
     cubeacp_satellite_position_llh_t *message,
     double value)
@@ -159,7 +159,7 @@ static inline double cubeacp_satellite_position_llh_longitude_deg(const cubeacp_
     return icdgen_quotient(message->longitude, 100);
 }
 
-/** Sets Longitude in deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Longitude in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_satellite_position_llh_set_longitude_deg(
     cubeacp_satellite_position_llh_t *message,
     double value)
@@ -173,7 +173,7 @@ static inline double cubeacp_satellite_position_llh_altitude_km(const cubeacp_sa
     return icdgen_quotient(message->altitude, 100);
 }
 
-/** Sets Altitude in km to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Altitude in km, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_satellite_position_llh_set_altitude_km(
     cubeacp_satellite_position_llh_t *message,
     double value)

@@ -81,7 +81,7 @@ static inline int32_t cubeacp_satellite_velocity_eci_x_velocity_mm_per_s(
     return message->x_velocity * INT32_C(250);
 }
 
-/** Sets X Velocity in mm/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X Velocity in mm/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_satellite_velocity_eci_set_x_velocity_mm_per_s(
     cubeacp_satellite_velocity_eci_t *message,
     int32_t value)
@@ -100,7 +100,7 @@ static inline int32_t cubeacp_satellite_velocity_eci_y_velocity_mm_per_s(
     return message->y_velocity * INT32_C(250);
 }
 
-/** Sets Y Velocity in mm/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y Velocity in mm/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_satellite_velocity_eci_set_y_velocity_mm_per_s(
     cubeacp_satellite_velocity_eci_t *message,
     int32_t value)
@@ -119,7 +119,7 @@ static inline int32_t cubeacp_satellite_velocity_eci_z_velocity_mm_per_s(
     return message->z_velocity * INT32_C(250);
 }
 
-/** Sets Z Velocity in mm/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z Velocity in mm/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_satellite_velocity_eci_set_z_velocity_mm_per_s(
     cubeacp_satellite_velocity_eci_t *message,
     int32_t value)
@@ -139,7 +139,7 @@ static inline double cubeacp_satellite_velocity_eci_x_velocity_m_per_s(const cub
     return icdgen_quotient(message->x_velocity, 4);
 }
 
-/** Sets X Velocity in m/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X Velocity in m/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_satellite_velocity_eci_set_x_velocity_m_per_s(
     cubeacp_satellite_velocity_eci_t *message,
     double value)
@@ -153,7 +153,7 @@ static inline double cubeacp_satellite_velocity_eci_y_velocity_m_per_s(const cub
     return icdgen_quotient(message->y_velocity, 4);
 }
 
-/** Sets Y Velocity in m/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y Velocity in m/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_satellite_velocity_eci_set_y_velocity_m_per_s(
     cubeacp_satellite_velocity_eci_t *message,
     double value)
@@ -167,7 +167,7 @@ static inline double cubeacp_satellite_velocity_eci_z_velocity_m_per_s(const cub
     return icdgen_quotient(message->z_velocity, 4);
 }
 
-/** Sets Z Velocity in m/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z Velocity in m/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_satellite_velocity_eci_set_z_velocity_m_per_s(
     cubeacp_satellite_velocity_eci_t *message,
     double value)

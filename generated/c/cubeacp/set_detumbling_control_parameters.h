@@ -110,7 +110,7 @@ static inline int32_t cubeacp_set_detumbling_control_parameters_spin_rate_mdeg_p
     return message->spin_rate;
 }
 
-/** Sets Reference spin rate in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Reference spin rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_set_detumbling_control_parameters_set_spin_rate_mdeg_per_s(
     cubeacp_set_detumbling_control_parameters_t *message,
     int32_t value)
@@ -131,7 +131,7 @@ static inline double cubeacp_set_detumbling_control_parameters_spin_rate_deg_per
     return icdgen_quotient(message->spin_rate, 1000);
 }
 
-/** Sets Reference spin rate in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Reference spin rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_set_detumbling_control_parameters_set_spin_rate_deg_per_s(
     cubeacp_set_detumbling_control_parameters_t *message,
     double value)

@@ -101,7 +101,7 @@ static inline int32_t cubeacp_set_magnetorquer_output_x_duty_cycle_milli(
 }
 
 /**
- * Sets Commanded X Magnetorquer duty cycle in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Commanded X Magnetorquer duty cycle in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_set_magnetorquer_output_set_x_duty_cycle_milli(
     cubeacp_set_magnetorquer_output_t *message,
@@ -122,7 +122,7 @@ static inline int32_t cubeacp_set_magnetorquer_output_y_duty_cycle_milli(
 }
 
 /**
- * Sets Commanded Y Magnetorquer duty cycle in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Commanded Y Magnetorquer duty cycle in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_set_magnetorquer_output_set_y_duty_cycle_milli(
     cubeacp_set_magnetorquer_output_t *message,
@@ -143,7 +143,7 @@ static inline int32_t cubeacp_set_magnetorquer_output_z_duty_cycle_milli(
 }
 
 /**
- * Sets Commanded Z Magnetorquer duty cycle in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets Commanded Z Magnetorquer duty cycle in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_set_magnetorquer_output_set_z_duty_cycle_milli(
     cubeacp_set_magnetorquer_output_t *message,
@@ -166,7 +166,7 @@ static inline double cubeacp_set_magnetorquer_output_x_duty_cycle_physical(
 }
 
 /**
- * Sets Commanded X Magnetorquer duty cycle, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Commanded X Magnetorquer duty cycle, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_set_magnetorquer_output_set_x_duty_cycle_physical(
@@ -184,7 +184,7 @@ static inline double cubeacp_set_magnetorquer_output_y_duty_cycle_physical(
 }
 
 /**
- * Sets Commanded Y Magnetorquer duty cycle, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Commanded Y Magnetorquer duty cycle, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_set_magnetorquer_output_set_y_duty_cycle_physical(
@@ -202,7 +202,7 @@ static inline double cubeacp_set_magnetorquer_output_z_duty_cycle_physical(
 }
 
 /**
- * Sets Commanded Z Magnetorquer duty cycle, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
+ * Sets Commanded Z Magnetorquer duty cycle, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
 static inline icd_status_t cubeacp_set_magnetorquer_output_set_z_duty_cycle_physical(

@@ -120,7 +120,7 @@ static inline int32_t cubeacp_set_rate_gyro_configuration_x_rate_sensor_offset_m
     return message->x_rate_sensor_offset;
 }
 
-/** Sets X-Rate Sensor Offset in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_set_rate_gyro_configuration_set_x_rate_sensor_offset_mdeg_per_s(
     cubeacp_set_rate_gyro_configuration_t *message,
     int32_t value)
@@ -139,7 +139,7 @@ static inline int32_t cubeacp_set_rate_gyro_configuration_y_rate_sensor_offset_m
     return message->y_rate_sensor_offset;
 }
 
-/** Sets Y-Rate Sensor Offset in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_set_rate_gyro_configuration_set_y_rate_sensor_offset_mdeg_per_s(
     cubeacp_set_rate_gyro_configuration_t *message,
     int32_t value)
@@ -158,7 +158,7 @@ static inline int32_t cubeacp_set_rate_gyro_configuration_z_rate_sensor_offset_m
     return message->z_rate_sensor_offset;
 }
 
-/** Sets Z-Rate Sensor Offset in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_set_rate_gyro_configuration_set_z_rate_sensor_offset_mdeg_per_s(
     cubeacp_set_rate_gyro_configuration_t *message,
     int32_t value)
@@ -179,7 +179,7 @@ static inline double cubeacp_set_rate_gyro_configuration_x_rate_sensor_offset_de
     return icdgen_quotient(message->x_rate_sensor_offset, 1000);
 }
 
-/** Sets X-Rate Sensor Offset in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X-Rate Sensor Offset in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_set_rate_gyro_configuration_set_x_rate_sensor_offset_deg_per_s(
     cubeacp_set_rate_gyro_configuration_t *message,
     double value)
@@ -194,7 +194,7 @@ static inline double cubeacp_set_rate_gyro_configuration_y_rate_sensor_offset_de
     return icdgen_quotient(message->y_rate_sensor_offset, 1000);
 }
 
-/** Sets Y-Rate Sensor Offset in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y-Rate Sensor Offset in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_set_rate_gyro_configuration_set_y_rate_sensor_offset_deg_per_s(
     cubeacp_set_rate_gyro_configuration_t *message,
     double value)
@@ -209,7 +209,7 @@ static inline double cubeacp_set_rate_gyro_configuration_z_rate_sensor_offset_de
     return icdgen_quotient(message->z_rate_sensor_offset, 1000);
 }
 
-/** Sets Z-Rate Sensor Offset in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z-Rate Sensor Offset in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_set_rate_gyro_configuration_set_z_rate_sensor_offset_deg_per_s(
     cubeacp_set_rate_gyro_configuration_t *message,
     double value)

@@ -288,7 +288,7 @@ static inline int32_t cubeacp_set_star_tracker_configuration_mounting_alpha_mdeg
 }
 
 /**
- * Sets StarTracker Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets StarTracker Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_mounting_alpha_mdeg(
@@ -310,7 +310,7 @@ static inline int32_t cubeacp_set_star_tracker_configuration_mounting_beta_mdeg(
 }
 
 /**
- * Sets StarTracker Mounting Transform Beta Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets StarTracker Mounting Transform Beta Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_mounting_beta_mdeg(
@@ -332,7 +332,7 @@ static inline int32_t cubeacp_set_star_tracker_configuration_mounting_gamma_mdeg
 }
 
 /**
- * Sets StarTracker Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
+ * Sets StarTracker Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_mounting_gamma_mdeg(
@@ -353,7 +353,7 @@ static inline int32_t cubeacp_set_star_tracker_configuration_error_margin_milli_
     return message->error_margin * INT32_C(10);
 }
 
-/** Sets Star Tracker Error Margin in thousandths of % to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star Tracker Error Margin in thousandths of %, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_error_margin_milli_percent(
     cubeacp_set_star_tracker_configuration_t *message,
     int32_t value)
@@ -372,7 +372,7 @@ static inline int32_t cubeacp_set_star_tracker_configuration_tracking_margin_mil
     return message->tracking_margin * INT32_C(10);
 }
 
-/** Sets Star Tracking Margin in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star Tracking Margin in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_tracking_margin_milli(
     cubeacp_set_star_tracker_configuration_t *message,
     int32_t value)
@@ -391,7 +391,7 @@ static inline int32_t cubeacp_set_star_tracker_configuration_validation_margin_m
     return message->validation_margin * INT32_C(10);
 }
 
-/** Sets Star Validation Margin in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star Validation Margin in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_validation_margin_milli(
     cubeacp_set_star_tracker_configuration_t *message,
     int32_t value)
@@ -410,7 +410,7 @@ static inline int32_t cubeacp_set_star_tracker_configuration_search_width_milli(
     return message->search_width * INT32_C(200);
 }
 
-/** Sets Star Tracking Search Width in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star Tracking Search Width in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_search_width_milli(
     cubeacp_set_star_tracker_configuration_t *message,
     int32_t value)
@@ -432,7 +432,7 @@ static inline double cubeacp_set_star_tracker_configuration_mounting_alpha_deg(
 }
 
 /**
- * Sets StarTracker Mounting Transform Alpha Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets StarTracker Mounting Transform Alpha Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_mounting_alpha_deg(
     cubeacp_set_star_tracker_configuration_t *message,
@@ -448,7 +448,9 @@ static inline double cubeacp_set_star_tracker_configuration_mounting_beta_deg(
     return icdgen_quotient(message->mounting_beta, 100);
 }
 
-/** Sets StarTracker Mounting Transform Beta Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Sets StarTracker Mounting Transform Beta Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_mounting_beta_deg(
     cubeacp_set_star_tracker_configuration_t *message,
     double value)
@@ -464,7 +466,7 @@ static inline double cubeacp_set_star_tracker_configuration_mounting_gamma_deg(
 }
 
 /**
- * Sets StarTracker Mounting Transform Gamma Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Sets StarTracker Mounting Transform Gamma Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_mounting_gamma_deg(
     cubeacp_set_star_tracker_configuration_t *message,
@@ -480,7 +482,7 @@ static inline double cubeacp_set_star_tracker_configuration_error_margin_percent
     return icdgen_quotient(message->error_margin, 100);
 }
 
-/** Sets Star Tracker Error Margin in % to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star Tracker Error Margin in %, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_error_margin_percent(
     cubeacp_set_star_tracker_configuration_t *message,
     double value)
@@ -495,7 +497,7 @@ static inline double cubeacp_set_star_tracker_configuration_tracking_margin_phys
     return icdgen_quotient(message->tracking_margin, 100);
 }
 
-/** Sets Star Tracking Margin, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star Tracking Margin, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_tracking_margin_physical(
     cubeacp_set_star_tracker_configuration_t *message,
     double value)
@@ -510,7 +512,7 @@ static inline double cubeacp_set_star_tracker_configuration_validation_margin_ph
     return icdgen_quotient(message->validation_margin, 100);
 }
 
-/** Sets Star Validation Margin, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star Validation Margin, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_validation_margin_physical(
     cubeacp_set_star_tracker_configuration_t *message,
     double value)
@@ -525,7 +527,7 @@ static inline double cubeacp_set_star_tracker_configuration_search_width_physica
     return icdgen_quotient(message->search_width, 5);
 }
 
-/** Sets Star Tracking Search Width, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star Tracking Search Width, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_search_width_physical(
     cubeacp_set_star_tracker_configuration_t *message,
     double value)

@@ -90,7 +90,7 @@ static inline int32_t cubeacp_star_1_body_vector_star1_body_x_micro(const cubeac
     return message->star1_body_x * INT32_C(100);
 }
 
-/** Sets Star1BX in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star1BX in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_star_1_body_vector_set_star1_body_x_micro(
     cubeacp_star_1_body_vector_t *message,
     int32_t value)
@@ -108,7 +108,7 @@ static inline int32_t cubeacp_star_1_body_vector_star1_body_y_micro(const cubeac
     return message->star1_body_y * INT32_C(100);
 }
 
-/** Sets Star1BY in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star1BY in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_star_1_body_vector_set_star1_body_y_micro(
     cubeacp_star_1_body_vector_t *message,
     int32_t value)
@@ -126,7 +126,7 @@ static inline int32_t cubeacp_star_1_body_vector_star1_body_z_micro(const cubeac
     return message->star1_body_z * INT32_C(100);
 }
 
-/** Sets Star1BZ in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star1BZ in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_star_1_body_vector_set_star1_body_z_micro(
     cubeacp_star_1_body_vector_t *message,
     int32_t value)
@@ -146,7 +146,7 @@ static inline double cubeacp_star_1_body_vector_star1_body_x_physical(const cube
     return icdgen_quotient(message->star1_body_x, 10000);
 }
 
-/** Sets Star1BX, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star1BX, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_star_1_body_vector_set_star1_body_x_physical(
     cubeacp_star_1_body_vector_t *message,
     double value)
@@ -160,7 +160,7 @@ static inline double cubeacp_star_1_body_vector_star1_body_y_physical(const cube
     return icdgen_quotient(message->star1_body_y, 10000);
 }
 
-/** Sets Star1BY, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star1BY, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_star_1_body_vector_set_star1_body_y_physical(
     cubeacp_star_1_body_vector_t *message,
     double value)
@@ -174,7 +174,7 @@ static inline double cubeacp_star_1_body_vector_star1_body_z_physical(const cube
     return icdgen_quotient(message->star1_body_z, 10000);
 }
 
-/** Sets Star1BZ, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star1BZ, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_star_1_body_vector_set_star1_body_z_physical(
     cubeacp_star_1_body_vector_t *message,
     double value)

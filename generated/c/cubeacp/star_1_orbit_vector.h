@@ -92,7 +92,7 @@ static inline int32_t cubeacp_star_1_orbit_vector_star1_orbit_x_micro(const cube
     return message->star1_orbit_x * INT32_C(100);
 }
 
-/** Sets Star1OX in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star1OX in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_star_1_orbit_vector_set_star1_orbit_x_micro(
     cubeacp_star_1_orbit_vector_t *message,
     int32_t value)
@@ -110,7 +110,7 @@ static inline int32_t cubeacp_star_1_orbit_vector_star1_orbit_y_micro(const cube
     return message->star1_orbit_y * INT32_C(100);
 }
 
-/** Sets Star1OY in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star1OY in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_star_1_orbit_vector_set_star1_orbit_y_micro(
     cubeacp_star_1_orbit_vector_t *message,
     int32_t value)
@@ -128,7 +128,7 @@ static inline int32_t cubeacp_star_1_orbit_vector_star1_orbit_z_micro(const cube
     return message->star1_orbit_z * INT32_C(100);
 }
 
-/** Sets Star1OZ in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star1OZ in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_star_1_orbit_vector_set_star1_orbit_z_micro(
     cubeacp_star_1_orbit_vector_t *message,
     int32_t value)
@@ -148,7 +148,7 @@ static inline double cubeacp_star_1_orbit_vector_star1_orbit_x_physical(const cu
     return icdgen_quotient(message->star1_orbit_x, 10000);
 }
 
-/** Sets Star1OX, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star1OX, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_star_1_orbit_vector_set_star1_orbit_x_physical(
     cubeacp_star_1_orbit_vector_t *message,
     double value)
@@ -162,7 +162,7 @@ static inline double cubeacp_star_1_orbit_vector_star1_orbit_y_physical(const cu
     return icdgen_quotient(message->star1_orbit_y, 10000);
 }
 
-/** Sets Star1OY, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star1OY, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_star_1_orbit_vector_set_star1_orbit_y_physical(
     cubeacp_star_1_orbit_vector_t *message,
     double value)
@@ -176,7 +176,7 @@ static inline double cubeacp_star_1_orbit_vector_star1_orbit_z_physical(const cu
     return icdgen_quotient(message->star1_orbit_z, 10000);
 }
 
-/** Sets Star1OZ, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Star1OZ, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_star_1_orbit_vector_set_star1_orbit_z_physical(
     cubeacp_star_1_orbit_vector_t *message,
     double value)

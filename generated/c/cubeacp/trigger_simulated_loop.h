@@ -508,7 +508,7 @@ static inline int32_t cubeacp_trigger_simulated_loop_x_pos_standard_deviation_mm
     return message->x_pos_standard_deviation * INT32_C(100);
 }
 
-/** Sets X-pos Standard Deviation in mm to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X-pos Standard Deviation in mm, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_trigger_simulated_loop_set_x_pos_standard_deviation_mm(
     cubeacp_trigger_simulated_loop_t *message,
     int32_t value)
@@ -527,7 +527,7 @@ static inline int32_t cubeacp_trigger_simulated_loop_y_pos_standard_deviation_mm
     return message->y_pos_standard_deviation * INT32_C(100);
 }
 
-/** Sets Y-pos Standard Deviation in mm to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y-pos Standard Deviation in mm, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_trigger_simulated_loop_set_y_pos_standard_deviation_mm(
     cubeacp_trigger_simulated_loop_t *message,
     int32_t value)
@@ -546,7 +546,7 @@ static inline int32_t cubeacp_trigger_simulated_loop_z_pos_standard_deviation_mm
     return message->z_pos_standard_deviation * INT32_C(100);
 }
 
-/** Sets Z-pos Standard Deviation in mm to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z-pos Standard Deviation in mm, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_trigger_simulated_loop_set_z_pos_standard_deviation_mm(
     cubeacp_trigger_simulated_loop_t *message,
     int32_t value)
@@ -567,7 +567,7 @@ static inline double cubeacp_trigger_simulated_loop_x_pos_standard_deviation_m(
     return icdgen_quotient(message->x_pos_standard_deviation, 10);
 }
 
-/** Sets X-pos Standard Deviation in m to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X-pos Standard Deviation in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_trigger_simulated_loop_set_x_pos_standard_deviation_m(
     cubeacp_trigger_simulated_loop_t *message,
     double value)
@@ -582,7 +582,7 @@ static inline double cubeacp_trigger_simulated_loop_y_pos_standard_deviation_m(
     return icdgen_quotient(message->y_pos_standard_deviation, 10);
 }
 
-/** Sets Y-pos Standard Deviation in m to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y-pos Standard Deviation in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_trigger_simulated_loop_set_y_pos_standard_deviation_m(
     cubeacp_trigger_simulated_loop_t *message,
     double value)
@@ -597,7 +597,7 @@ static inline double cubeacp_trigger_simulated_loop_z_pos_standard_deviation_m(
     return icdgen_quotient(message->z_pos_standard_deviation, 10);
 }
 
-/** Sets Z-pos Standard Deviation in m to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z-pos Standard Deviation in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_trigger_simulated_loop_set_z_pos_standard_deviation_m(
     cubeacp_trigger_simulated_loop_t *message,
     double value)

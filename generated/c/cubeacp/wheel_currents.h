@@ -96,7 +96,7 @@ static inline int32_t cubeacp_wheel_currents_wheel1_current_ua(const cubeacp_whe
     return message->wheel1_current * INT32_C(10);
 }
 
-/** Sets Wheel1Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Wheel1Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_wheel_currents_set_wheel1_current_ua(
     cubeacp_wheel_currents_t *message,
     int32_t value)
@@ -114,7 +114,7 @@ static inline int32_t cubeacp_wheel_currents_wheel2_current_ua(const cubeacp_whe
     return message->wheel2_current * INT32_C(10);
 }
 
-/** Sets Wheel2Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Wheel2Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_wheel_currents_set_wheel2_current_ua(
     cubeacp_wheel_currents_t *message,
     int32_t value)
@@ -132,7 +132,7 @@ static inline int32_t cubeacp_wheel_currents_wheel3_current_ua(const cubeacp_whe
     return message->wheel3_current * INT32_C(10);
 }
 
-/** Sets Wheel3Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Wheel3Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_wheel_currents_set_wheel3_current_ua(
     cubeacp_wheel_currents_t *message,
     int32_t value)
@@ -152,7 +152,7 @@ static inline double cubeacp_wheel_currents_wheel1_current_ma(const cubeacp_whee
     return icdgen_quotient(message->wheel1_current, 100);
 }
 
-/** Sets Wheel1Current in mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Wheel1Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_wheel_currents_set_wheel1_current_ma(cubeacp_wheel_currents_t *message, double value)
 {
     return icdgen_set_u16(&message->wheel1_current, value, 1, 0, 100, UINT16_MAX);
@@ -164,7 +164,7 @@ static inline double cubeacp_wheel_currents_wheel2_current_ma(const cubeacp_whee
     return icdgen_quotient(message->wheel2_current, 100);
 }
 
-/** Sets Wheel2Current in mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Wheel2Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_wheel_currents_set_wheel2_current_ma(cubeacp_wheel_currents_t *message, double value)
 {
     return icdgen_set_u16(&message->wheel2_current, value, 1, 0, 100, UINT16_MAX);
@@ -176,7 +176,7 @@ static inline double cubeacp_wheel_currents_wheel3_current_ma(const cubeacp_whee
     return icdgen_quotient(message->wheel3_current, 100);
 }
 
-/** Sets Wheel3Current in mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Wheel3Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_wheel_currents_set_wheel3_current_ma(cubeacp_wheel_currents_t *message, double value)
 {
     return icdgen_set_u16(&message->wheel3_current, value, 1, 0, 100, UINT16_MAX);

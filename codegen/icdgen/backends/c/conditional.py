@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from icdgen.backends.c import bits, decoding
+from icdgen.backends.c import bits, constants, decoding
 from icdgen.backends.c.names import enumerator, has
 from icdgen.backends.c.statement import assigned_byte
 from icdgen.backends.c.types import mask
@@ -35,7 +35,7 @@ def conditional(message: MessageDescription) -> list[Conditional]:
                 if len(field.needs) > 1
                 else _test(field.needs[0])
             ),
-            f"message->{field.name} = {_ZERO.get(field.model.type, '0u' if not field.storage.signed else '0')};",
+            f"message->{field.name} = {_absent(field)};",
             decoding.number(field),
             tuple(_written(field)),
         )
@@ -43,7 +43,11 @@ def conditional(message: MessageDescription) -> list[Conditional]:
     ]
 
 
-_ZERO = {"bool": "false", "float": "0"}
+def _absent(field: FieldDescription) -> str:
+    """What it has where it is not there: the only valid value, which is right once it is there; else 0."""
+    if field.model.const is not None:
+        return constants.only(field)
+    return {"bool": "false", "float": "0"}.get(field.model.type, "0" if field.storage.signed else "0u")
 
 
 def _grouped(test: str) -> str:

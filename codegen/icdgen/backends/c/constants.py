@@ -54,12 +54,16 @@ def initial(message: Composite[Any]) -> list[str]:
     counters = [field for field in message.members if field.model.name in counts]
     counted = [f"message->{field.member} = {field.fresh}u;" for field in counters]
     return counted + [
-        f"message->{field.member} = {names.constant(field.declaration.message, one.name)};"
+        f"message->{field.member} = {only(field)};"
         for field in message.fields
-        if not field.is_open or _is_always_there(field)
-        for one in field.constants
-        if one.key == "const"
+        if field.model.const is not None and (not field.is_open or _is_always_there(field))
     ]
+
+
+def only(field: FieldDescription) -> str:
+    """The constant of the only valid value of a field that has one."""
+    (name,) = (one.name for one in field.constants if one.key == "const")
+    return names.constant(field.declaration.message, name)
 
 
 def _is_always_there(field: FieldDescription) -> bool:

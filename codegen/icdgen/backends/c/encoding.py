@@ -14,18 +14,23 @@ from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.description import Composite, TailDescription
 
 
-def size(message: MessageDescription) -> str:
-    """Bytes of the frame that a message makes."""
+def size(message: MessageDescription) -> list[str]:
+    """Bytes of the frame that a message makes, as the terms of a sum."""
     tail = message.tail
     assert tail is not None
+    parts = [_held(one) if one.step == 1 else f"{_held(one)} * {one.step}u" for one in (*message.inner, tail)]
     if message.inner:
-        counts = [(elements(one), one.step) for one in (*message.inner, tail)]
-        terms = [count if step == 1 else f"({count} * {step}u)" for count, step in counts]
-        return " + ".join((f"{message.model.fixed}u", *terms))
-    count = elements(tail)
-    if tail.step == 1:
-        return f"{tail.begin}u + {count}" if tail.begin else count
-    return f"{tail.begin}u + ({count} * {tail.step}u)" if tail.begin else f"{count} * {tail.step}u"
+        return [f"{message.model.fixed}u", *parts]
+    if not tail.begin:
+        return parts
+    return [f"{tail.begin}u", parts[0] if tail.step == 1 else f"({parts[0]})"]
+
+
+def _held(tail: TailDescription) -> str:
+    """How many elements there are; none where the counter is smaller than any frame has it."""
+    if not tail.low:
+        return elements(tail)
+    return f"((message->{tail.counter.name} > {tail.low}u) ? {elements(tail)} : 0u)"
 
 
 def counted_text(tail: TailDescription) -> str:

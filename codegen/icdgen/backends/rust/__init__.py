@@ -88,11 +88,11 @@ def _functions() -> dict[str, object]:
     from icdgen.backends.rust.examples import direction_example, enum_example, message_example
     from icdgen.backends.rust.physical import big_parts
     from icdgen.describe.comments import sentence, text_comment, words
-    from icdgen.describe.numbers import count_text
+    from icdgen.describe.numbers import byte_count, count_text
 
     found = (
-        accessors, big_parts, count_text, curve_of, derived_statements, direction_example, enum_example, field_row, message_example,
-        names.catch_all, names.field_name, names.message_path, names.open_type, names.raw_type, names.type_name,
+        accessors, big_parts, byte_count, count_text, curve_of, derived_statements, direction_example, enum_example, field_row,
+        message_example, names.catch_all, names.field_name, names.message_path, names.open_type, names.raw_type, names.type_name,
         scale_of, sentence, text.arm,
         text.assigned, text.code, text.described, text.doc, text.integer, text.prose, text.signature, text.string,
         text_comment, words,
