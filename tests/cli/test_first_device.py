@@ -196,6 +196,14 @@ def test_a_style_that_there_is_not_is_said_and_nothing_is_written(icdgen, tmp_pa
     assert list(tmp_path.iterdir()) == []
 
 
+def test_who_forgets_to_name_an_icd_is_told_whose_nodes_there_are(icdgen, tmp_path):
+    (tmp_path / "icd").mkdir()
+    (tmp_path / "icd" / "battery.yaml").write_text(BIG)
+    result = icdgen("show", "battery")
+    assert result.status == 2
+    assert "cubewheel, which come with icdgen; name yours with --icd, or in icdgen.toml" in result.err
+
+
 @pytest.mark.parametrize("file", sorted((ROOT / "examples" / "links").glob("*.yaml")), ids=lambda file: file.stem)
 def test_a_device_in_the_style_of_one_with_an_envelope_has_that(icdgen, tmp_path, file):
     origin = load([file]).icd.nodes[0]

@@ -29,6 +29,7 @@ class _Path(click.Path):
 
 
 _CONFIGURED = "icdgen.configured"  # of a click context: the icdgen.toml whose ICDs are meant
+_SHIPPED = "icdgen.shipped"  # that those are meant which come with icdgen, as nothing was said
 PATH = _Path(path_type=Path)
 
 
@@ -83,15 +84,17 @@ def chosen(icds: tuple[Path, ...]) -> tuple[list[Path], config.Config]:
         raise UserError("the current folder is no longer there", "change to another one") from None
     paths = list(icds) or found.icds or [shipped.icds()]
     context = click.get_current_context(silent=True)
-    if context is not None and found.icds and not icds:
-        context.meta[_CONFIGURED] = found.path
+    if context is not None and not icds:
+        context.meta[_CONFIGURED if found.icds else _SHIPPED] = found.path
     return [_short(path) for path in paths], found
 
 
 def beside_shipped(error: UserError, context: click.Context) -> UserError:
-    """The error; if it is about a node that is shipped, but not among those of ``icdgen.toml``, one that says so."""
+    """The error; if it is about a node, and those of the ICDs that were not meant are looked at, one that says so."""
     from icdgen.values.errors import NotFound
 
+    if _SHIPPED in context.meta and isinstance(error, NotFound) and error.help.startswith("nodes: "):
+        return NotFound(str(error), f"{error.help}, which come with icdgen; name yours with --icd, or in icdgen.toml")
     path = context.meta.get(_CONFIGURED)
     if path is None or not isinstance(error, NotFound):
         return error
