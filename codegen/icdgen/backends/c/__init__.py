@@ -142,7 +142,9 @@ def _tail(message: MessageDescription, tail: TailDescription) -> dict[str, objec
         "element": of_element,
         "inner": decoding.of_inner(message),
         "size": encoding.size(message),
-        "misfit_length": decoding.misfit_length(tail, names.constant(message, "length")),
+        "misfit_length": decoding.misfit_length(
+            tail, names.constant(message, "length"), tail.begin if message.inner else 0
+        ),
         "miscounted": decoding.miscounted(tail),
         "elements": decoding.elements(tail),
         "counted_text": encoding.counted_text(tail),

@@ -38,9 +38,9 @@ def _count(tail: TailDescription) -> str:
     return f"({rest}) / {tail.step}u" if tail.least else f"{rest} / {tail.step}u"
 
 
-def misfit_length(tail: TailDescription, longest: str) -> str:
-    """What holds of a ``length`` that no frame has; ``longest`` is the macro of the longest."""
-    tests = [f"length < {tail.least}u"] if tail.least else []
+def misfit_length(tail: TailDescription, longest: str, known: int = 0) -> str:
+    """What holds of a ``length`` of ``known`` bytes or more that no frame has; ``longest`` is the macro of the longest."""
+    tests = [f"length < {tail.least}u"] if tail.least > known else []
     tests.append(f"length > {longest}")
     if tail.step > 1:
         tests.append(f"({_rest(tail)} % {tail.step}u) != 0u")
