@@ -11,7 +11,7 @@ const icdgenGiven = ((frames, packets, pasted, stream, envelopes) => {
 
   /** The data in bytes, and remarks about what was around it; bytes that do not fit as they are. Throws an Error, too. */
   function unwrap(wire, length, bytes) {
-    if (hasLength(wire, length, bytes)) return { data: bytes, remarks: [] };
+    if (hasLength(wire, length, bytes)) return surelyEnveloped(wire, length, bytes) ?? { data: bytes, remarks: [] };
     const taken = wire.stream && ofEnvelopes(wire, length, bytes);
     if (taken) return taken;
     const read = wire.framing && stream.messages(wire, bytes);
@@ -22,6 +22,16 @@ const icdgenGiven = ((frames, packets, pasted, stream, envelopes) => {
   function hasLength(wire, length, { length: given }) {
     const [least, step] = wire.lengths ?? [length, 1];
     return given >= least && given <= length && (given - least) % step === 0;
+  }
+
+  /** Where frames differ in length one in its envelope can be as long as another without: a checksum tells. */
+  function surelyEnveloped(wire, length, bytes) {
+    if (!wire.lengths || !wire.stream?.check) return null;
+    try {
+      return ofEnvelopes(wire, length, bytes);
+    } catch {
+      return null;
+    }
   }
 
   /** The first message of this kind in its envelope; null if there is none. Throws an Error where one is damaged, or another one's. */
@@ -83,7 +93,7 @@ const icdgenGiven = ((frames, packets, pasted, stream, envelopes) => {
   /** The data of the message that CAN packets carry, and remarks. Throws an Error where they are of another one. */
   function carried(wire, length, given) {
     const { can } = wire;
-    if (!can) return { data: Uint8Array.from(given.flatMap((one) => [...one.data])), remarks: ["data of CAN packets"] };
+    if (!can) return identified(wire, given);
     const idOf = (one) => packets.partOf(can, "channel", one.id);
     const mine = given.filter((one) => one.extended && wire.ids.includes(idOf(one)));
     if (!mine.length) throw new Error(`CAN packets of id ${idOf(given[0])}, which is another message's`);
@@ -92,6 +102,14 @@ const icdgenGiven = ((frames, packets, pasted, stream, envelopes) => {
     if (found) return { data: found.data, remarks: [`data of CAN packets with id ${found.id}`] };
     if (open.length) throw new Error(`${open[0].count - open[0].pieces.size} of ${open[0].count} packets are missing`);
     throw new Error(`CAN packets with id ${idOf(mine[0])} that carry no data`);
+  }
+
+  /** The data of the first packet whose identifier is the id. Throws an Error if there is none. */
+  function identified(wire, given) {
+    const own = given.find((one) => wire.ids.includes(one.id));
+    const { id, extended } = own ?? given[0];
+    if (!own) throw new Error(`CAN identifier ${packets.idText(id, extended)}, which is not this message's`);
+    return { data: own.data, remarks: [`CAN identifier ${packets.idText(id, extended)} removed`] };
   }
 
   return { unwrap, messageIn };

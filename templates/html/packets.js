@@ -64,6 +64,9 @@ const icdgenPackets = (() => {
     });
   }
 
-  return { join, split, partOf };
+  /** An identifier with as many digits as tools print. */
+  const idText = (id, extended) => `0x${id.toString(16).toUpperCase().padStart(extended ? 8 : 3, "0")}`;
+
+  return { join, split, partOf, idText };
 })();
 if (typeof module !== "undefined") module.exports = icdgenPackets;

@@ -50,7 +50,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
       const data = given.packets ? Uint8Array.from(given.packets.flatMap((one) => [...one.data])) : given.data;
       found = enveloped(index, talking, data);
       if (!found.length) found = framed(index, talking, data);
-      if (!found.length) found = [bare(index, talking, data)];
+      if (!found.length) found = given.packets ? byIdentifier(index, talking, given.packets) : [bare(index, talking, data)];
     }
     return given.form ? found.map((one) => noted(one, `read as ${given.form}`)) : found;
   }
@@ -155,19 +155,23 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
   function* ofSpeaker(index, speaker, body) {
     const apart = takenApart(speaker, body);
     if (!apart) return;
-    const [id, data] = apart;
+    const [id] = apart;
+    yield* withId(index, speaker, ...apart);
+    const [size, idAt, errorAt] = speaker.acknowledge ?? [];
+    if (body.length === size && speaker.telemetry[id] === undefined && speaker.telecommands[body[idAt]] !== undefined) {
+      const error = body[errorAt];
+      const told = `error ${error}${speaker.errors[error] ? ` (${speaker.errors[error]})` : ""}`;
+      yield noted(reading(index, speaker, "acknowledge", speaker.telecommands[body[idAt]], body[idAt]), told);
+    }
+  }
+
+  function* withId(index, speaker, id, data) {
     for (const [what, ids] of directions(speaker)) {
       const number = numberOf(index, ids[id], data);
       if (number === undefined) continue;
       const read = withChecksum(index, speaker, what, id, number, data);
       if (read) yield read;
       if (what === "telemetry" && !data.length && !fits(index, number, data)) yield reading(index, speaker, "request", number, id);
-    }
-    const [size, idAt, errorAt] = speaker.acknowledge ?? [];
-    if (body.length === size && speaker.telemetry[id] === undefined && speaker.telecommands[body[idAt]] !== undefined) {
-      const error = body[errorAt];
-      const told = `error ${error}${speaker.errors[error] ? ` (${speaker.errors[error]})` : ""}`;
-      yield noted(reading(index, speaker, "acknowledge", speaker.telecommands[body[idAt]], body[idAt]), told);
     }
   }
 
@@ -214,6 +218,28 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
 
   // CAN
 
+  /** The message of each packet where the identifier is the id. */
+  function byIdentifier(index, talking, given) {
+    const [found, wrong] = [[], []];
+    for (const packet of given) {
+      try {
+        found.push(ofIdentifier(index, talking, packet));
+      } catch (error) {
+        wrong.push(error);
+      }
+    }
+    if (!found.length) throw wrong[0];
+    const left = wrong.length ? [`${wrong.length} of ${given.length} CAN packets are left out: ${wrong[0].message}`] : [];
+    return [noted(found[0], ...left), ...found.slice(1)];
+  }
+
+  function ofIdentifier(index, talking, { id, data, extended }) {
+    const identifier = packets.idText(id, extended);
+    const found = eachOnce(talking.flatMap((speaker) => [...withId(index, speaker, id, data)]));
+    if (!found.length) throw whyNot(index, talking.map((speaker) => [speaker, [id, data]]), `no message has the CAN identifier ${identifier}`);
+    return noted(decided(found, `a packet with the CAN identifier ${identifier}`), `CAN identifier ${identifier} removed`);
+  }
+
   function onCan(index, able, given) {
     if (!given.every((one) => one.extended)) throw new Error("a packet has an 11-bit identifier, those of the ICD have 29 bits");
     const found = able.map((speaker) => {
@@ -248,7 +274,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
     }
     const [told] = joined.messages;
     if (told) return whyNone(index, [speaker], Uint8Array.from([told.id, ...told.data]));
-    return new Error(`the packet with identifier 0x${given[0].id.toString(16).toUpperCase().padStart(8, "0")} is none of ${speaker.title}`);
+    return new Error(`the packet with identifier ${packets.idText(given[0].id, true)} is none of ${speaker.title}`);
   }
 
   // Choosing
@@ -273,16 +299,19 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
 
   function whyNone(index, talking, body) {
     const apart = talking.map((speaker) => [speaker, takenApart(speaker, body)]).filter(([, both]) => both);
+    if (!apart.length) return new Error("bytes are missing: not even the id is complete");
+    const ids = new Set(apart.map(([, [id]]) => `${id} (0x${id.toString(16).toUpperCase().padStart(2, "0")})`));
+    return whyNot(index, apart, `no message has the id ${[...ids].join(" or ")}`);
+  }
+
+  /** What is wrong with data of these ids; `unknown` if no message has them. */
+  function whyNot(index, apart, unknown) {
     const known = new Map(
       apart.flatMap(([speaker, [id, data]]) =>
         directions(speaker).flatMap(([what, ids]) => numbersOf(ids[id]).map((number) => [`${what} ${number}`, { speaker, number, id, data }])),
       ),
     );
-    if (!apart.length) return new Error("bytes are missing: not even the id is complete");
-    if (!known.size) {
-      const ids = new Set(apart.map(([, [id]]) => `${id} (0x${id.toString(16).toUpperCase().padStart(2, "0")})`));
-      return new Error(`no message has the id ${[...ids].join(" or ")}`);
-    }
+    if (!known.size) return new Error(unknown);
     for (const { speaker, number, id, data } of known.values()) {
       const right = frames.check(speaker.crc, lengthOf(index, number), id, data)?.right;
       if (right) return new Error(`${index.messages[number][0]}: as CRC ${frames.hex(right)} would be right, not ${frames.hex(data.slice(-right.length))}`);

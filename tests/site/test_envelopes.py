@@ -12,10 +12,12 @@ from icdgen.backends.html import recognition, wire
 from icdgen.backends.html.relations import Relations
 from icdgen.icd.fmt import format_text
 from icdgen.loading import load
+from icdgen.recognize import recognize
 from icdgen.site import make, write
 from icdgen.vectors.make import make as golden
 from tests.conftest import ROOT
 from tests.features.enveloped import recorded
+from tests.recognize.test_asked import LIMIT, load_pack, sent
 from tests.site.test_pasted import node
 from tests.site.test_recognize import on_the_command_line, on_the_page
 
@@ -78,6 +80,19 @@ def test_the_page_of_a_message_takes_its_envelope_off():
     assert found[0] == ["00000000", "envelope with id 353 removed; 1 other frame left out"]
     assert found[1][0] == "4ab37b0f" and "33 bytes around the frame belong to none" in found[1][1]
     assert "wrong checksum" in str(found[2]) and "another message's" in str(found[3])
+
+
+def test_the_page_takes_the_envelope_off_where_its_bytes_could_be_data_of_the_message_too(tmp_path):
+    icd = load_pack(tmp_path)
+    relations = Relations(icd)
+    message = next(one for one in icd.nodes[0].messages if one.name == "Log")
+    facts = wire.page_facts(message, relations.wire(message))
+    texts = [sent(icd, "telemetry", 261, b"ready"), b"ready".hex(), LIMIT]
+    found = node(
+        """([wire, length, texts]) => texts.map((text) => Buffer.from(given.messageIn(wire, length, text).data).toString("hex"))""",
+        [facts, message.length, texts],
+    )
+    assert found == [recognize(icd, text, "pack", "Log")[0].data.hex() for text in texts]
 
 
 def test_the_page_of_the_protocol_says_what_the_envelope_looks_like(tmp_path):

@@ -17,6 +17,7 @@ from icdgen.recognize import read, recognize
 from icdgen.values.errors import BadHex
 from icdgen.values.find import find_message
 from tests.conftest import ROOT
+from tests.recognize.test_identifiers import BRAKE, DRIVE, train
 from tests.recognize.ways import BARE, DATA, WHOLE
 from tests.site.conftest import program
 
@@ -123,6 +124,21 @@ def test_the_page_of_a_message_makes_of_a_stream_what_the_command_line_makes(shi
     shown = [one if isinstance(one, str) and len(one) == 2 * message.length else None for one in found]
     assert [(t, f, expected(t)) for t, s, f in zip(texts, shown, found, strict=True) if s != expected(t)] == []
     assert 50 < sum(one is not None for one in shown) < 390
+
+
+def test_the_page_of_a_message_takes_the_packet_whose_identifier_is_its_id_and_no_other(tmp_path):
+    icd = train(tmp_path)
+    relations, message = Relations(icd), find_message(icd, "train", "Brake")
+    texts = [f"101#{BRAKE}", f"100#{DRIVE}\n101#{BRAKE}", f"100#{DRIVE}"]
+    found = node(
+        """([wire, length, texts]) => texts.map((text) => attempt(() => {
+            const { data, remarks } = given.messageIn(wire, length, text);
+            return [Buffer.from(data).toString("hex"), ...remarks];
+        }))""",
+        [wire.page_facts(message, relations.wire(message)), message.length, texts],
+    )
+    assert found[:2] == [[BRAKE, "CAN identifier 0x101 removed"]] * 2
+    assert "CAN identifier 0x100, which is not this message's" in str(found[2])
 
 
 def test_packets_of_a_long_message_are_joined_whatever_their_order(shipped):

@@ -14,6 +14,7 @@ from icdgen.errors import UserError
 from icdgen.recognize import recognize
 from icdgen.values.errors import Ambiguous
 from tests.conftest import ROOT
+from tests.recognize.test_identifiers import BRAKE, DRIVE, train
 from tests.recognize.ways import BARE, WHOLE
 from tests.site.conftest import program
 
@@ -98,6 +99,21 @@ def test_random_traffic_is_what_the_command_line_says_it_is(shipped, index):
     assert different[:3] == []
     assert min(sum(e is None for e in expected), sum(e == "ambiguous" for e in expected)) > 100
     assert sum(isinstance(e, list) for e in expected) > 1000
+
+
+def test_identifiers_that_are_ids_are_read_as_the_command_line_reads_them(tmp_path):
+    icd = train(tmp_path)
+    texts = [
+        f"can0 {id}#{data}"
+        for id in ("100", "101", "200", "18914001", "7FF", "00000300")
+        for data in (DRIVE, "01", "01F4", "")
+    ]
+    texts += [f"t1008{DRIVE}", "100#R", f"100#{DRIVE}\n7FF#00\n101#{BRAKE}"]
+    expected = [on_the_command_line(icd, text) for text in texts]
+    shown = on_the_page(json.loads(json.dumps(recognition.index(Relations(icd)))), texts)
+    assert [one if not isinstance(one, dict) else None for one in shown] == expected
+    assert "no message has the CAN identifier 0x7FF" in str(shown) and "ambiguous" in expected
+    assert sum(isinstance(one, list) for one in expected) == 10
 
 
 def test_what_is_wrong_is_said(index):

@@ -9,6 +9,7 @@ from icdgen_runtime.wire.can import CanEvent, CanJoiner, CanMessage, CanPacket
 
 from icdgen.protocol.sections import CAN_WITH_DATA
 from icdgen.recognize import match
+from icdgen.recognize.asked import Asked
 from icdgen.recognize.packets import Printed
 from icdgen.recognize.reading import ACKNOWLEDGE, REFUSAL, REQUEST, TELECOMMAND, TELEMETRY, Reading, Speaker
 from icdgen.values.errors import BadLength, NotFound
@@ -19,7 +20,7 @@ _WHAT = {
 }  # fmt: skip
 
 
-def readings(speakers: Sequence[Speaker], packets: Sequence[Printed]) -> list[Reading]:
+def readings(speakers: Sequence[Speaker], packets: Sequence[Printed], asked: Asked) -> list[Reading]:
     """The messages that the packets make, in their order. Raises `NotFound`, `BadLength` or `Ambiguous`."""
     if not all(packet.extended for packet in packets):
         raise NotFound(
@@ -32,13 +33,30 @@ def readings(speakers: Sequence[Speaker], packets: Sequence[Printed]) -> list[Re
     if most == 0:
         raise _why_none(able[0], sent)
     complete = [one for one in found if len(one) == most]
-    chosen = [_chosen([one[number] for one in complete]) for number in range(most)]
+    chosen = [_chosen([one[number] for one in complete], asked) for number in range(most)]
     left = _left_out(complete[0][0].speaker, sent) - most
     return (
         [chosen[0].noted(f"{left} of the CAN messages are left out: no message, or not complete"), *chosen[1:]]
         if left
         else chosen
     )
+
+
+def by_identifier(speakers: Sequence[Speaker], packets: Sequence[Printed], asked: Asked) -> list[Reading]:
+    """The message of each packet where the identifier is the id. Raises `NotFound`, `BadLength` or `Ambiguous` if none is one."""
+    found, wrong = match.each(packets, lambda packet: _by_identifier(speakers, packet, asked))
+    left = [f"{len(wrong)} of {len(packets)} CAN packets are left out: {wrong[0]}"] if wrong else []
+    return [found[0].noted(*left), *found[1:]]
+
+
+def _by_identifier(speakers: Sequence[Speaker], packet: Printed, asked: Asked) -> Reading:
+    found = match.of_id(speakers, packet.id, packet.data)
+    if not found:
+        text = f"no message of {match.nodes_of(speakers)} has the CAN identifier {packet.identifier}"
+        help = "`icdgen show NODE` lists what there is; name the message to have the bytes read all the same"
+        raise match.why_not([(one, (packet.id, packet.data)) for one in speakers], NotFound(text, help))
+    one = match.decided(found, f"a packet with the CAN identifier {packet.identifier}", asked)
+    return one.noted(f"CAN identifier {packet.identifier} removed")
 
 
 def _of_speaker(speaker: Speaker, packets: list[CanPacket]) -> list[Reading]:
@@ -81,10 +99,10 @@ def _came(speaker: Speaker, packets: list[CanPacket]) -> int:
     return 0
 
 
-def _chosen(found: list[Reading]) -> Reading:
+def _chosen(found: list[Reading], asked: Asked) -> Reading:
     own = [one for one in found if one.speaker.node.name == one.message.node]
     different = {one.key: one for one in [*found, *own]}
-    return match.decided(list(different.values()), f"a CAN message with id {found[0].id}")
+    return match.decided(list(different.values()), f"a CAN message with id {found[0].id}", asked)
 
 
 def _why_none(speaker: Speaker, packets: list[CanPacket]) -> BadLength | NotFound:

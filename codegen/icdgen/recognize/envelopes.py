@@ -9,6 +9,7 @@ from icdgen_runtime.wire.envelope import Direction
 from icdgen_runtime.wire.stream import StreamDecoder, StreamEvent
 
 from icdgen.recognize import match
+from icdgen.recognize.asked import Asked
 from icdgen.recognize.reading import Reading, Speaker
 from icdgen.values.errors import BadLength
 
@@ -24,8 +25,10 @@ class Heard(NamedTuple):
     lost: int
 
 
-def readings(speakers: Sequence[Speaker], data: bytes) -> list[Reading]:
-    """The messages, of the direction that leaves the least; none if there are none, or hardly by intent.
+def readings(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> list[Reading]:
+    """The messages, of the direction that leaves the least, of those that have what is asked for if any has.
+
+    There are none if nothing is in an envelope, or hardly by intent.
 
     Raises `BadLength` if there is one whose checksum is wrong, `Ambiguous`.
     """
@@ -36,11 +39,12 @@ def readings(speakers: Sequence[Speaker], data: bytes) -> list[Reading]:
             if one.events and one.events[0].event == "checksum" and _is_marked(one.speaker):
                 raise BadLength(_wrong(one), 0, len(data), "a byte of it is damaged, or the frame is of another node")
         return []
+    found = [one for one in found if any(map(asked.fits, one.readings))] or found
     least = min(one.lost for one in found)
     best = [one for one in found if one.lost == least]
     most = max(len(one.readings) for one in best)
     best = [one for one in best if len(one.readings) == most]
-    chosen = [match.decided([one.readings[at] for one in best], "a frame in an envelope") for at in range(most)]
+    chosen = [match.decided([one.readings[at] for one in best], "a frame in an envelope", asked) for at in range(most)]
     around = [f"{least} byte{'' if least == 1 else 's'} around the frame belong to none"] if least else []
     wrong = dict.fromkeys(event.event for event in best[0].events if event.event not in ("message", "gap"))
     around += [f"the stream has an error: {event.replace('_', ' ')}" for event in wrong]

@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 
 from icdgen_runtime.wire.uart import UartDecoder, UartEvent
 
-from icdgen.errors import UserError
-from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.model import Icd
 from icdgen.recognize import bus, envelopes, match
-from icdgen.recognize.given import of_message
+from icdgen.recognize.asked import Asked, asked_for
+from icdgen.recognize.given import of_asked
 from icdgen.recognize.pasted import Pasted, read
 from icdgen.recognize.reading import Reading, Speaker, all_speakers, speaker_of
 from icdgen.values.errors import Ambiguous, BadHex, BadLength, NotFound
-from icdgen.values.find import KINDS, find_message, find_node, find_sharing
+from icdgen.values.find import KINDS, find_node
 from icdgen.values.frame import frame
 
 
@@ -27,78 +28,55 @@ def recognize(
     ``node`` and ``key`` say whose they are and which message, as `icdgen.values.find_message` takes them. Lines of which
     each is a frame of its own are read one by one. Raises `BadHex`, `BadLength`, `NotFound` or `Ambiguous`.
     """
-    asked = find_node(icd, node) if node is not None else None
-    message = _named(icd, asked, key, kind, text) if asked and key is not None else None
+    owner = find_node(icd, node) if node is not None else None
+    asked = asked_for(icd, owner, key, kind)
+    speakers = [speaker_of(icd, owner)] if owner else all_speakers(icd)
     if isinstance(text, bytes):
-        return _readings(icd, Pasted(text), asked, message, kind)
+        return _readings(icd, speakers, Pasted(text), asked)
     lines = [line for line in text.splitlines() if line.strip()]
-    apart = _line_by_line(icd, lines, asked, message, kind)
-    if apart and message is None and all(one.id is not None for one in apart):
+    apart = _line_by_line(icd, speakers, lines, asked)
+    if apart and not asked.messages and all(one.id is not None for one in apart):
         return apart
     try:
-        return _readings(icd, read(text), asked, message, kind)
+        return _readings(icd, speakers, read(text), asked)
     except (Ambiguous, BadHex, BadLength, NotFound):
         if apart:
             return apart
         raise
 
 
-def _named(icd: Icd, node: Node, key: str, kind: str | None, text: str | bytes) -> Message:
-    """The message that is asked for; of those that share an id the one that the frame is, which may have the id in front."""
-    try:
-        return find_message(icd, node.name, key, kind)
-    except Ambiguous:
-        known = find_sharing(icd, node.name, key, kind)
-        data = b"" if not known else text if isinstance(text, bytes) else read(text).data
-        both = speaker_of(icd, node).taken_apart(data) if known else None
-        found = match.message_of(icd, known, data) if known else None
-        if found is None and both is not None and both[0] in known[0].ids:
-            found = match.message_of(icd, known, both[1])
-        if found is None and known:
-            raise match.none_of(known, f"{len(data)} byte{'' if len(data) == 1 else 's'}") from None
-        if found is None:
-            raise
-        return found
-
-
-def _line_by_line(
-    icd: Icd, lines: Sequence[str], asked: Node | None, message: Message | None, kind: str | None
-) -> list[Reading]:
+def _line_by_line(icd: Icd, speakers: Sequence[Speaker], lines: Sequence[str], asked: Asked) -> list[Reading]:
     """The frames, if there are several lines and each is one."""
     if len(lines) < 2:
         return []
     with suppress(Ambiguous, BadHex, BadLength, NotFound):
         pasted = [read(line) for line in lines]
         if not any(one.packets or one.form for one in pasted):
-            return [found for one in pasted for found in _readings(icd, one, asked, message, kind)]
+            return [found for one in pasted for found in _readings(icd, speakers, one, asked)]
     return []
 
 
-def _readings(icd: Icd, pasted: Pasted, asked: Node | None, message: Message | None, kind: str | None) -> list[Reading]:
-    speakers = [speaker_of(icd, asked)] if asked else all_speakers(icd)
+def _readings(icd: Icd, speakers: Sequence[Speaker], pasted: Pasted, asked: Asked) -> list[Reading]:
     if pasted.packets and any(one.facts.can for one in speakers):
-        found = bus.readings(speakers, pasted.packets)
+        found = bus.readings(speakers, pasted.packets, asked)
     else:
-        data = b"".join(packet.data for packet in pasted.packets) or pasted.data
-        found = _framed(speakers, data, message) or [_bare(icd, speakers, data, message)]
-    if kind is not None:
-        found = [one for one in found if one.what == kind or one.message.kind == kind] or found
-    if message is not None:
-        others = [one for one in found if one.message is not message]
-        if others and len(others) == len(found):
-            raise NotFound(
-                f"the frame is not `{message.name}` but {others[0].title}", "leave the message out, or name that one"
-            )
-        found = [one for one in found if one.message is message]
+        found = _framed(speakers, pasted.whole, asked) or _unframed(icd, speakers, pasted, asked)
+    found = asked.of(found)
+    if asked.messages and not any(map(asked.is_of, found)):
+        raise NotFound(
+            f"the frame is not {asked.names} but {found[0].title}", "leave the message out, or name that one"
+        )
+    if asked.messages:
+        found = [one for one in found if asked.is_of(one)]
     note = (f"read as {pasted.form}",) if pasted.form else ()
     return [_decoded(icd, one.noted(*note)) for one in found]
 
 
-def _framed(speakers: Sequence[Speaker], data: bytes, message: Message | None) -> list[Reading]:
+def _framed(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> list[Reading]:
     """The messages in a stream with framing; none if it has none, or its bytes are just those of the message asked for."""
-    if message is not None and len(data) in message.lengths:
-        return []
-    if enveloped := envelopes.readings(speakers, data):
+    if asked.can_be(data):
+        return _surely_enveloped(speakers, data, asked)
+    if enveloped := envelopes.readings(speakers, data, asked):
         return enveloped
     for framing in dict.fromkeys(speaker.link.framing for speaker in speakers if speaker.link.framing):
         if bytes((framing.escape, framing.start)) not in data:
@@ -111,26 +89,20 @@ def _framed(speakers: Sequence[Speaker], data: bytes, message: Message | None) -
             if data[:2] == bytes((framing.escape, framing.start)):
                 raise BadLength(_broken(events), 0, len(data), "the frame is cut off, or a byte of it is damaged")
             continue
-        found, unknown = _of_bodies(talking, bodies)
+        found, wrong = match.each(bodies, partial(_of_body, talking, asked=asked))
         lost = decoder.discarded + decoder.pending
         around = [f"{lost} byte{'' if lost == 1 else 's'} around the frame belong to none"] if lost else []
         around += [f"the stream has an error: {e.event.replace('_', ' ')}" for e in events if e.event != "message"]
+        unknown = [f"another frame of the stream is left out: {error}" for error in wrong]
         return [found[0].noted(*unknown, *around), *found[1:]]
     return []
 
 
-def _of_bodies(speakers: Sequence[Speaker], bodies: Sequence[bytes]) -> tuple[list[Reading], list[str]]:
-    """What the messages are, and what is wrong with the others. Raises the first error if it is wrong with all."""
-    found: list[Reading] = []
-    wrong: list[UserError] = []
-    for body in bodies:
-        try:
-            found.append(_of_body(speakers, body))
-        except (Ambiguous, BadLength, NotFound) as error:
-            wrong.append(error)
-    if not found:
-        raise wrong[0]
-    return found, [f"another frame of the stream is left out: {error}" for error in wrong]
+def _surely_enveloped(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> list[Reading]:
+    """Of messages whose frames differ in length one in its envelope can be as long as another without: a checksum tells."""
+    with suppress(Ambiguous, BadLength):
+        return [one for one in envelopes.readings(speakers, data, asked) if one.checked and asked.is_of(one)]
+    return []
 
 
 def _broken(events: list[UartEvent]) -> str:
@@ -139,28 +111,40 @@ def _broken(events: list[UartEvent]) -> str:
     return "the framing is empty" if events else "the framing begins, but the end of the message is missing"
 
 
-def _of_body(speakers: Sequence[Speaker], body: bytes) -> Reading:
+def _of_body(speakers: Sequence[Speaker], body: bytes, asked: Asked) -> Reading:
     found = match.by_id(speakers, body)
     if not found:
         raise match.why_none(speakers, body)
-    one = match.decided(found, f"a frame with id {body[0]}")
+    one = match.decided(found, f"a frame with id {body[0]}", asked)
     return replace(one, remarks=(f"framing with id {body[0]} removed", *one.remarks))
 
 
-def _bare(icd: Icd, speakers: Sequence[Speaker], data: bytes, message: Message | None) -> Reading:
-    if message is not None:
-        return of_message(icd, speakers[0], message, data)
+def _unframed(icd: Icd, speakers: Sequence[Speaker], pasted: Pasted, asked: Asked) -> list[Reading]:
+    """Packets of CAN by their identifiers; of a message that is asked for, whatever the identifier, if none has it."""
+    if not pasted.packets:
+        return [_bare(icd, speakers, pasted.data, asked)]
+    try:
+        return bus.by_identifier(speakers, pasted.packets, asked)
+    except NotFound as error:
+        if not asked.messages:
+            raise
+        return [_bare(icd, speakers, pasted.whole, asked).noted(str(error))]
+
+
+def _bare(icd: Icd, speakers: Sequence[Speaker], data: bytes, asked: Asked) -> Reading:
+    if asked.messages:
+        return of_asked(icd, speakers[0], asked.messages, data)
     if not data:
         raise BadLength("there are no bytes", 1, 0, "give a frame")
     given = f"{len(data)} byte{'' if len(data) == 1 else 's'}"
     with_id, plain = match.by_id(speakers, data), match.by_length(speakers, data)
     if with_id:
-        one = match.decided(with_id, f"{given} beginning with the id {with_id[0].id}")
+        one = match.decided(with_id, f"{given} beginning with the id {with_id[0].id}", asked)
         others = [other for other in plain if other.key != one.key]
         note = [f"without an id in front it could be {match.named(others)}"] if others else []
         return one.noted(f"id {one.id} removed", *note)
     if plain:
-        one = match.decided(plain, f"{given} without an id")
+        one = match.decided(plain, f"{given} without an id", asked)
         return replace(one, id=None).noted("found by its length alone")
     raise match.why_none(speakers, data)
 

@@ -3,12 +3,29 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Sequence
 
 from icdgen.describe.numbers import length_text
 from icdgen.icd.model import Icd, Message
 from icdgen.recognize import match
 from icdgen.recognize.reading import TELECOMMAND, TELEMETRY, Reading, Speaker, all_speakers
 from icdgen.values.errors import BadLength
+
+
+def of_asked(icd: Icd, speaker: Speaker, messages: Sequence[Message], data: bytes) -> Reading:
+    """The message; of those that share an id the one that the data are of, which may have the id in front.
+
+    Raises `BadLength` or `NotFound`.
+    """
+    if len(messages) == 1:
+        return of_message(icd, speaker, messages[0], data)
+    apart = speaker.taken_apart(data)
+    found = match.message_of(icd, messages, data)
+    if found is None and apart is not None and apart[0] in messages[0].ids:
+        found = match.message_of(icd, messages, apart[1])
+    if found is None:
+        raise match.none_of(messages, f"{len(data)} byte{'' if len(data) == 1 else 's'}")
+    return of_message(icd, speaker, found, data)
 
 
 def of_message(icd: Icd, speaker: Speaker, message: Message, data: bytes) -> Reading:

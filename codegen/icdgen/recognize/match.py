@@ -2,26 +2,51 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
+from typing import TypeVar
 
 from icdgen_runtime.wire.i2c import i2c_write
 
 from icdgen import codec
 from icdgen.describe.numbers import length_text
+from icdgen.errors import UserError
 from icdgen.icd import wire_ids
 from icdgen.icd.model import Icd, Message
 from icdgen.icd.variants import Variant
+from icdgen.recognize.asked import Asked
 from icdgen.recognize.reading import ACKNOWLEDGE, REQUEST, TELECOMMAND, TELEMETRY, Reading, Speaker
 from icdgen.values.errors import Ambiguous, BadLength, NotFound
-from icdgen.values.find import describe
+from icdgen.values.find import KINDS, describe
 
+T = TypeVar("T")
+Apart = tuple[Speaker, tuple[int, bytes]]  # an id, and the bytes after it
 MOST_LISTED = 8
 HELP = "name the node and the message: `icdgen decode NODE MESSAGE FRAME`"
+
+
+def each(items: Iterable[T], read: Callable[[T], Reading]) -> tuple[list[Reading], list[UserError]]:
+    """What the items are, and what is wrong with the others. Raises the first error if it is wrong with all."""
+    found: list[Reading] = []
+    wrong: list[UserError] = []
+    for item in items:
+        try:
+            found.append(read(item))
+        except (Ambiguous, BadLength, NotFound) as error:
+            wrong.append(error)
+    if not found:
+        raise wrong[0]
+    return found, wrong
 
 
 def by_id(speakers: Sequence[Speaker], body: bytes) -> list[Reading]:
     """What an id and the bytes after it can be, each but once."""
     return _each_once(found for speaker in speakers for found in _of_speaker(speaker, body))
+
+
+def of_id(speakers: Sequence[Speaker], id: int, data: bytes) -> list[Reading]:
+    """What data can be that came with an id, but not behind it."""
+    return _each_once(found for speaker in speakers for found in _with_id(speaker, id, data))
 
 
 def by_length(speakers: Sequence[Speaker], data: bytes) -> list[Reading]:
@@ -41,7 +66,15 @@ def _of_speaker(speaker: Speaker, body: bytes) -> Iterator[Reading]:
     apart, facts = speaker.taken_apart(body), speaker.facts
     if apart is None:
         return
-    id, data = apart
+    yield from _with_id(speaker, *apart)
+    form = facts.acknowledge
+    if form and len(body) == form.length and apart[0] not in facts.telemetry:
+        told, error = body[form.id_at], body[form.error_at]
+        if told in facts.telecommands:
+            yield Reading(speaker, ACKNOWLEDGE, facts.telecommands[told], told, error=error)
+
+
+def _with_id(speaker: Speaker, id: int, data: bytes) -> Iterator[Reading]:
     for what, known in _directions(speaker):
         message = message_of(speaker.icd, [one.message for one in known.get(id, ())], data)
         read = _with_checksum(speaker, what, id, message, data) if message else None
@@ -49,11 +82,6 @@ def _of_speaker(speaker: Speaker, body: bytes) -> Iterator[Reading]:
             yield read
         if message and what == TELEMETRY and not data and message.least:
             yield Reading(speaker, REQUEST, message, id)
-    form = facts.acknowledge
-    if form and len(body) == form.length and id not in facts.telemetry:
-        told, error = body[form.id_at], body[form.error_at]
-        if told in facts.telecommands:
-            yield Reading(speaker, ACKNOWLEDGE, facts.telecommands[told], told, error=error)
 
 
 def message_of(icd: Icd, known: Sequence[Message], data: bytes) -> Message | None:
@@ -88,34 +116,52 @@ def checksum(speaker: Speaker, id: int, message: Message, data: bytes) -> bytes 
     return i2c_write(speaker.link, id, data[: message.length], crc=True)[-form.bytes :]
 
 
-def decided(found: Sequence[Reading], of: str) -> Reading:
+def decided(found: Sequence[Reading], of: str, asked: Asked) -> Reading:
     """The most likely one, with a remark about what else it can be. Raises `Ambiguous` if several are as likely.
 
-    A checksum that is right is no accident; and who sends more than an acknowledge rarely looks like one.
+    What was asked for decides; a checksum that is right is no accident; and who sends more than an acknowledge rarely
+    looks like one. Nothing tells the direction of a message that is asked for and has the same frame in both.
     """
+    found = asked.of(found)
     likely = [one for one in found if one.checked] or [one for one in found if one.what != ACKNOWLEDGE] or list(found)
+    if len(likely) > 1 and all(asked.is_of(one) and one.what in KINDS for one in likely):
+        first, *others = likely
+        if all(one.message is first.message and one.data == first.data for one in others):
+            return replace(first, what=first.message.kind)
     if len(likely) > 1:
-        raise Ambiguous(f"{of} can be {named(likely)}", HELP)
+        wrong = f", not {asked.names}" if asked.messages and not any(map(asked.is_of, likely)) else ""
+        raise Ambiguous(f"{of} can be {named(likely)}{wrong}", HELP)
     others = [one for one in found if one.key != likely[0].key]
     return likely[0].noted(f"it can also be {named(others)}") if others else likely[0]
 
 
 def why_none(speakers: Sequence[Speaker], body: bytes) -> BadLength | NotFound:
     """What is wrong with bytes that begin with an id and that no message has."""
-    apart = [(speaker, both) for speaker in speakers if (both := speaker.taken_apart(body)) is not None]
+    apart: list[Apart] = [(speaker, both) for speaker in speakers if (both := speaker.taken_apart(body)) is not None]
+    if not apart:
+        size = min(wire_ids.size(speaker.node.id_bits) for speaker in speakers)
+        text = f"an id of {nodes_of(speakers)} has {size} bytes, {len(body)} given"
+        return BadLength(text, size, len(body), "bytes are missing")
+    ids = " or ".join(dict.fromkeys(f"{id} (0x{id:02X})" for _, (id, _) in apart))
+    text = f"no message of {nodes_of(speakers)} has the id {ids}"
+    return why_not(apart, NotFound(text, "`icdgen show NODE` lists what there is"))
+
+
+def nodes_of(speakers: Sequence[Speaker]) -> str:
+    """The nodes by name."""
+    return ", ".join(dict.fromkeys(speaker.node.name for speaker in speakers))
+
+
+def why_not(apart: Sequence[Apart], unknown: NotFound) -> BadLength | NotFound:
+    """What is wrong with data of these ids; ``unknown`` if no message has them."""
     known = {
         (what, message.node, message.name): (speaker, message, id, data)
         for speaker, (id, data) in apart
         for what, messages in _directions(speaker)
         for message, *_ in messages.get(id, ())
     }
-    names = ", ".join(dict.fromkeys(speaker.node.name for speaker in speakers))
-    if not apart:
-        size = min(wire_ids.size(speaker.node.id_bits) for speaker in speakers)
-        return BadLength(f"an id of {names} has {size} bytes, {len(body)} given", size, len(body), "bytes are missing")
     if not known:
-        ids = " or ".join(dict.fromkeys(f"{id} (0x{id:02X})" for _, (id, _) in apart))
-        return NotFound(f"no message of {names} has the id {ids}", "`icdgen show NODE` lists what there is")
+        return unknown
     for speaker, message, id, data in known.values():
         right = checksum(speaker, id, message, data)
         if right is not None:

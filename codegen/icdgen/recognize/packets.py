@@ -27,6 +27,11 @@ class Printed(NamedTuple):
     data: bytes
     extended: bool
 
+    @property
+    def identifier(self) -> str:
+        """As many digits as tools print."""
+        return f"0x{self.id:0{8 if self.extended else 3}X}"
+
 
 def packets(text: str) -> list[Printed] | None:
     """The packets, one a line; None if any line is something else, or has not as many bytes as it says."""

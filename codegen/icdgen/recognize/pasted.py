@@ -41,6 +41,11 @@ class Pasted:
     packets: tuple[Printed, ...] = ()
     form: str = ""
 
+    @property
+    def whole(self) -> bytes:
+        """The bytes, those of packets one after the other."""
+        return b"".join(packet.data for packet in self.packets) or self.data
+
 
 def read(text: str) -> Pasted:
     """What was pasted, in any spelling. Raises `BadHex`, with the place in it, for what is no bytes at all."""

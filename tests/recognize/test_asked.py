@@ -1,0 +1,121 @@
+"""Where telecommands and telemetry share ids, naming the message or the kind decides what a frame is."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from icdgen.icd.model import Icd
+from icdgen.loading import load
+from icdgen.protocol import facts, stream
+from icdgen.recognize import recognize
+from icdgen.values.errors import Ambiguous
+
+PACK = """\
+icdgen: 1
+node: {name: pack, title: Pack, byte_order: big, bit_order: msb0, id_bits: 16}
+protocol:
+  stream:
+    delimited_by: length
+    header:
+      - {at: 0, bits: 8, role: sync, value: 0xA5}
+      - {at: 8, bits: 16, role: id}
+      - {at: 24, bits: 8, role: length}
+    trailer:
+      - {at: 0, bits: 8, role: checksum, checksum: sum}
+  checksums:
+    sum: {kind: sum, width: 8, init: 0, xor_out: 0, covers: {from: sync, to: data}}
+messages:
+  - {name: Set Limit, id: 257, kind: telecommand, length: 2, fields: [{at: 0, bits: 16, name: Limit, type: uint}]}
+  - {name: Limit, id: 257, kind: telemetry, length: 2, fields: [{at: 0, bits: 16, name: Limit, type: uint}]}
+  - {name: Poll, id: 258, kind: telecommand, length: 0}
+  - {name: Rate, set_id: 259, get_id: 259, kind: configuration, length: 1, fields: [{at: 0, bits: 8, name: Rate, type: uint}]}
+  - {name: Low, id: 260, kind: telemetry, length: 1, fields: [{at: 0, bits: 8, name: Page, type: uint, const: 1}]}
+  - {name: High, id: 260, kind: telemetry, length: 1, fields: [{at: 0, bits: 8, name: Page, type: uint, const: 2}]}
+  - {name: Log, id: 261, kind: telemetry, length: 0, fields: [{at: 0, name: Words, type: text, size: rest, up_to: 40}]}
+"""
+LIMIT = "a50101020208b3"
+
+
+def load_pack(folder) -> Icd:
+    path = folder / "pack.yaml"
+    path.write_text(PACK, encoding="utf-8")
+    loaded = load([path])
+    assert loaded.ok, loaded.findings
+    return loaded.icd
+
+
+@pytest.fixture(scope="module")
+def icd(tmp_path_factory) -> Icd:
+    return load_pack(tmp_path_factory.mktemp("pack"))
+
+
+def sent(icd: Icd, direction: str, id: int, data: bytes) -> str:
+    return stream.encode(facts.of(icd, icd.node("pack")).stream, direction, id, data).hex()
+
+
+@pytest.mark.parametrize(
+    ("key", "kind", "name"),
+    [
+        ("Set Limit", None, "Set Limit"),
+        ("Limit", None, "Limit"),
+        ("257", "telecommand", "Set Limit"),
+        ("0x0101", "telemetry", "Limit"),
+        (None, "telecommand", "Set Limit"),
+        (None, "telemetry", "Limit"),
+    ],
+)
+@pytest.mark.parametrize("frame", [LIMIT, "0101 0208"])
+def test_the_message_or_the_kind_decides_with_the_envelope_and_with_the_id_alone(icd, frame, key, kind, name):
+    (found,) = recognize(icd, frame, "pack", key, kind)
+    assert (found.message.name, found.what, found.data.hex()) == (name, found.message.kind, "0208")
+    assert not [remark for remark in found.remarks if "can also be" in remark]
+
+
+def test_without_either_what_the_help_says_is_a_way_out(icd):
+    with pytest.raises(Ambiguous) as wrong:
+        recognize(icd, LIMIT)
+    assert "NODE MESSAGE FRAME" in wrong.value.help
+    for name, kind in re.findall(r"`([^`]*)` \((\w+) 257\) of pack", str(wrong.value)):
+        (found,) = recognize(icd, LIMIT, "pack", name)
+        assert (found.message.name, found.what) == (name, kind)
+
+
+def test_another_message_is_not_read_as_the_one_that_is_named(icd):
+    with pytest.raises(Ambiguous, match=r"can be `Set Limit` .*, or `Limit` .*, not `Poll`"):
+        recognize(icd, LIMIT, "pack", "Poll")
+
+
+def test_of_a_stream_the_named_message_is_found_in_its_direction(icd):
+    line = LIMIT + sent(icd, "telecommand", 258, b"") + LIMIT
+    found = recognize(icd, line, "pack", "Limit")
+    assert [(one.message.name, one.data.hex()) for one in found] == [("Limit", "0208")] * 2
+    (poll,) = recognize(icd, line, "pack", "Poll")
+    assert poll.message.name == "Poll"
+
+
+def test_nothing_tells_the_direction_of_a_configuration_message_with_one_id_but_the_kind(icd):
+    frame = sent(icd, "telemetry", 259, b"\7")
+    with pytest.raises(Ambiguous):
+        recognize(icd, frame)
+    for kind, what in [(None, "configuration"), ("telecommand", "telecommand"), ("telemetry", "telemetry")]:
+        (found,) = recognize(icd, frame, "pack", "Rate", kind)
+        assert (found.what, found.data, found.frame.data) == (what, b"\7", b"\7")
+
+
+@pytest.mark.parametrize(("data", "name"), [(b"\1", "Low"), (b"\2", "High")])
+def test_the_id_of_messages_that_share_it_names_the_one_that_the_frame_is(icd, data, name):
+    for frame in (sent(icd, "telemetry", 260, data), "0104" + data.hex(), data.hex()):
+        (found,) = recognize(icd, frame, "pack", "260")
+        assert found.message.name == name
+
+
+def test_an_envelope_comes_off_where_its_bytes_could_be_text_of_the_message_too(icd):
+    frame = sent(icd, "telemetry", 261, b"ready")
+    (found,) = recognize(icd, frame, "pack", "Log")
+    assert found.data == b"ready" and "envelope with id 261 removed" in found.remarks
+    (plain,) = recognize(icd, b"ready".hex(), "pack", "Log")
+    assert plain.data == b"ready" and plain.remarks == ()
+    (other,) = recognize(icd, LIMIT, "pack", "Log")
+    assert other.data.hex() == LIMIT

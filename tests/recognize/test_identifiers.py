@@ -1,0 +1,104 @@
+"""CAN identifiers of nodes that say nothing of CAN are the ids of their messages, as definitions of CAN have them."""
+
+from __future__ import annotations
+
+import pytest
+
+from icdgen.icd.model import Icd
+from icdgen.loading import load
+from icdgen.recognize import recognize
+from icdgen.values.errors import Ambiguous, BadLength, NotFound
+
+TRAIN = """\
+icdgen: 1
+node: {name: train, title: Train, byte_order: little, bit_order: lsb0, id_bits: 29}
+messages:
+  - {name: Drive, id: 0x100, kind: telemetry, length: 8, fields: [{at: 0, bits: 64, name: Speed, type: uint}]}
+  - {name: Brake, id: 0x101, kind: telemetry, length: 8, fields: [{at: 0, bits: 64, name: Pressure, type: uint}]}
+  - {name: Cells, id: 0x18914001, kind: telemetry, length: 2, fields: [{at: 0, bits: 16, name: Cell, type: uint}]}
+  - {name: Set Mode, id: 0x200, kind: telecommand, length: 1, fields: [{at: 0, bits: 8, name: Mode, type: uint}]}
+  - {name: Mode, id: 0x200, kind: telemetry, length: 1, fields: [{at: 0, bits: 8, name: Mode, type: uint}]}
+"""
+DRIVE, BRAKE = "393001010a000000", "0100000000000000"
+
+
+def train(folder) -> Icd:
+    path = folder / "train.yaml"
+    path.write_text(TRAIN, encoding="utf-8")
+    loaded = load([path])
+    assert loaded.ok, loaded.findings
+    return loaded.icd
+
+
+@pytest.fixture(scope="module")
+def icd(tmp_path_factory) -> Icd:
+    return train(tmp_path_factory.mktemp("train"))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"100#{DRIVE}",
+        f"(1600000000.000000) can0 100#{DRIVE}",
+        "  can0  100   [8]  39 30 01 01 0A 00 00 00",
+        f"t1008{DRIVE}",
+    ],
+)
+@pytest.mark.parametrize("names", [(), ("train",), ("train", "Drive")])
+def test_exactly_the_message_of_the_identifier_is_read(icd, text, names):
+    (found,) = recognize(icd, text, *names)
+    assert (found.message.name, found.what, found.id, found.data.hex()) == ("Drive", "telemetry", 0x100, DRIVE)
+    assert found.frame.remarks == ("CAN identifier 0x100 removed",)
+
+
+@pytest.mark.parametrize("text", ["can0  18914001   [2]  01 F4", "18914001#01F4", "T18914001201F4"])
+def test_identifiers_of_29_bits_are_ids_too(icd, text):
+    (found,) = recognize(icd, text)
+    assert (found.message.name, found.frame.remarks) == ("Cells", ("CAN identifier 0x18914001 removed",))
+
+
+def test_every_packet_of_a_log_is_a_message_and_what_none_knows_is_said(icd):
+    log = f"can0 100#{DRIVE}\ncan0 7FF#00\ncan0 101#{BRAKE}\ncan0 100#{BRAKE}"
+    found = recognize(icd, log)
+    assert [(one.message.name, one.data.hex()) for one in found] == [
+        ("Drive", DRIVE),
+        ("Brake", BRAKE),
+        ("Drive", BRAKE),
+    ]
+    assert (
+        found[0]
+        .remarks[-1]
+        .startswith("1 of 4 CAN packets are left out: no message of train has the CAN identifier 0x7FF")
+    )
+    assert [one.message.name for one in recognize(icd, log, "train", "Brake")] == ["Brake"]
+
+
+@pytest.mark.parametrize(
+    ("text", "names", "error", "says"),
+    [
+        (f"7FF#{DRIVE}", (), NotFound, "no message of train has the CAN identifier 0x7FF"),
+        (f"00000300#{DRIVE}", (), NotFound, "CAN identifier 0x00000300"),
+        ("100#3930", (), BadLength, r"`Drive` \(telemetry 256\) has 8 bytes, 2 given"),
+        (f"100#{DRIVE}", ("train", "Brake"), NotFound, "is not `Brake` but `Drive`"),
+        ("200#01", (), Ambiguous, "the CAN identifier 0x200 can be `Set Mode` .*, or `Mode`"),
+    ],
+)
+def test_an_identifier_of_no_message_or_of_another_is_an_error(icd, text, names, error, says):
+    with pytest.raises(error, match=says):
+        recognize(icd, text, *names)
+
+
+@pytest.mark.parametrize("names", [("train", "Mode"), ("train", None, "telemetry"), (None, None, "telemetry")])
+def test_where_both_directions_share_an_identifier_the_message_or_the_kind_decides(icd, names):
+    (found,) = recognize(icd, "200#01", *names)
+    assert (found.message.name, found.what) == ("Mode", "telemetry")
+
+
+def test_a_message_that_is_named_is_read_from_an_identifier_that_none_has(icd):
+    (found,) = recognize(icd, f"7FF#{DRIVE}", "train", "Drive")
+    assert found.data.hex() == DRIVE and "no message of train has the CAN identifier 0x7FF" in found.frame.remarks
+
+
+def test_a_remote_request_asks_for_the_telemetry_of_its_identifier(icd):
+    (found,) = recognize(icd, "100#R")
+    assert (found.what, found.message.name) == ("request", "Drive")
