@@ -7,10 +7,10 @@ import re
 import pytest
 
 from icdgen.icd.model import Icd
-from icdgen.loading import load
 from icdgen.protocol import facts, stream
 from icdgen.recognize import recognize
 from icdgen.values.errors import Ambiguous
+from tests.features.outputs import icd_of
 
 PACK = """\
 icdgen: 1
@@ -39,11 +39,7 @@ LIMIT = "a50101020208b3"
 
 
 def load_pack(folder) -> Icd:
-    path = folder / "pack.yaml"
-    path.write_text(PACK, encoding="utf-8")
-    loaded = load([path])
-    assert loaded.ok, loaded.findings
-    return loaded.icd
+    return icd_of(PACK, folder)
 
 
 @pytest.fixture(scope="module")
@@ -80,6 +76,13 @@ def test_without_either_what_the_help_says_is_a_way_out(icd):
     for name, kind in re.findall(r"`([^`]*)` \((\w+) 257\) of pack", str(wrong.value)):
         (found,) = recognize(icd, LIMIT, "pack", name)
         assert (found.message.name, found.what) == (name, kind)
+
+
+def test_bytes_that_begin_with_an_id_of_the_other_kind_are_bare_data_of_the_kind_that_is_said(icd):
+    (poll,) = recognize(icd, "0102", kind="telecommand")
+    assert poll.message.name == "Poll"
+    with pytest.raises(Ambiguous, match=r"2 bytes without an id can be `Limit` .*, or `Log`"):
+        recognize(icd, "0102", kind="telemetry")
 
 
 def test_another_message_is_not_read_as_the_one_that_is_named(icd):

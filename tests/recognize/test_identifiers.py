@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from icdgen.icd.model import Icd
-from icdgen.loading import load
 from icdgen.recognize import recognize
 from icdgen.values.errors import Ambiguous, BadLength, NotFound
+from tests.features.outputs import icd_of
 
 TRAIN = """\
 icdgen: 1
@@ -23,11 +23,7 @@ DRIVE, BRAKE = "393001010a000000", "0100000000000000"
 
 
 def train(folder) -> Icd:
-    path = folder / "train.yaml"
-    path.write_text(TRAIN, encoding="utf-8")
-    loaded = load([path])
-    assert loaded.ok, loaded.findings
-    return loaded.icd
+    return icd_of(TRAIN, folder)
 
 
 @pytest.fixture(scope="module")

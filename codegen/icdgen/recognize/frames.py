@@ -138,6 +138,8 @@ def _bare(icd: Icd, speakers: Sequence[Speaker], data: bytes, asked: Asked) -> R
         raise BadLength("there are no bytes", 1, 0, "give a frame")
     given = f"{len(data)} byte{'' if len(data) == 1 else 's'}"
     with_id, plain = match.by_id(speakers, data), match.by_length(speakers, data)
+    if any(map(asked.fits, plain)) and not any(map(asked.fits, with_id)):
+        with_id = []
     if with_id:
         one = match.decided(with_id, f"{given} beginning with the id {with_id[0].id}", asked)
         others = [other for other in plain if other.key != one.key]
