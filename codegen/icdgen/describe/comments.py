@@ -187,7 +187,9 @@ def field_comment(
     for part in (one for one in parts if one.counter == field.name):
         plus = f", of which there are {abs(part.plus)} {'more' if part.plus > 0 else 'less'}" if part.plus else ""
         facts.append(f"Counts {words(part.name)}{plus}: at most {part.most}.")
-    place = next((_open_place(field, message, part) for part in parts if part.name == field.name), _place(field))
+    place = _place(field)
+    if message is not None and (opening := next((part for part in parts if part.name == field.name), None)):
+        place = _open_place(field, message, opening)
     head = f"{words(field.name)}: {place}{_meaning(field)}."
     return _comment(head, (sentence(field.summary), " ".join(facts)), field.errata, told)
 
