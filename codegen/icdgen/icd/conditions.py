@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from icdgen.icd.located import Map
-from icdgen.icd.model import Condition, Enum
+from icdgen.icd.model import Condition, Enum, Field
 
 _LEAST = "`when` names a field that is always there: an unsigned number without a formula, a value of an enumeration, or a flag"
 _PLAIN = ("uint", "enum", "bool")
@@ -42,6 +42,12 @@ def of(message: Map, item: Map, enums: Mapping[str, Enum]) -> tuple[Condition, .
     return tuple(found)
 
 
+def are_understood(field: Field) -> bool:
+    """Whether a field has all the conditions that it is given: what is wrong with one is a finding, and no more follows."""
+    when = given(field.source)
+    return when is None or len(when) == len(field.when)
+
+
 def faults_of_names(message: Map, item: Map) -> Iterator[Obstacle]:
     """What is wrong with the fields that it depends on."""
     when, known = given(item), _fields(message)
@@ -60,8 +66,8 @@ def faults_of_values(message: Map, item: Map, enums: Mapping[str, Enum]) -> Iter
     for name in when or ():
         assert when is not None
         one = known.get(name)
-        if one is None or _odd(one):
-            continue
+        if one is None or _odd(one) or (one["type"] == "enum" and one.get("enum", "") not in enums):
+            continue  # a finding already
         values = [_value(one, said, enums) for said in _listed(when[name])]
         for said, value in zip(_listed(when[name]), values, strict=True):
             if value is None and _is_range(one, said, enums):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import chain
 
-from icdgen.icd.conditions import exclude
+from icdgen.icd.conditions import are_understood, exclude
 from icdgen.icd.division import obstacles
 from icdgen.icd.model import Field, Message, Node
 from icdgen.icd.paths import placed
@@ -60,8 +60,9 @@ def overlap(ctx: Context) -> Iterator[Fault]:
 def _overlaps(ctx: Context) -> Iterator[Overlap]:
     for message, node in ctx.owners:
         fields = _standing(message)
-        if any(field.when for field in fields):
-            yield from _overlaps_of_alternatives(message, node, fields)
+        if any("when" in field.source for field in fields):
+            known = tuple(field for field in fields if are_understood(field))
+            yield from _overlaps_of_alternatives(message, node, known)
             continue
         if any(field.bit_order not in ("", node.bit_order) for field in fields):
             yield from _overlaps_among(message, node, fields)
