@@ -91,6 +91,12 @@ class Context:
         """All messages that the node speaks."""
         return [m for n in self.scope(node) for m in n.messages]
 
+    def broken_messages(self, node: Node) -> set[str]:
+        """The names of those that stand in the files of what the node speaks, and could not be read. Findings tell of them."""
+        entries = (item for one in self.scope(node) for item in mappings(one.source.get("messages")))
+        written = {name for item in entries if isinstance(name := item.get("name"), str)}
+        return written - {message.name for message in self.messages_of(node)}
+
     def protocol_of(self, node: Node) -> dict[str, Any]:
         """The protocol facts that hold for the node: its own over those of what it includes."""
         merged: dict[str, Any] = {}

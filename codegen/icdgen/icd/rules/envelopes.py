@@ -285,11 +285,12 @@ def _seeds(ctx: Context, link: Link, known: Map) -> Iterator[Fault]:
     seeds = known.get("seeds")
     if not isinstance(seeds, Map):
         return
-    names = {one.name: one for one in ctx.messages_of(link.node)}
+    names, broken = {one.name: one for one in ctx.messages_of(link.node)}, ctx.broken_messages(link.node)
     for name in seeds:
-        if name not in names:
+        if name not in names and name not in broken:
             message = f"there is no message {quote(name)}"
-            yield Fault(seeds, seeds.key_at(name), message, "correct the name")
+            help = f"did you mean {quote(near)}?" if (near := close_to(name, names)) else "correct the name"
+            yield Fault(seeds, seeds.key_at(name), message, help)
     lacking = [name for name in names if name not in seeds]
     if lacking:
         message = f"{quote(lacking[0])} has no seed" + (f", nor have {len(lacking) - 1} others" if lacking[1:] else "")
@@ -323,13 +324,14 @@ def replies_that_can_come(ctx: Context) -> Iterator[Fault]:
         replies = link.section.get("replies")
         if not isinstance(replies, Map):
             continue
+        broken = ctx.broken_messages(link.node)
         for sent, came in replies.items():
             for direction, name, place in (
                 ("telecommand", sent, replies.key_at(sent)),
                 ("telemetry", came, replies.at(sent)),
             ):
                 names = {one.name for _, one in _ids(ctx, link.node, direction)}
-                if isinstance(name, str) and name not in names:
+                if isinstance(name, str) and name not in names and name not in broken:
                     message = f"there is no {direction} {quote(name)}"
                     help = f"did you mean {quote(near)}?" if (near := close_to(name, names)) else "correct the name"
                     yield Fault(replies, place, message, help)
