@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from icdgen.icd.located import Map
 from icdgen.icd.model import Condition, Enum, Field
+from icdgen.suggest import close_to
 
 _LEAST = "`when` names a field that is always there: an unsigned number without a formula, a value of an enumeration, or a flag"
 _PLAIN = ("uint", "enum", "bool")
@@ -55,9 +56,15 @@ def faults_of_names(message: Map, item: Map) -> Iterator[Obstacle]:
         assert when is not None
         if name not in known:
             text = f"`{name}`, on which `{item['name']}` depends, is no field of `{message['name']}`"
-            yield Obstacle(when, name, text, _LEAST)
+            yield Obstacle(when, name, text, _meant(name, item, known) or _LEAST)
         elif why := "is the field itself" if name == item["name"] else _odd(known[name]):
             yield Obstacle(when, name, f"`{name}`, on which `{item['name']}` depends, {why}", _LEAST)
+
+
+def _meant(name: str, item: Map, known: Mapping[str, Map]) -> str:
+    """The question whether another field is meant, of those that ``item`` can depend on; empty if none comes near."""
+    near = close_to(name, (other for other, one in known.items() if one is not item and not _odd(one)))
+    return f"did you mean `{near}`?" if near else ""
 
 
 def faults_of_values(message: Map, item: Map, enums: Mapping[str, Enum]) -> Iterator[Obstacle]:

@@ -10,6 +10,7 @@ from itertools import pairwise, takewhile
 from typing import NamedTuple
 
 from icdgen.icd.located import Map
+from icdgen.suggest import close_to
 
 REST = "rest"
 MOST_BYTES = 65535  # of a frame
@@ -97,7 +98,9 @@ def faults_of_count(message: Map, item: Map) -> Iterator[Obstacle]:
     if _is_unknown(message, item):
         text = f"`{said}`, which counts {name}, is no field of `{message['name']}`"
         numbers = "a number, " if key == "count" else ""
-        yield Obstacle(item, key, text, f"`{key}` is {numbers}the name of an earlier field, or `rest`")
+        near = close_to(said, [*(one["name"] for one in _fields(message) if _can_count(one, message)), REST])
+        help = f"did you mean `{near}`?" if near else f"`{key}` is {numbers}the name of an earlier field, or `{REST}`"
+        yield Obstacle(item, key, text, help)
         return
     if "up_to" not in item and key == "count":
         text = f"{name} has no fixed {key}, and nothing says how large it can become"
@@ -133,6 +136,10 @@ def faults_of_count(message: Map, item: Map) -> Iterator[Obstacle]:
 def _is_unknown(message: Map, item: Map) -> bool:
     """Whether what is said to count is no field."""
     return counting(item).name != REST and counter_of(message, item) is None
+
+
+def _can_count(one: Map, message: Map) -> bool:
+    return not _is_sized(one) and not _odd(one, message)
 
 
 def _odd(counter: Map, message: Map) -> str:
