@@ -12,18 +12,36 @@ DEVICES = ("aux", "con", "nul", "prn", *(f"{port}{number}" for port in ("com", "
 
 _SEPARATORS = re.compile(r"[^A-Za-z0-9]+")
 _DIGITS = re.compile(r"[0-9]*")
+# Letters that are no letter of ASCII with a mark.
+_LETTERS = {"ß": "ss", "æ": "ae", "œ": "oe", "ø": "o", "ł": "l", "đ": "d", "ð": "d", "þ": "th", "ı": "i"}
 _HUMPS = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z0-9])(?=[A-Z][a-z])")
 
 
 @lru_cache(maxsize=1 << 18)
 def words(name: str, vocabulary: tuple[str, ...] = ()) -> tuple[str, ...]:
     """Lower-case words of a name: ``TcErrorReason`` -> ``('tc', 'error', 'reason')``. Empty if nothing is left."""
-    text = name if name.isascii() else unicodedata.normalize("NFKD", name)
-    longest_first = sorted([word for word in vocabulary if word in text], key=len, reverse=True)
+    text = latin(name)
+    longest_first = sorted([word for word in map(latin, vocabulary) if word in text], key=len, reverse=True)
     found: list[str] = []
     for chunk in _SEPARATORS.split(text):
         found += _split(chunk, longest_first) if longest_first else _humps(chunk)
     return tuple(found)
+
+
+def latin(text: str) -> str:
+    """The text without the marks of its letters: ``Größe`` -> ``Grosse``. What ASCII has no letter for stays as it is."""
+    if text.isascii():
+        return text
+    letters = [one for one in unicodedata.normalize("NFKD", text) if not unicodedata.combining(one)]
+    return "".join(_letter(one, after) for one, after in zip(letters, [*letters[1:], ""], strict=True))
+
+
+def _letter(one: str, after: str) -> str:
+    """A letter before another one, in its case: ``AE`` of ``ÆRA``, ``Ae`` of ``Æra``."""
+    found = _LETTERS.get(one.lower(), one)
+    if found == one or one.islower():
+        return found
+    return found.capitalize() if after.islower() else found.upper()
 
 
 @lru_cache(maxsize=1 << 16)

@@ -9,7 +9,7 @@ from fractions import Fraction
 from pathlib import PurePath
 
 from icdgen.icd.units import SPELLINGS
-from icdgen.naming import DEVICES
+from icdgen.naming import DEVICES, latin
 
 LONGEST = 4000  # characters of a summary
 _LONGEST_UNIT = 60
@@ -19,7 +19,7 @@ _UNPRINTABLE = re.compile("[^ -~\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]+"
 
 def node_name(text: str) -> str:
     """The name of a node: of a file its stem."""
-    plain = re.sub(r"[^a-z0-9]+", "_", PurePath(text).stem.lower()).strip("_")
+    plain = re.sub(r"[^a-z0-9]+", "_", latin(PurePath(text).stem).lower()).strip("_")
     plain = plain if plain[:1].isalpha() and plain not in DEVICES else f"node_{plain}".rstrip("_")
     return plain[:40].rstrip("_")
 

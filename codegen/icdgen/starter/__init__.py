@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from icdgen import config, shipped
 from icdgen.errors import UserError
 from icdgen.generation.write import replace
+from icdgen.naming import latin
 
 if TYPE_CHECKING:
     from icdgen.starter.style import Style
@@ -25,7 +26,7 @@ def write(folder: Path, name: str, style: Style | None = None, origin: str = "")
     Raises `UserError`, before anything is written, if the name cannot be a node's or a file of that name is there.
     """
     if not _NAME.fullmatch(name):
-        proposal = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_").lstrip("0123456789_")[:64]
+        proposal = re.sub(r"[^a-z0-9]+", "_", latin(name).lower()).strip("_").lstrip("0123456789_")[:64]
         help = f"for instance `icdgen init {proposal or 'battery'}`"
         raise UserError(f"`{name}` cannot name a node: lower-case letters, digits and _, a letter first", help)
     device = _filled("device.yaml", name)
