@@ -6,6 +6,8 @@ import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from icdgen.suggest import close_to
+
 
 class Unit(NamedTuple):
     """``identifier`` is what generated names end in: ``roll_deg``."""
@@ -59,6 +61,7 @@ mA          ma              electric current
 uA          ua              electric current
 V           v               voltage
 mV          mv              voltage
+uV          uv              voltage
 W           w               power
 mW          mw              power
 J           j               energy
@@ -102,14 +105,39 @@ SIGNS = {
 SPELLINGS = SIGNS | {
     "°": "deg", "degree": "deg", "degrees": "deg", "deg/sec": "deg/s", "RPM": "rpm", "meter": "m", "metre": "m",
     "meters": "m", "seconds": "s", "sec": "s", "milliseconds": "ms", "msec": "ms", "percentage": "%", "percent": "%",
-    "Nm": "N.m", "kg.m2": "kg.m^2", "kg.m²": "kg.m^2", "A.m2": "A.m^2", "A.m²": "A.m^2",
+    "Nm": "N.m", "kg.m2": "kg.m^2", "A.m2": "A.m^2",
     "Am2": "A.m^2", "bytes": "byte", "bits": "bit",
+    **{unit.replace("^2", "²"): unit for unit in STANDARD if unit.endswith("^2")},
 }  # fmt: skip
 
 NOT_STATED = "not stated"
 _SAID = str.maketrans(
     {"\u03a9": "ohm", "\u2126": "ohm", "\u00b5": "u", "\u03bc": "u", "°": "deg"}
 )  # signs in identifiers
+
+
+_PREFIXES = frozenset("fpnu\u00b5\u03bcmcdhkMGT")
+
+
+def meant(symbol: str, known: Iterable[str]) -> str:
+    """The unit, of those known, that was probably meant. Empty if there is none, as for ``kV``, which is no misspelt ``V``."""
+    symbols = {*STANDARD, *known}
+    if symbol in SPELLINGS:
+        return SPELLINGS[symbol]
+    return "" if any(_differ_in_size(symbol, one, symbols) for one in symbols) else close_to(symbol, sorted(symbols))
+
+
+def _differ_in_size(one: str, other: str, known: set[str]) -> bool:
+    """Whether two symbols are those of one unit with different prefixes, in one or more of their parts."""
+    parts, others = (re.findall(r"\w+|\W", symbol) for symbol in (one, other))
+    if len(parts) != len(others):
+        return False
+    return all(a == b or _bases(a, known) & _bases(b, known) for a, b in zip(parts, others, strict=True))
+
+
+def _bases(part: str, known: set[str]) -> set[str]:
+    """The known units that a part of a symbol may be, with a prefix or without."""
+    return {part, part[1:] if part[0] in _PREFIXES else part} & known
 
 
 def declared(symbols: Iterable[str]) -> list[dict[str, str]]:

@@ -11,7 +11,7 @@ from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import quote
-from icdgen.icd.units import SPELLINGS, STANDARD
+from icdgen.icd.units import SPELLINGS, meant
 from icdgen.suggest import close_to
 
 
@@ -79,10 +79,8 @@ def unit_known(ctx: Context) -> Iterator[Fault]:
     for field, _, node in ctx.having["unit"]:
         if field.unit is None:
             unit = field.source["unit"]
-            known = (u.symbol for n in ctx.scope(node) for u in n.units)
-            close = close_to(unit, [*known, *STANDARD])
             help = "declare it in `units:`; `icdgen units` lists those that are known"
-            help = f"did you mean {quote(close)}? If not, declare it in `units:`" if close else help
-            if unit in SPELLINGS:
-                help = f"did you mean {quote(SPELLINGS[unit])}?"
+            if close := meant(unit, (u.symbol for n in ctx.scope(node) for u in n.units)):
+                otherwise = "" if unit in SPELLINGS else " If not, declare it in `units:`"
+                help = f"did you mean {quote(close)}?{otherwise}"
             yield Fault(field.source, field.source.at("unit"), f"the unit {quote(unit)} is unknown", help)
