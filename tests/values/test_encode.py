@@ -167,13 +167,24 @@ def test_all_missing_fields_are_named_at_once(icd):
 def test_everything_wrong_is_said_at_once(icd):
     error = refusal(encode, icd, "top", "Set Speed", ["x=1000", "speed=1", "y", "nope=1", "x=2", "timeout=a"])
     assert str(error).splitlines() == [
-        "`speed` fits several fields: `Commanded X speed`, `Commanded Y speed`",
-        "`y` is not of the form name=value",
-        "Set Speed has no field `nope`",
+        "`speed` fits several fields: `Commanded X speed`, `Commanded Y speed` (give more of the name)",
+        "`y` is not of the form name=value (for instance `speed=100`)",
+        "Set Speed has no field `nope` (fields: Commanded X speed, Commanded Y speed, Magic Number, Timeout)",
         "`Commanded X speed` is given twice: 1000 and 2",
         "Commanded X speed: takes -327.68 to 327.67 deg/s, not 1000",
         "Timeout: `a` is not a number (in s)",
     ]
+    assert error.help == "`icdgen show top 'Set Speed'` says what each field takes"
+
+
+def test_a_remedy_stands_with_what_it_is_good_for(icd):
+    error = refusal(encode, icd, "top", "Set Speed", ["x=1", "timeout=61"])
+    assert str(error).splitlines() == [
+        "Timeout: 61 is not allowed: above the maximum 60 s (--raw takes it all the same)",
+        "no value for `Commanded Y speed` (give each field as name=value)",
+    ]
+    alone = refusal(encode, icd, "top", "Set Speed", ["x=1", "y=1", "timeout=61"])
+    assert alone.help == "--raw takes it all the same"
 
 
 def test_a_message_without_fields_needs_nothing(icd):

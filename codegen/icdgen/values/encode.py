@@ -90,8 +90,12 @@ class _Wrong:
             self.helps.append(error.help)
 
     def report(self, help: str) -> None:
+        """Raises `BadValue` if anything is wrong. Remedies that differ stand each with what it is good for."""
+        if len(set(self.helps)) == 1:
+            raise BadValue("\n".join(self.messages), self.helps[0] or help)
         if self.messages:
-            raise BadValue("\n".join(self.messages), next(filter(None, self.helps), help))
+            pairs = zip(self.messages, self.helps, strict=True)
+            raise BadValue("\n".join(f"{message} ({own})" if own else message for message, own in pairs), help)
 
 
 def _without_open(message: Message, part: Tail, missing: list[str], given: dict[str, str], is_empty: bool) -> list[str]:
