@@ -24,7 +24,7 @@ WIDTHS = {
 }
 Overlap = tuple[Fault, tuple[int, int]]  # and the two fields as they were read
 _OVERLAPPING = "correct `at` or `bits`"
-_VIEW = f"{_OVERLAPPING}; if it reads the same bits in another way: `view: true`"
+_VIEW = "; if it reads the same bits in another way: `view: true`"
 _ALTERNATIVES = "let them depend on different values of the same field, or correct `at` or `bits`"
 _ORDERLY = {"bytes": "bytes", "text": "characters"}
 
@@ -141,9 +141,11 @@ def _mask(field: Field, node: Node) -> int:
 def _help(first: Field, second: Field) -> str:
     if first.when and second.when:
         return _ALTERNATIVES
-    if second.struct:
-        return "correct `at`, or the `length` of the struct"
-    return _OVERLAPPING if second.path else _VIEW
+    help = "correct `at`, or the `length` of the struct" if second.struct else _OVERLAPPING
+    for one in (first, second):
+        if one.path and one.path[0].index and type(one.source.get("count")) is int:  # not the first of its elements
+            help += f", or the `count` of {quote(one.source['name'])}"
+    return help if second.struct or second.path else help + _VIEW
 
 
 def _overlap(first: Field, second: Field, bits: str = "") -> Overlap:

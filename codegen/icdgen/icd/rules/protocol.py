@@ -121,6 +121,12 @@ def rows_apart(ctx: Context) -> Iterator[Fault]:
                         yield from _rows(section, key, rows, at, size)
 
 
+def _called(row: Map, otherwise: str) -> str:
+    """What a row is known by: its name, or else its role."""
+    known = row.get("name", row.get("role"))
+    return quote(known) if isinstance(known, str) else otherwise
+
+
 def _rows(section: Map, key: str, rows: Seq, at: str, size: str) -> Iterator[Fault]:
     named = f"{key}_{size}" if f"{key}_{size}" in section else size
     room = section.get(named)
@@ -128,9 +134,9 @@ def _rows(section: Map, key: str, rows: Seq, at: str, size: str) -> Iterator[Fau
     last: Map | None = None
     for row in sorted(placed, key=lambda r: r[at]):
         end = row[at] + row[size]
-        name = quote(row.get("name", "this row"))
+        name = _called(row, "this row")
         if last is not None and row[at] < last[at] + last[size]:
-            other = f"{quote(last.get('name', 'another row'))} ({line_of(last.place, row.place)})"
+            other = f"{_called(last, 'another row')} ({line_of(last.place, row.place)})"
             message = f"{name} overlaps {other} in {size[:-1]} {row[at]}"
             yield Fault(row, row.at(at), message, f"correct `{at}` or `{size}`")
         if isinstance(room, int) and end > room:
