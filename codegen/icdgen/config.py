@@ -8,10 +8,12 @@ out = "generated"
 from __future__ import annotations
 
 import os
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from icdgen import fingerprints
+from icdgen.diagnostics import Place
 from icdgen.errors import UserError
 
 NAME = "icdgen.toml"
@@ -20,14 +22,26 @@ _KEYS = {"icds": list, "lang": list, "out": str, "templates": str}
 
 @dataclass(eq=False, repr=False)
 class Config:
-    """What the file at ``path`` says; ``looked_at`` names every place where it was or might have been."""
+    """What the file at ``path`` says, which has the ``text``; ``looked_at`` names every place where it was or might have been."""
 
     path: Path | None = None
+    text: str = ""
     icds: list[Path] = field(default_factory=list)
     lang: list[str] = field(default_factory=list)
     out: Path | None = None
     templates: Path | None = None
     looked_at: dict[Path, str] = field(default_factory=dict)  # fingerprints as of just before it was read
+
+    def place_of(self, icd: Path) -> Place:
+        """Where the file names one of ``icds``."""
+        path = self.path or Path(NAME)
+        base = path.parent
+        named = icd.relative_to(base) if icd.is_relative_to(base) else icd
+        entry = re.compile(rf"""(?<=["'])(?:\./)*{re.escape(named.as_posix())}/*(?=["'])""")
+        for number, line in enumerate(self.text.splitlines(), 1):
+            if found := entry.search(line):
+                return Place(str(path), number, found.start() + 1, len(found.group()) or 1)
+        return Place(str(path))
 
 
 def find(start: Path) -> Config:
@@ -49,7 +63,8 @@ def _read(path: Path) -> Config:
     import tomllib
 
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
+        text = path.read_text(encoding="utf-8")
+        data = tomllib.loads(text)
     except OSError as error:
         raise UserError(f"{path}: cannot be read: {error.strerror}", "make it readable") from None
     except UnicodeDecodeError as error:
@@ -73,6 +88,7 @@ def _read(path: Path) -> Config:
     base = path.parent
     return Config(
         path,
+        text,
         icds=[base / item for item in data.get("icds", [])],
         lang=data.get("lang", []),
         out=base / data["out"] if "out" in data else None,

@@ -120,6 +120,26 @@ def test_a_missing_icd_is_a_finding(icdgen):
     result = icdgen("--lang", "c", "nowhere.yaml")
     assert result.status == 1
     assert "nowhere.yaml:1:1" in result.err and "cannot read the file" in result.err
+    assert "|" not in result.err  # there is no line to show
+
+
+@pytest.mark.parametrize("arguments", [("check",), ("--lang", "c"), ("show",), ("fmt",)])
+def test_a_missing_icd_of_the_configuration_is_found_where_it_is_named(icdgen, tmp_path, arguments):
+    (tmp_path / "icdgen.toml").write_text('out = "gen"\nicds = [\n    "./icd/nowhere.yaml",\n]\n')
+    result = icdgen(*arguments)
+    assert result.status == 1
+    assert (result.out + result.err).splitlines()[:5] == [
+        "icdgen.toml:3:6: error[ICD001]: `icd/nowhere.yaml`: cannot read the file: No such file or directory",
+        "  |",
+        '3 |     "./icd/nowhere.yaml",',
+        "  |      ^^^^^^^^^^^^^^^^^^",
+        "  = help: check the path",
+    ]
+
+
+def test_a_missing_icd_that_is_asked_for_is_not_laid_upon_the_configuration(icdgen, demo, tmp_path):
+    (tmp_path / "icdgen.toml").write_text('icds = ["icd/demo.yaml"]\n')
+    assert "nowhere.yaml:1:1" in icdgen("check", "nowhere.yaml").out
 
 
 def test_single_templates_can_be_replaced(icdgen, demo, tmp_path):

@@ -28,8 +28,7 @@ class _Path(click.Path):
         return super().convert(value, param, ctx)
 
 
-_CONFIGURED = "icdgen.configured"  # of a click context: the icdgen.toml whose ICDs are meant
-_SHIPPED = "icdgen.shipped"  # that those are meant which come with icdgen, as nothing was said
+_MEANT = "icdgen.meant"  # of a click context: the `Config` that says whose nodes are meant, as no ICD was given
 PATH = _Path(path_type=Path)
 
 
@@ -85,7 +84,7 @@ def chosen(icds: tuple[Path, ...]) -> tuple[list[Path], config.Config]:
     paths = list(icds) or found.icds or [shipped.icds()]
     context = click.get_current_context(silent=True)
     if context is not None and not icds:
-        context.meta[_CONFIGURED if found.icds else _SHIPPED] = found.path
+        context.meta[_MEANT] = found
     return [_short(path) for path in paths], found
 
 
@@ -93,11 +92,14 @@ def beside_shipped(error: UserError, context: click.Context) -> UserError:
     """The error; if it is about a node, and those of the ICDs that were not meant are looked at, one that says so."""
     from icdgen.values.errors import NotFound
 
-    if _SHIPPED in context.meta and isinstance(error, NotFound) and error.help.startswith("nodes: "):
-        return NotFound(str(error), f"{error.help}, which come with icdgen; name yours with --icd, or in icdgen.toml")
-    path = context.meta.get(_CONFIGURED)
-    if path is None or not isinstance(error, NotFound):
+    found = context.meta.get(_MEANT)
+    if found is None or not isinstance(error, NotFound):
         return error
+    if not found.icds:
+        if not error.help.startswith("nodes: "):
+            return error
+        return NotFound(str(error), f"{error.help}, which come with icdgen; name yours with --icd, or in icdgen.toml")
+    path = found.path
     for file in sorted(shipped.icds().glob("*.yaml")):
         if f"`{file.stem}`" in str(error).lower():
             return NotFound(
@@ -144,6 +146,25 @@ def print_findings(findings: list[Finding], texts: dict[str, str], form: str, er
 
     stream = sys.stderr if err else sys.stdout
     colour = form == "text" and in_colour(stream)
+    findings, texts = _where_named(findings, texts)
     report = reports.get(form)
     text = report(findings, texts, colour=True) if colour else report(findings, texts)
     click.echo(text, err=err, nl=bool(text) and not text.endswith("\n"), color=colour or None)
+
+
+def _where_named(findings: list[Finding], texts: dict[str, str]) -> tuple[list[Finding], dict[str, str]]:
+    """The findings and texts; of ICDs that ``icdgen.toml`` names and that could not be read, the place is that in it."""
+    context = click.get_current_context(silent=True)
+    found: config.Config | None = context.meta.get(_MEANT) if context is not None else None
+    if found is None or found.path is None:
+        return findings, texts
+    file = str(_short(found.path))
+    places = {str(_short(icd)): found.place_of(icd)._replace(file=file) for icd in found.icds}
+    told = []
+    for one in findings:
+        name = one.place.file
+        if name in places and name not in texts:
+            one = one._replace(message=f"`{name}`: {one.message}", place=places[name])
+            texts = {**texts, file: found.text}
+        told.append(one)
+    return told, texts

@@ -33,7 +33,7 @@ def fmt(icds: tuple[Path, ...], check: bool) -> None:
                 source.parse(data, str(path))  # says which byte is no UTF-8
             formatted = format_text(text, str(path))
         except Findings as error:
-            print_findings(error.findings, {str(path): text}, "text", err=True)
+            print_findings(error.findings, {str(path): text} if text else {}, "text", err=True)
             status = 1
             continue
         if formatted == text:

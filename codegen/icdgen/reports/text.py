@@ -29,12 +29,12 @@ def report(findings: Iterable[Finding], texts: Mapping[str, str], colour: bool =
     """The findings in the order given, and a line that counts them."""
     findings = list(findings)
     paint: Paint = _painted if colour else _plain
-    lines: dict[str, Lines] = {}
+    lines: dict[str, Lines | None] = {}
     parts = []
     for finding in findings:
         file = finding.place.file
         if file not in lines:
-            lines[file] = Lines(texts.get(file, ""))
+            lines[file] = Lines(texts[file]) if file in texts else None  # which could not be read
         parts.append(_one(finding, lines[file], paint))
     return "".join(part + "\n" for part in parts) + summary(findings) + "\n"
 
@@ -49,11 +49,11 @@ def summary(findings: Iterable[Finding]) -> str:
     return f"{', '.join(said)} in {_count(len({f.place.file for f in findings}), 'file')}"
 
 
-def _one(finding: Finding, lines: Lines, paint: Paint) -> str:
+def _one(finding: Finding, lines: Lines | None, paint: Paint) -> str:
     place = paint("place", printable(str(finding.place)))
     kind = paint(finding.severity, f"{finding.severity}[{finding.code}]")
     text = f"{place}: {kind}: {shown(finding.message)}\n"
-    found = excerpt(lines, finding.place)
+    found = excerpt(lines, finding.place) if lines is not None else None
     indent = " " * len(str(finding.place.line))
     if found is not None:
         line, caret = found
