@@ -198,7 +198,10 @@ class Builder:
         """What is open in a message, and its fields: the elements, and how many there are where no field says so."""
         items = tails.open_parts(message)
         known = {name: one.length for name, one in self.scope.structs.items()}
-        if any(id(item) in self.broken or any(tails.obstacles(message, item, known)) for item in items):
+        read = (*items, *(tails.counter_of(message, item) for item in items))
+        if any(id(one) in self.broken for one in read) or any(
+            any(tails.obstacles(message, one, known)) for one in items
+        ):
             return (), ()
         parts: tuple[model.Tail, ...] = ()
         fields: tuple[model.Field, ...] = ()

@@ -11,6 +11,7 @@ from icdgen.suggest import close_to
 
 _LEAST = "`when` names a field that is always there: an unsigned number without a formula, a value of an enumeration, or a flag"
 _PLAIN = ("uint", "enum", "bool")
+_TYPES = (*_PLAIN, "int", "float", "bytes", "text")
 
 
 class Obstacle(NamedTuple):
@@ -37,7 +38,11 @@ def of(message: Map, item: Map, enums: Mapping[str, Enum]) -> tuple[Condition, .
     found = []
     for name in when:
         one = known.get(name)
-        values = [] if one is None or _odd(one) else [_value(one, said, enums) for said in _listed(when[name])]
+        values = (
+            []
+            if one is None or not _is_sound(one) or _odd(one)
+            else [_value(one, said, enums) for said in _listed(when[name])]
+        )
         if values and None not in values:
             found.append(Condition(name, tuple(dict.fromkeys(value for value in values if value is not None))))
     return tuple(found)
@@ -57,13 +62,17 @@ def faults_of_names(message: Map, item: Map) -> Iterator[Obstacle]:
         if name not in known:
             text = f"`{name}`, on which `{item['name']}` depends, is no field of `{message['name']}`"
             yield Obstacle(when, name, text, _meant(name, item, known) or _LEAST)
+        elif not _is_sound(known[name]):
+            continue  # a finding already
         elif why := "is the field itself" if name == item["name"] else _odd(known[name]):
             yield Obstacle(when, name, f"`{name}`, on which `{item['name']}` depends, {why}", _LEAST)
 
 
 def _meant(name: str, item: Map, known: Mapping[str, Map]) -> str:
     """The question whether another field is meant, of those that ``item`` can depend on; empty if none comes near."""
-    near = close_to(name, (other for other, one in known.items() if one is not item and not _odd(one)))
+    near = close_to(
+        name, (other for other, one in known.items() if one is not item and _is_sound(one) and not _odd(one))
+    )
     return f"did you mean `{near}`?" if near else ""
 
 
@@ -73,7 +82,12 @@ def faults_of_values(message: Map, item: Map, enums: Mapping[str, Enum]) -> Iter
     for name in when or ():
         assert when is not None
         one = known.get(name)
-        if one is None or _odd(one) or (one["type"] == "enum" and one.get("enum", "") not in enums):
+        if (
+            one is None
+            or not _is_sound(one)
+            or _odd(one)
+            or (one["type"] == "enum" and one.get("enum", "") not in enums)
+        ):
             continue  # a finding already
         values = [_value(one, said, enums) for said in _listed(when[name])]
         for said, value in zip(_listed(when[name]), values, strict=True):
@@ -149,14 +163,20 @@ def _odd(field: Map) -> str:
     return "" if field.get("type") in _PLAIN else f"is `{field.get('type')}`"
 
 
+def _is_sound(field: Map) -> bool:
+    """Whether there is no finding already of what is looked at here."""
+    kind, bits = field.get("type"), field.get("bits", 1 if "size" in field else 0)
+    if kind not in _TYPES or type(bits) is not int or not isinstance(field.get("enum", ""), str):
+        return False
+    return 0 < bits <= 64 or (bits > 64 and kind not in _PLAIN)
+
+
 def _fields(message: Map) -> dict[str, Map]:
-    """The fields by name; what is wrong with the others is the schema's business."""
+    """The fields by name, but for structs."""
     items = message.get("fields")
     found = [item for item in items if isinstance(item, Map)] if isinstance(items, list) else []
     return {
-        item["name"]: item
-        for item in reversed(found)
-        if isinstance(item.get("name"), str) and type(item.get("bits", 0)) is int and isinstance(item.get("type"), str)
+        item["name"]: item for item in reversed(found) if isinstance(item.get("name"), str) and "struct" not in item
     }
 
 

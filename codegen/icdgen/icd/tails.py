@@ -83,6 +83,7 @@ def _fields(message: Map, wanted: Callable[[Map], bool] | None = None) -> list[M
         for item in found
         if isinstance(item.get("name"), str)
         and all(type(item.get(key)) is int for key in ("at", "bits")[: 1 if _is_sized(item) else 2])
+        and (_is_sized(item) or item["bits"] > 0)
     ]
 
 
