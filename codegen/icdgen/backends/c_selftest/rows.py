@@ -222,12 +222,12 @@ def _frame(row: SharedRow) -> str:
 
 
 def _plain(message: MessageDescription, vectors: MessageVectors) -> MessageVectors:
-    """As C sees a message of which a field is not always there: its members are 0 then, and so are bits that are no field's."""
+    """As C sees a message of which a field is not always there: its members are as in a new one then; other bits are 0."""
     if message.model.inner:  # bits that are no field's are not at one place in all frames
         return replace(vectors, rows=tuple(replace(row, frame=row.encoded) for row in vectors.rows))
     if not message.conditional:
         return vectors
-    absent: Raw = {field.model.name: 0 for field in message.conditional}
+    absent: Raw = {field.model.name: field.model.fresh for field in message.conditional}
     scaled = [one.model for one in message.all_fields if one.model.has_formula]
     rows = []
     for row in vectors.rows:
