@@ -58,7 +58,7 @@ int main(void)
     CHECK(heat.temperatures[0] == 0 && heat.temperatures[1] == 100 && heat.temperatures[2] == 200);
     CHECK(demo_heat_misfit(&heat) == NULL);
     heat.levels[1] = 4096u;
-    CHECK(demo_heat_misfit(&heat) != NULL && strcmp(demo_heat_misfit(&heat), "Levels[1]") == 0);
+    CHECK(demo_heat_misfit(&heat) != NULL && strcmp(demo_heat_misfit(&heat), "Levels") == 0);
     CHECK(demo_heat_encode(&heat, again, sizeof again) == ICD_ERROR_RANGE);
     return 0;
 }

@@ -53,6 +53,13 @@ int main(void)
     demo_view_t view;
     demo_satellite_t *last = &view.pairs[0].both[1];
     double value = -1.0;
+    size_t count = 0u;
+    const icd_field_t *fields = demo_view_fields(&count);
+    CHECK(count == 2u && fields[1].at == 40u && fields[1].bits == 88u && fields[1].count == 1u);
+    fields = fields[1].fields(&count);
+    CHECK(count == 2u && strcmp(fields[1].name, "Version") == 0 && fields[1].at == 80u && fields[1].fields == NULL);
+    fields = fields[0].fields(&count);
+    CHECK(count == 4u && strcmp(fields[2].unit, "deg") == 0 && fields[3].count == 2u);
     CHECK(sizeof view.pairs == sizeof(demo_pair_t) && sizeof view.pairs[0].both == 2u * sizeof(demo_satellite_t));
     CHECK(demo_view_decode(&view, frame, sizeof frame) == ICD_OK);
     CHECK(view.best.system == DEMO_SYSTEM_GALILEO && view.best.quality == 3u && view.best.signals[1] == 2u);
@@ -64,7 +71,7 @@ int main(void)
     CHECK(demo_satellite_set_azimuth_deg(last, 1.0) == ICD_OK && last->azimuth == 2);
     CHECK(demo_satellite_set_azimuth_deg(last, 1e6) == ICD_ERROR_RANGE && last->azimuth == 2);
     last->quality = 16u;
-    CHECK(strcmp(demo_view_misfit(&view), "Pairs[0].Both[1].Quality") == 0);
+    CHECK(strcmp(demo_view_misfit(&view), "Pairs[].Both[].Quality") == 0);
     CHECK(demo_view_encode(&view, again, sizeof again) == ICD_ERROR_RANGE);
     demo_view_init(&view);
     CHECK(view.pairs[0].version == DEMO_PAIR_VERSION_CONST && last->quality == 0u);

@@ -44,7 +44,8 @@ def _is_array_of(name: object, element: object) -> bool:
         element = element.value
     if not isinstance(element, str):
         return False
-    return name in (re.sub(r"\[\d+\]\Z", "", element.rpartition(".")[2]), re.sub(r"\[\d+\]\.", "[].", element, count=1))
+    whole = re.sub(r"\[\d+\]\Z", "", element)
+    return name in (whole.rpartition(".")[2], re.sub(r"\[\d+\]\.", "[].", whole))
 
 
 def _difference(expected: object, actual: object, path: str) -> str | None:

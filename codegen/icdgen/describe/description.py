@@ -17,7 +17,7 @@ from icdgen.describe.storage import Storage, storage_of
 from icdgen.describe.wholes import part_of_unit
 from icdgen.icd.curve import Curve
 from icdgen.icd.model import Enum, Field, Message, Node, Struct, Tail
-from icdgen.icd.paths import Step, placed
+from icdgen.icd.paths import Step, in_orders, placed
 from icdgen.once import cached_property
 
 
@@ -137,6 +137,23 @@ class FieldDescription(Named[Field]):
         rows = (placed(self.model, place, members) for place in self.model.places)
         return tuple(tuple(map(self.message.field, row)) for row in rows)
 
+    @cached_property
+    def blocks(self) -> tuple[FieldDescription, ...]:
+        """The same, but an array of structs is one, too."""
+        if self.struct is None or self.count:
+            return (self,)
+        return tuple(block for one in self.instances[0] for block in one.blocks)
+
+    @cached_property
+    def element(self) -> StructDescription | None:
+        """What an element of an array of structs is made of, in the orders that hold where it stands; else None."""
+        return None if self.struct is None or not self.count else self.message.element(self, self.struct)
+
+    @property
+    def is_repeated(self) -> bool:
+        """Whether it stands in an element of an array of structs."""
+        return any(step.count and step.struct is not None for step in self.model.path)
+
     @property
     def is_narrow(self) -> bool:
         """Whether `storage` holds raw values that the field can't."""
@@ -232,9 +249,11 @@ class TailDescription(NamedTuple):
     counter: FieldDescription  # how many elements there are; implied, or a field of the frame
     begin: int  # bytes before it
     model: Tail
-    element: (
-        StructDescription | None
-    )  # what an element is made of, where that is a struct, in the orders that hold here
+
+    @property
+    def element(self) -> StructDescription | None:
+        """What an element is made of, where that is a struct."""
+        return self.part.element
 
     @property
     def step(self) -> int:
@@ -349,10 +368,10 @@ class Composite(Named[Fielded]):
         """Members that have bits in the frame: without the count that only the length of the frame tells."""
         return self.members if self.tail is None else tuple(one for one in self.members if not one.model.implied)
 
-    @property
+    @cached_property
     def sent_fields(self) -> tuple[FieldDescription, ...]:
-        """The fields that are read and written one by one."""
-        return self.fields
+        """The fields that have bits in the frame, each element of an array, but those in arrays of structs."""
+        return tuple(one for one in self.fields if not (one.model.implied or one.is_repeated))
 
     @cached_property
     def leaves(self) -> tuple[FieldDescription, ...]:
@@ -360,6 +379,18 @@ class Composite(Named[Fielded]):
         if all(one.struct is None for one in self.members):
             return self.members
         return tuple(leaf for one in self.members for leaf in one.leaves)
+
+    @cached_property
+    def blocks(self) -> tuple[FieldDescription, ...]:
+        """The same, but an array of structs is one, too."""
+        return tuple(block for one in self.members for block in one.blocks)
+
+    def element(self, part: FieldDescription, struct: StructDescription) -> StructDescription:
+        """What an array of structs in it has as an element."""
+        model = in_orders(struct.model, *part.model.orders(self.node))
+        found = StructDescription(self._description, model, struct.node)
+        found.seen_from = self.seen_from
+        return found
 
     @cached_property
     def enums(self) -> tuple[EnumDescription, ...]:

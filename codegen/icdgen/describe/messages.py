@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Protocol
 
 from icdgen import layout
 from icdgen.describe.comments import Comment, message_comment
-from icdgen.describe.description import Composite, FieldDescription, Known, StructDescription, TailDescription
+from icdgen.describe.description import Composite, FieldDescription, Known, TailDescription
 from icdgen.describe.named import Id
 from icdgen.describe.shared_ids import sharing
 from icdgen.icd.model import Icd, Message, Node, Tail
@@ -51,7 +50,7 @@ class MessageDescription(Composite[Message]):
 
     @cached_property
     def steady(self) -> tuple[FieldDescription, ...]:
-        """The fields that are in every frame, each element of an array."""
+        """Those of `sent_fields` that are in every frame."""
         fields = self.sent_fields
         return tuple(field for field in fields if not field.model.when) if self.conditional else fields
 
@@ -70,28 +69,7 @@ class MessageDescription(Composite[Message]):
         part, counter = (
             next(one for one in self.members if one.model.name == name) for name in (tail.name, tail.counter)
         )
-        return TailDescription(part, counter, begin, tail, self._element(part))
-
-    def _element(self, part: FieldDescription) -> StructDescription | None:
-        if part.struct is None:
-            return None
-        byte_order, bit_order = part.model.orders(self.node)
-        fields = (
-            replace(one, byte_order=one.byte_order or byte_order, bit_order=one.bit_order or bit_order)
-            for one in part.struct.model.fields
-        )
-        found = StructDescription(self._description, replace(part.struct.model, fields=tuple(fields)), part.struct.node)
-        found.seen_from = self.node
-        return found
-
-    @property
-    def sent_fields(self) -> tuple[FieldDescription, ...]:
-        """Fields that have bits in the frame, each element of an array, but those of open structs."""
-        if self.tail is None:
-            return self.fields
-        return tuple(
-            one for one in self.fields if not one.model.implied and not (self.tail.element is not None and one.is_open)
-        )
+        return TailDescription(part, counter, begin, tail)
 
     @cached_property
     def contained(self) -> tuple[tuple[MessageDescription, int], ...]:

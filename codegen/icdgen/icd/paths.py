@@ -68,6 +68,19 @@ def placed(member: Field, element: Field, fields: Iterable[Field]) -> tuple[Fiel
     )
 
 
+def in_orders(struct: Struct, byte_order: str, bit_order: str) -> Struct:
+    """The struct where these orders hold: its fields have them, unless they have their own, and so has what stands in it."""
+
+    def ordered(one: Field) -> Field:
+        return replace(one, byte_order=one.byte_order or byte_order, bit_order=one.bit_order or bit_order)
+
+    def step(one: Step) -> Step:
+        return one if one.member is None else replace(one, member=ordered(one.member))
+
+    fields = (replace(ordered(one), path=tuple(map(step, one.path))) for one in struct.fields)
+    return replace(struct, fields=tuple(fields))
+
+
 def has_struct(fields: Iterable[Field], struct: object) -> bool:
     """Whether a struct stands somewhere in what has these fields."""
     return any(step.struct is struct for field in fields for step in field.path)

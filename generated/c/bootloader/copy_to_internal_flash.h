@@ -76,8 +76,8 @@ static inline icd_status_t bootloader_copy_to_internal_flash_encode(
 static inline const icd_field_t *bootloader_copy_to_internal_flash_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Source Program Index", "", 0u, 8u, 1u, NULL, 0u},
-        {"Bootloader overwrite flag", "", 8u, 8u, 1u, NULL, 0u},
+        {"Source Program Index", "", 0u, 8u, 1u, NULL, 0u, NULL},
+        {"Bootloader overwrite flag", "", 8u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 2u;
     return fields;

@@ -66,8 +66,8 @@ static inline icd_status_t bootloader_copy_to_internal_flash_progress_encode(
 static inline const icd_field_t *bootloader_copy_to_internal_flash_progress_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Busy", "", 0u, 1u, 1u, NULL, 0u},
-        {"Error", "", 1u, 1u, 1u, NULL, 0u},
+        {"Busy", "", 0u, 1u, 1u, NULL, 0u, NULL},
+        {"Error", "", 1u, 1u, 1u, NULL, 0u, NULL},
     };
     *count = 2u;
     return fields;

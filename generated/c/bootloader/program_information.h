@@ -88,10 +88,10 @@ static inline icd_status_t bootloader_program_information_encode(
 static inline const icd_field_t *bootloader_program_information_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Program Index", "", 0u, 8u, 1u, NULL, 0u},
-        {"Busy", "", 8u, 1u, 1u, NULL, 0u},
-        {"File Size", "byte", 16u, 32u, 1u, NULL, 0u},
-        {"Checksum", "", 48u, 16u, 1u, NULL, 0u},
+        {"Program Index", "", 0u, 8u, 1u, NULL, 0u, NULL},
+        {"Busy", "", 8u, 1u, 1u, NULL, 0u, NULL},
+        {"File Size", "byte", 16u, 32u, 1u, NULL, 0u, NULL},
+        {"Checksum", "", 48u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 4u;
     return fields;

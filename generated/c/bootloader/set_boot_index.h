@@ -64,7 +64,7 @@ static inline icd_status_t bootloader_set_boot_index_encode(
 static inline const icd_field_t *bootloader_set_boot_index_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Program Index", "", 0u, 8u, 1u, NULL, 0u},
+        {"Program Index", "", 0u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 1u;
     return fields;

@@ -143,19 +143,19 @@ static inline icd_status_t bootloader_state_encode(
 static inline const icd_field_t *bootloader_state_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Up-time (s)", "s", 0u, 16u, 1u, NULL, 0u},
-        {"SRAM1 is enabled", "", 16u, 1u, 1u, NULL, 0u},
-        {"SRAM2 is enabled", "", 17u, 1u, 1u, NULL, 0u},
-        {"SRAM Latch-up Error occurred and could not be recovered", "", 18u, 1u, 1u, NULL, 0u},
-        {"SRAM Latch-up Occurred but recovered after power cycle", "", 19u, 1u, 1u, NULL, 0u},
-        {"SD card initialisation error", "", 20u, 1u, 1u, NULL, 0u},
-        {"SD card read error", "", 21u, 1u, 1u, NULL, 0u},
-        {"SD card write error", "", 22u, 1u, 1u, NULL, 0u},
-        {"External Flash Error", "", 23u, 1u, 1u, NULL, 0u},
-        {"Internal Flash Error", "", 24u, 1u, 1u, NULL, 0u},
-        {"EEPROM Error", "", 25u, 1u, 1u, NULL, 0u},
-        {"Boot Register Corrupt", "", 26u, 1u, 1u, NULL, 0u},
-        {"Communications Error with Radio", "", 27u, 1u, 1u, NULL, 0u},
+        {"Up-time (s)", "s", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"SRAM1 is enabled", "", 16u, 1u, 1u, NULL, 0u, NULL},
+        {"SRAM2 is enabled", "", 17u, 1u, 1u, NULL, 0u, NULL},
+        {"SRAM Latch-up Error occurred and could not be recovered", "", 18u, 1u, 1u, NULL, 0u, NULL},
+        {"SRAM Latch-up Occurred but recovered after power cycle", "", 19u, 1u, 1u, NULL, 0u, NULL},
+        {"SD card initialisation error", "", 20u, 1u, 1u, NULL, 0u, NULL},
+        {"SD card read error", "", 21u, 1u, 1u, NULL, 0u, NULL},
+        {"SD card write error", "", 22u, 1u, 1u, NULL, 0u, NULL},
+        {"External Flash Error", "", 23u, 1u, 1u, NULL, 0u, NULL},
+        {"Internal Flash Error", "", 24u, 1u, 1u, NULL, 0u, NULL},
+        {"EEPROM Error", "", 25u, 1u, 1u, NULL, 0u, NULL},
+        {"Boot Register Corrupt", "", 26u, 1u, 1u, NULL, 0u, NULL},
+        {"Communications Error with Radio", "", 27u, 1u, 1u, NULL, 0u, NULL},
     };
     *count = 13u;
     return fields;

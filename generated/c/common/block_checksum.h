@@ -66,7 +66,7 @@ static inline icd_status_t common_block_checksum_encode(
 static inline const icd_field_t *common_block_checksum_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Checksum", "", 0u, 16u, 1u, NULL, 0u},
+        {"Checksum", "", 0u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 1u;
     return fields;

@@ -122,12 +122,12 @@ static inline icd_status_t common_boot_and_running_program_status_encode(
 static inline const icd_field_t *common_boot_and_running_program_status_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Cause of MCU Reset", "", 0u, 4u, 1u, NULL, 0u},
-        {"Boot Cause", "", 4u, 4u, 1u, NULL, 0u},
-        {"Boot Counter", "", 8u, 16u, 1u, NULL, 0u},
-        {"Boot Program Index", "", 24u, 8u, 1u, NULL, 0u},
-        {"Firmware version (Major)", "", 32u, 8u, 1u, NULL, 0u},
-        {"Firmware version (Minor)", "", 40u, 8u, 1u, NULL, 0u},
+        {"Cause of MCU Reset", "", 0u, 4u, 1u, NULL, 0u, NULL},
+        {"Boot Cause", "", 4u, 4u, 1u, NULL, 0u, NULL},
+        {"Boot Counter", "", 8u, 16u, 1u, NULL, 0u, NULL},
+        {"Boot Program Index", "", 24u, 8u, 1u, NULL, 0u, NULL},
+        {"Firmware version (Major)", "", 32u, 8u, 1u, NULL, 0u, NULL},
+        {"Firmware version (Minor)", "", 40u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 6u;
     return fields;

@@ -67,8 +67,8 @@ static inline icd_status_t common_boot_index_and_status_encode(
 static inline const icd_field_t *common_boot_index_and_status_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Program Index", "", 0u, 8u, 1u, NULL, 0u},
-        {"Boot Status", "", 8u, 8u, 1u, NULL, 0u},
+        {"Program Index", "", 0u, 8u, 1u, NULL, 0u, NULL},
+        {"Boot Status", "", 8u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 2u;
     return fields;

@@ -63,7 +63,7 @@ static inline icd_status_t common_cache_enabled_state_encode(
 static inline const icd_field_t *common_cache_enabled_state_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Enabled state", "", 0u, 1u, 1u, NULL, 0u},
+        {"Enabled state", "", 0u, 1u, 1u, NULL, 0u, NULL},
     };
     *count = 1u;
     return fields;

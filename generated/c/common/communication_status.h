@@ -139,14 +139,14 @@ static inline icd_status_t common_communication_status_encode(
 static inline const icd_field_t *common_communication_status_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Telecommand counter", "", 0u, 16u, 1u, NULL, 0u},
-        {"Telemetry request counter", "", 16u, 16u, 1u, NULL, 0u},
-        {"Telecommand buffer overrun", "", 32u, 1u, 1u, NULL, 0u},
-        {"UART protocol error", "", 33u, 1u, 1u, NULL, 0u},
-        {"UART incomplete message", "", 34u, 1u, 1u, NULL, 0u},
-        {"I2C telemetry error", "", 35u, 1u, 1u, NULL, 0u},
-        {"I2C telecommand buffer error", "", 36u, 1u, 1u, NULL, 0u},
-        {"CAN telecommand buffer error", "", 37u, 1u, 1u, NULL, 0u},
+        {"Telecommand counter", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Telemetry request counter", "", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Telecommand buffer overrun", "", 32u, 1u, 1u, NULL, 0u, NULL},
+        {"UART protocol error", "", 33u, 1u, 1u, NULL, 0u, NULL},
+        {"UART incomplete message", "", 34u, 1u, 1u, NULL, 0u, NULL},
+        {"I2C telemetry error", "", 35u, 1u, 1u, NULL, 0u, NULL},
+        {"I2C telecommand buffer error", "", 36u, 1u, 1u, NULL, 0u, NULL},
+        {"CAN telecommand buffer error", "", 37u, 1u, 1u, NULL, 0u, NULL},
     };
     *count = 8u;
     return fields;

@@ -70,8 +70,8 @@ static inline icd_status_t common_current_unix_time_encode(
 static inline const icd_field_t *common_current_unix_time_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Current Unix Time", "s", 0u, 32u, 1u, NULL, 0u},
-        {"Milliseconds", "ms", 32u, 16u, 1u, NULL, 0u},
+        {"Current Unix Time", "s", 0u, 32u, 1u, NULL, 0u, NULL},
+        {"Milliseconds", "ms", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 2u;
     return fields;

@@ -80,10 +80,10 @@ static inline icd_status_t common_download_block_ready_encode(
 static inline const icd_field_t *common_download_block_ready_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Ready", "", 0u, 1u, 1u, NULL, 0u},
-        {"ParameterError", "", 1u, 1u, 1u, NULL, 0u},
-        {"Block CRC16 Checksum", "", 8u, 16u, 1u, NULL, 0u},
-        {"Block Length", "byte", 24u, 16u, 1u, NULL, 0u},
+        {"Ready", "", 0u, 1u, 1u, NULL, 0u, NULL},
+        {"ParameterError", "", 1u, 1u, 1u, NULL, 0u, NULL},
+        {"Block CRC16 Checksum", "", 8u, 16u, 1u, NULL, 0u, NULL},
+        {"Block Length", "byte", 24u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 4u;
     return fields;

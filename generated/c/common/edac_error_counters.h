@@ -74,9 +74,9 @@ static inline icd_status_t common_edac_error_counters_encode(
 static inline const icd_field_t *common_edac_error_counters_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Single SRAM upsets", "", 0u, 16u, 1u, NULL, 0u},
-        {"Double SRAM upsets", "", 16u, 16u, 1u, NULL, 0u},
-        {"Multiple SRAM upsets", "", 32u, 16u, 1u, NULL, 0u},
+        {"Single SRAM upsets", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Double SRAM upsets", "", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Multiple SRAM upsets", "", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -74,9 +74,9 @@ static inline icd_status_t common_erase_file_encode(
 static inline const icd_field_t *common_erase_file_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"File Type", "", 0u, 8u, 1u, NULL, 0u},
-        {"File Counter", "", 8u, 8u, 1u, NULL, 0u},
-        {"Erase All", "", 16u, 1u, 1u, NULL, 0u},
+        {"File Type", "", 0u, 8u, 1u, NULL, 0u, NULL},
+        {"File Counter", "", 8u, 8u, 1u, NULL, 0u, NULL},
+        {"Erase All", "", 16u, 1u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -80,8 +80,8 @@ static inline icd_status_t common_file_download_buffer_with_file_contents_encode
 static inline const icd_field_t *common_file_download_buffer_with_file_contents_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Packet counter", "", 0u, 16u, 1u, NULL, 0u},
-        {"File bytes", "", 16u, 160u, 1u, NULL, 0u},
+        {"Packet counter", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"File bytes", "", 16u, 160u, 1u, NULL, 0u, NULL},
     };
     *count = 2u;
     return fields;

@@ -121,12 +121,12 @@ static inline icd_status_t common_file_information_encode(
 static inline const icd_field_t *common_file_information_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"File Type", "", 0u, 4u, 1u, NULL, 0u},
-        {"Busy Updating", "", 4u, 1u, 1u, NULL, 0u},
-        {"File Ctr", "", 8u, 8u, 1u, NULL, 0u},
-        {"File Size", "byte", 16u, 32u, 1u, NULL, 0u},
-        {"File Date and Time", "MS-DOS time", 48u, 32u, 1u, NULL, 0u},
-        {"File CRC16 Checksum", "", 80u, 16u, 1u, NULL, 0u},
+        {"File Type", "", 0u, 4u, 1u, NULL, 0u, NULL},
+        {"Busy Updating", "", 4u, 1u, 1u, NULL, 0u, NULL},
+        {"File Ctr", "", 8u, 8u, 1u, NULL, 0u, NULL},
+        {"File Size", "byte", 16u, 32u, 1u, NULL, 0u, NULL},
+        {"File Date and Time", "MS-DOS time", 48u, 32u, 1u, NULL, 0u, NULL},
+        {"File CRC16 Checksum", "", 80u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 6u;
     return fields;

@@ -80,8 +80,8 @@ static inline icd_status_t common_file_upload_packet_encode(
 static inline const icd_field_t *common_file_upload_packet_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Packet Number", "", 0u, 16u, 1u, NULL, 0u},
-        {"File Bytes", "", 16u, 160u, 1u, NULL, 0u},
+        {"Packet Number", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"File Bytes", "", 16u, 160u, 1u, NULL, 0u, NULL},
     };
     *count = 2u;
     return fields;

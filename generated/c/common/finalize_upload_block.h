@@ -80,9 +80,9 @@ static inline icd_status_t common_finalize_upload_block_encode(
 static inline const icd_field_t *common_finalize_upload_block_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Destination", "", 0u, 8u, 1u, NULL, 0u},
-        {"Offset", "byte", 8u, 32u, 1u, NULL, 0u},
-        {"Block Length", "byte", 40u, 16u, 1u, NULL, 0u},
+        {"Destination", "", 0u, 8u, 1u, NULL, 0u, NULL},
+        {"Offset", "byte", 8u, 32u, 1u, NULL, 0u, NULL},
+        {"Block Length", "byte", 40u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -62,7 +62,7 @@ static inline icd_status_t common_format_sd_card_encode(
 static inline const icd_field_t *common_format_sd_card_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Magic Number", "", 0u, 8u, 1u, NULL, 0u},
+        {"Magic Number", "", 0u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 1u;
     return fields;

@@ -69,7 +69,7 @@ static inline icd_status_t common_hole_map_2_encode(
 static inline const icd_field_t *common_hole_map_2_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Hole Map", "", 0u, 128u, 1u, NULL, 0u},
+        {"Hole Map", "", 0u, 128u, 1u, NULL, 0u, NULL},
     };
     *count = 1u;
     return fields;

@@ -95,12 +95,12 @@ static inline icd_status_t common_identification_encode(
 static inline const icd_field_t *common_identification_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Node type", "", 0u, 8u, 1u, NULL, 0u},
-        {"Interface version", "", 8u, 8u, 1u, NULL, 0u},
-        {"Firmware version (Major)", "", 16u, 8u, 1u, NULL, 0u},
-        {"Firmware version (Minor)", "", 24u, 8u, 1u, NULL, 0u},
-        {"Runtime (seconds)", "s", 32u, 16u, 1u, NULL, 0u},
-        {"Runtime (milliseconds)", "ms", 48u, 16u, 1u, NULL, 0u},
+        {"Node type", "", 0u, 8u, 1u, NULL, 0u, NULL},
+        {"Interface version", "", 8u, 8u, 1u, NULL, 0u, NULL},
+        {"Firmware version (Major)", "", 16u, 8u, 1u, NULL, 0u, NULL},
+        {"Firmware version (Minor)", "", 24u, 8u, 1u, NULL, 0u, NULL},
+        {"Runtime (seconds)", "s", 32u, 16u, 1u, NULL, 0u, NULL},
+        {"Runtime (milliseconds)", "ms", 48u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 6u;
     return fields;

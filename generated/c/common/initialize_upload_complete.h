@@ -70,7 +70,7 @@ static inline icd_status_t common_initialize_upload_complete_encode(
 static inline const icd_field_t *common_initialize_upload_complete_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Busy", "", 0u, 1u, 1u, NULL, 0u},
+        {"Busy", "", 0u, 1u, 1u, NULL, 0u, NULL},
     };
     *count = 1u;
     return fields;

@@ -75,8 +75,8 @@ static inline icd_status_t common_initiate_download_burst_encode(
 static inline const icd_field_t *common_initiate_download_burst_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Message Length", "", 0u, 8u, 1u, NULL, 0u},
-        {"Ignore Hole Map", "", 8u, 1u, 1u, NULL, 0u},
+        {"Message Length", "", 0u, 8u, 1u, NULL, 0u, NULL},
+        {"Ignore Hole Map", "", 8u, 1u, 1u, NULL, 0u, NULL},
     };
     *count = 2u;
     return fields;

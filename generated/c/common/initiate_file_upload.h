@@ -71,8 +71,8 @@ static inline icd_status_t common_initiate_file_upload_encode(
 static inline const icd_field_t *common_initiate_file_upload_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Destination", "", 0u, 8u, 1u, NULL, 0u},
-        {"BlockSize", "", 8u, 8u, 1u, NULL, 0u},
+        {"Destination", "", 0u, 8u, 1u, NULL, 0u, NULL},
+        {"BlockSize", "", 8u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 2u;
     return fields;

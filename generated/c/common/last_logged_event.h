@@ -78,9 +78,9 @@ static inline icd_status_t common_last_logged_event_encode(
 static inline const icd_field_t *common_last_logged_event_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Time of Event", "", 0u, 32u, 1u, NULL, 0u},
-        {"Event ID", "", 32u, 8u, 1u, NULL, 0u},
-        {"Event Parameter", "", 40u, 8u, 1u, NULL, 0u},
+        {"Time of Event", "", 0u, 32u, 1u, NULL, 0u, NULL},
+        {"Event ID", "", 32u, 8u, 1u, NULL, 0u, NULL},
+        {"Event Parameter", "", 40u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

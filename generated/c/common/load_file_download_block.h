@@ -92,10 +92,10 @@ static inline const icd_field_t *common_load_file_download_block_fields(size_t *
         {ICD_LIMIT_MAX, 20480.0},
     };
     static const icd_field_t fields[] = {
-        {"File Type", "", 0u, 8u, 1u, NULL, 0u},
-        {"Counter", "", 8u, 8u, 1u, NULL, 0u},
-        {"Offset", "byte", 16u, 32u, 1u, NULL, 0u},
-        {"BlockLength", "byte", 48u, 16u, 1u, &limits[0], 1u},
+        {"File Type", "", 0u, 8u, 1u, NULL, 0u, NULL},
+        {"Counter", "", 8u, 8u, 1u, NULL, 0u, NULL},
+        {"Offset", "byte", 16u, 32u, 1u, NULL, 0u, NULL},
+        {"BlockLength", "byte", 48u, 16u, 1u, &limits[0], 1u, NULL},
     };
     *count = 4u;
     return fields;

@@ -70,7 +70,7 @@ static inline icd_status_t common_reset_encode(
 static inline const icd_field_t *common_reset_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Magic number", "", 0u, 8u, 1u, NULL, 0u},
+        {"Magic number", "", 0u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 1u;
     return fields;

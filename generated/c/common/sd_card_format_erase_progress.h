@@ -67,8 +67,8 @@ static inline icd_status_t common_sd_card_format_erase_progress_encode(
 static inline const icd_field_t *common_sd_card_format_erase_progress_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Format Busy", "", 0u, 1u, 1u, NULL, 0u},
-        {"Erase All Busy", "", 1u, 1u, 1u, NULL, 0u},
+        {"Format Busy", "", 0u, 1u, 1u, NULL, 0u, NULL},
+        {"Erase All Busy", "", 1u, 1u, 1u, NULL, 0u, NULL},
     };
     *count = 2u;
     return fields;

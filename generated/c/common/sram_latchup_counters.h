@@ -65,8 +65,8 @@ static inline icd_status_t common_sram_latchup_counters_encode(
 static inline const icd_field_t *common_sram_latchup_counters_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"SRAM1 latchups", "", 0u, 16u, 1u, NULL, 0u},
-        {"SRAM2 latchups", "", 16u, 16u, 1u, NULL, 0u},
+        {"SRAM1 latchups", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"SRAM2 latchups", "", 16u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 2u;
     return fields;

@@ -63,7 +63,7 @@ static inline icd_status_t common_sram_scrub_parameters_encode(
 static inline const icd_field_t *common_sram_scrub_parameters_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Scrub Size", "", 0u, 16u, 1u, NULL, 0u},
+        {"Scrub Size", "", 0u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 1u;
     return fields;

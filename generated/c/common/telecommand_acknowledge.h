@@ -97,10 +97,10 @@ static inline icd_status_t common_telecommand_acknowledge_encode(
 static inline const icd_field_t *common_telecommand_acknowledge_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Last TC ID", "", 0u, 8u, 1u, NULL, 0u},
-        {"Processed flag", "", 8u, 1u, 1u, NULL, 0u},
-        {"TC error status", "", 16u, 8u, 1u, NULL, 0u},
-        {"TC parameter error index", "", 24u, 8u, 1u, NULL, 0u},
+        {"Last TC ID", "", 0u, 8u, 1u, NULL, 0u, NULL},
+        {"Processed flag", "", 8u, 1u, 1u, NULL, 0u, NULL},
+        {"TC error status", "", 16u, 8u, 1u, NULL, 0u, NULL},
+        {"TC parameter error index", "", 24u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 4u;
     return fields;

@@ -80,10 +80,10 @@ static inline icd_status_t common_unix_time_save_to_flash_encode(
 static inline const icd_field_t *common_unix_time_save_to_flash_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Save Now", "", 0u, 1u, 1u, NULL, 0u},
-        {"Save On Update", "", 1u, 1u, 1u, NULL, 0u},
-        {"Save Periodic", "", 2u, 1u, 1u, NULL, 0u},
-        {"Period", "s", 8u, 8u, 1u, NULL, 0u},
+        {"Save Now", "", 0u, 1u, 1u, NULL, 0u, NULL},
+        {"Save On Update", "", 1u, 1u, 1u, NULL, 0u, NULL},
+        {"Save Periodic", "", 2u, 1u, 1u, NULL, 0u, NULL},
+        {"Period", "s", 8u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 4u;
     return fields;

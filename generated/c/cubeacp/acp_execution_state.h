@@ -63,8 +63,8 @@ static inline icd_status_t cubeacp_acp_execution_state_encode(
 static inline const icd_field_t *cubeacp_acp_execution_state_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Time Since Iteration Start", "ms", 0u, 16u, 1u, NULL, 0u},
-        {"Current Execution Point", "", 16u, 8u, 1u, NULL, 0u},
+        {"Time Since Iteration Start", "ms", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Current Execution Point", "", 16u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 2u;
     return fields;

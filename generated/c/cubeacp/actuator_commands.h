@@ -105,12 +105,12 @@ static inline icd_status_t cubeacp_actuator_commands_encode(
 static inline const icd_field_t *cubeacp_actuator_commands_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"X Magnetorquer Command", "10ms units", 0u, 16u, 1u, NULL, 0u},
-        {"Y Magnetorquer Command", "10ms units", 16u, 16u, 1u, NULL, 0u},
-        {"Z Magnetorquer Command", "10ms units", 32u, 16u, 1u, NULL, 0u},
-        {"Commanded X Wheel Speed", "rpm", 48u, 16u, 1u, NULL, 0u},
-        {"Commanded Y Wheel Speed", "rpm", 64u, 16u, 1u, NULL, 0u},
-        {"Commanded Z Wheel Speed", "rpm", 80u, 16u, 1u, NULL, 0u},
+        {"X Magnetorquer Command", "10ms units", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Y Magnetorquer Command", "10ms units", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Z Magnetorquer Command", "10ms units", 32u, 16u, 1u, NULL, 0u, NULL},
+        {"Commanded X Wheel Speed", "rpm", 48u, 16u, 1u, NULL, 0u, NULL},
+        {"Commanded Y Wheel Speed", "rpm", 64u, 16u, 1u, NULL, 0u, NULL},
+        {"Commanded Z Wheel Speed", "rpm", 80u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 6u;
     return fields;

@@ -72,10 +72,10 @@ static inline icd_status_t cubeacp_adcs_execution_times_encode(
 static inline const icd_field_t *cubeacp_adcs_execution_times_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Time to Perform ADCS Update", "ms", 0u, 16u, 1u, NULL, 0u},
-        {"Time to Perform Sensor/Actuator Communications", "ms", 16u, 16u, 1u, NULL, 0u},
-        {"Time to Execute SGP4 Propagator", "ms", 32u, 16u, 1u, NULL, 0u},
-        {"Time to Execute IGRF Model", "ms", 48u, 16u, 1u, NULL, 0u},
+        {"Time to Perform ADCS Update", "ms", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Time to Perform Sensor/Actuator Communications", "ms", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Time to Execute SGP4 Propagator", "ms", 32u, 16u, 1u, NULL, 0u, NULL},
+        {"Time to Execute IGRF Model", "ms", 48u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 4u;
     return fields;

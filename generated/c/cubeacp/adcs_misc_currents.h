@@ -78,9 +78,9 @@ static inline icd_status_t cubeacp_adcs_misc_currents_encode(
 static inline const icd_field_t *cubeacp_adcs_misc_currents_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"CubeStarCurrent", "mA", 0u, 16u, 1u, NULL, 0u},
-        {"Magnetorquer Current", "mA", 16u, 16u, 1u, NULL, 0u},
-        {"CubeStar MCU temperature", "C", 32u, 16u, 1u, NULL, 0u},
+        {"CubeStarCurrent", "mA", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Magnetorquer Current", "mA", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"CubeStar MCU temperature", "C", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -184,16 +184,16 @@ static inline icd_status_t cubeacp_adcs_power_control_encode(
 static inline const icd_field_t *cubeacp_adcs_power_control_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"CubeControl Signal Power Selection", "", 0u, 2u, 1u, NULL, 0u},
-        {"CubeControl Motor Power Selection", "", 2u, 2u, 1u, NULL, 0u},
-        {"CubeSense1 Power Selection", "", 4u, 2u, 1u, NULL, 0u},
-        {"CubeSense2 Power Selection", "", 6u, 2u, 1u, NULL, 0u},
-        {"CubeStarPower Power Selection", "", 8u, 2u, 1u, NULL, 0u},
-        {"CubeWheel1Power Power Selection", "", 10u, 2u, 1u, NULL, 0u},
-        {"CubeWheel2Power Power Selection", "", 12u, 2u, 1u, NULL, 0u},
-        {"CubeWheel3Power Power Selection", "", 14u, 2u, 1u, NULL, 0u},
-        {"Motor Power", "", 16u, 2u, 1u, NULL, 0u},
-        {"GPS Power", "", 18u, 2u, 1u, NULL, 0u},
+        {"CubeControl Signal Power Selection", "", 0u, 2u, 1u, NULL, 0u, NULL},
+        {"CubeControl Motor Power Selection", "", 2u, 2u, 1u, NULL, 0u, NULL},
+        {"CubeSense1 Power Selection", "", 4u, 2u, 1u, NULL, 0u, NULL},
+        {"CubeSense2 Power Selection", "", 6u, 2u, 1u, NULL, 0u, NULL},
+        {"CubeStarPower Power Selection", "", 8u, 2u, 1u, NULL, 0u, NULL},
+        {"CubeWheel1Power Power Selection", "", 10u, 2u, 1u, NULL, 0u, NULL},
+        {"CubeWheel2Power Power Selection", "", 12u, 2u, 1u, NULL, 0u, NULL},
+        {"CubeWheel3Power Power Selection", "", 14u, 2u, 1u, NULL, 0u, NULL},
+        {"Motor Power", "", 16u, 2u, 1u, NULL, 0u, NULL},
+        {"GPS Power", "", 18u, 2u, 1u, NULL, 0u, NULL},
     };
     *count = 10u;
     return fields;

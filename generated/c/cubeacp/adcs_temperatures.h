@@ -81,9 +81,9 @@ static inline icd_status_t cubeacp_adcs_temperatures_encode(
 static inline const icd_field_t *cubeacp_adcs_temperatures_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"MCU Temperature", "C", 0u, 16u, 1u, NULL, 0u},
-        {"Magnetometer Temperature", "C", 16u, 16u, 1u, NULL, 0u},
-        {"Redundant Magnetometer Temperature", "C", 32u, 16u, 1u, NULL, 0u},
+        {"MCU Temperature", "C", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Magnetometer Temperature", "C", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Redundant Magnetometer Temperature", "C", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

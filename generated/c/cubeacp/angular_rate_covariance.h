@@ -76,9 +76,9 @@ static inline icd_status_t cubeacp_angular_rate_covariance_encode(
 static inline const icd_field_t *cubeacp_angular_rate_covariance_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"X Angular Rate Covariance", "", 0u, 16u, 1u, NULL, 0u},
-        {"Y Angular Rate Covariance", "", 16u, 16u, 1u, NULL, 0u},
-        {"Z Angular Rate Covariance", "", 32u, 16u, 1u, NULL, 0u},
+        {"X Angular Rate Covariance", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Y Angular Rate Covariance", "", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Z Angular Rate Covariance", "", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

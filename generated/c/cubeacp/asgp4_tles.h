@@ -132,16 +132,16 @@ static inline icd_status_t cubeacp_asgp4_tles_encode(
 static inline const icd_field_t *cubeacp_asgp4_tles_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"ASGP4 complete", "", 0u, 1u, 1u, NULL, 0u},
-        {"ASGP4 error", "", 1u, 7u, 1u, NULL, 0u},
-        {"ASGP4 Epoch", "", 8u, 32u, 1u, NULL, 0u},
-        {"ASGP4 inclination", "", 40u, 32u, 1u, NULL, 0u},
-        {"ASGP4 RAAN", "", 72u, 32u, 1u, NULL, 0u},
-        {"ASGP4 ECC", "", 104u, 32u, 1u, NULL, 0u},
-        {"ASGP4 AOP", "", 136u, 32u, 1u, NULL, 0u},
-        {"ASGP4 MA", "", 168u, 32u, 1u, NULL, 0u},
-        {"ASGP4 MM", "", 200u, 32u, 1u, NULL, 0u},
-        {"ASGP4 Bstar", "", 232u, 32u, 1u, NULL, 0u},
+        {"ASGP4 complete", "", 0u, 1u, 1u, NULL, 0u, NULL},
+        {"ASGP4 error", "", 1u, 7u, 1u, NULL, 0u, NULL},
+        {"ASGP4 Epoch", "", 8u, 32u, 1u, NULL, 0u, NULL},
+        {"ASGP4 inclination", "", 40u, 32u, 1u, NULL, 0u, NULL},
+        {"ASGP4 RAAN", "", 72u, 32u, 1u, NULL, 0u, NULL},
+        {"ASGP4 ECC", "", 104u, 32u, 1u, NULL, 0u, NULL},
+        {"ASGP4 AOP", "", 136u, 32u, 1u, NULL, 0u, NULL},
+        {"ASGP4 MA", "", 168u, 32u, 1u, NULL, 0u, NULL},
+        {"ASGP4 MM", "", 200u, 32u, 1u, NULL, 0u, NULL},
+        {"ASGP4 Bstar", "", 232u, 32u, 1u, NULL, 0u, NULL},
     };
     *count = 10u;
     return fields;

@@ -71,8 +71,8 @@ static inline icd_status_t cubeacp_clear_errors_encode(
 static inline const icd_field_t *cubeacp_clear_errors_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"ADCS Error Flags", "", 0u, 1u, 1u, NULL, 0u},
-        {"HK Error Flags", "", 1u, 1u, 1u, NULL, 0u},
+        {"ADCS Error Flags", "", 0u, 1u, 1u, NULL, 0u, NULL},
+        {"HK Error Flags", "", 1u, 1u, 1u, NULL, 0u, NULL},
     };
     *count = 2u;
     return fields;

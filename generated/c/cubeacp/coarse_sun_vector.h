@@ -70,9 +70,9 @@ static inline icd_status_t cubeacp_coarse_sun_vector_encode(
 static inline const icd_field_t *cubeacp_coarse_sun_vector_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Coarse Sun X", "", 0u, 16u, 1u, NULL, 0u},
-        {"Coarse Sun Y", "", 16u, 16u, 1u, NULL, 0u},
-        {"Coarse Sun Z", "", 32u, 16u, 1u, NULL, 0u},
+        {"Coarse Sun X", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Coarse Sun Y", "", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Coarse Sun Z", "", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -69,9 +69,9 @@ static inline icd_status_t cubeacp_commanded_attitude_angles_encode(
 static inline const icd_field_t *cubeacp_commanded_attitude_angles_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Commanded Roll Angle", "deg", 0u, 16u, 1u, NULL, 0u},
-        {"Commanded Pitch Angle", "deg", 16u, 16u, 1u, NULL, 0u},
-        {"Commanded Yaw Angle", "deg", 32u, 16u, 1u, NULL, 0u},
+        {"Commanded Roll Angle", "deg", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Commanded Pitch Angle", "deg", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Commanded Yaw Angle", "deg", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -77,9 +77,9 @@ static inline icd_status_t cubeacp_convert_to_jpg_file_encode(
 static inline const icd_field_t *cubeacp_convert_to_jpg_file_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Source File Counter", "", 0u, 8u, 1u, NULL, 0u},
-        {"Quality Factor", "", 8u, 8u, 1u, NULL, 0u},
-        {"White Balance", "", 16u, 8u, 1u, NULL, 0u},
+        {"Source File Counter", "", 0u, 8u, 1u, NULL, 0u, NULL},
+        {"Quality Factor", "", 8u, 8u, 1u, NULL, 0u, NULL},
+        {"White Balance", "", 16u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

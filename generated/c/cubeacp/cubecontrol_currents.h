@@ -66,9 +66,9 @@ static inline icd_status_t cubeacp_cubecontrol_currents_encode(
 static inline const icd_field_t *cubeacp_cubecontrol_currents_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"CubeControl 3V3 Current", "mA", 0u, 16u, 1u, NULL, 0u},
-        {"CubeControl 5V Current", "mA", 16u, 16u, 1u, NULL, 0u},
-        {"CubeControl Vbat Current", "mA", 32u, 16u, 1u, NULL, 0u},
+        {"CubeControl 3V3 Current", "mA", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"CubeControl 5V Current", "mA", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"CubeControl Vbat Current", "mA", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -64,8 +64,8 @@ static inline icd_status_t cubeacp_cubesense1_currents_encode(
 static inline const icd_field_t *cubeacp_cubesense1_currents_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"CubeSense1 3V3 Current", "mA", 0u, 16u, 1u, NULL, 0u},
-        {"CubeSense1 Cam SRAM Current", "mA", 16u, 16u, 1u, NULL, 0u},
+        {"CubeSense1 3V3 Current", "mA", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"CubeSense1 Cam SRAM Current", "mA", 16u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 2u;
     return fields;

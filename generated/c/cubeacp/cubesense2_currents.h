@@ -66,8 +66,8 @@ static inline icd_status_t cubeacp_cubesense2_currents_encode(
 static inline const icd_field_t *cubeacp_cubesense2_currents_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"CubeSense2 3V3 Current", "mA", 0u, 16u, 1u, NULL, 0u},
-        {"CubeSense2 Cam SRAM Current", "mA", 16u, 16u, 1u, NULL, 0u},
+        {"CubeSense2 3V3 Current", "mA", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"CubeSense2 Cam SRAM Current", "mA", 16u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 2u;
     return fields;

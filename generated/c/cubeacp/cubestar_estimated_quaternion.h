@@ -82,9 +82,9 @@ static inline icd_status_t cubeacp_cubestar_estimated_quaternion_encode(
 static inline const icd_field_t *cubeacp_cubestar_estimated_quaternion_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Q0", "", 0u, 16u, 1u, NULL, 0u},
-        {"Q1", "", 16u, 16u, 1u, NULL, 0u},
-        {"Q2", "", 32u, 16u, 1u, NULL, 0u},
+        {"Q0", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Q1", "", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Q2", "", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

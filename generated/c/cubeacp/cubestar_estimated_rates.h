@@ -79,9 +79,9 @@ static inline icd_status_t cubeacp_cubestar_estimated_rates_encode(
 static inline const icd_field_t *cubeacp_cubestar_estimated_rates_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"x-Axis rate", "", 0u, 16u, 1u, NULL, 0u},
-        {"y-Axis rate", "", 16u, 16u, 1u, NULL, 0u},
-        {"z-Axis rate", "", 32u, 16u, 1u, NULL, 0u},
+        {"x-Axis rate", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"y-Axis rate", "", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"z-Axis rate", "", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -64,7 +64,7 @@ static inline icd_status_t cubeacp_deploy_magnetometer_boom_encode(
 static inline const icd_field_t *cubeacp_deploy_magnetometer_boom_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Timeout", "s", 0u, 8u, 1u, NULL, 0u},
+        {"Timeout", "s", 0u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 1u;
     return fields;

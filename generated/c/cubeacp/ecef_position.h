@@ -81,9 +81,9 @@ static inline icd_status_t cubeacp_ecef_position_encode(
 static inline const icd_field_t *cubeacp_ecef_position_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"ECEF Position X", "", 0u, 16u, 1u, NULL, 0u},
-        {"ECEF Position Y", "", 16u, 16u, 1u, NULL, 0u},
-        {"ECEF Position Z", "", 32u, 16u, 1u, NULL, 0u},
+        {"ECEF Position X", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"ECEF Position Y", "", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"ECEF Position Z", "", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -68,9 +68,9 @@ static inline icd_status_t cubeacp_estimated_attitude_angles_encode(
 static inline const icd_field_t *cubeacp_estimated_attitude_angles_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Estimated Roll Angle", "deg", 0u, 16u, 1u, NULL, 0u},
-        {"Estimated Pitch Angle", "deg", 16u, 16u, 1u, NULL, 0u},
-        {"Estimated Yaw Angle", "deg", 32u, 16u, 1u, NULL, 0u},
+        {"Estimated Roll Angle", "deg", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Estimated Pitch Angle", "deg", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Estimated Yaw Angle", "deg", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

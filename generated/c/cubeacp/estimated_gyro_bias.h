@@ -67,9 +67,9 @@ static inline icd_status_t cubeacp_estimated_gyro_bias_encode(
 static inline const icd_field_t *cubeacp_estimated_gyro_bias_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Estimated X-gyro Bias", "deg/s", 0u, 16u, 1u, NULL, 0u},
-        {"Estimated Y-gyro Bias", "deg/s", 16u, 16u, 1u, NULL, 0u},
-        {"Estimated Z-gyro Bias", "deg/s", 32u, 16u, 1u, NULL, 0u},
+        {"Estimated X-gyro Bias", "deg/s", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Estimated Y-gyro Bias", "deg/s", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Estimated Z-gyro Bias", "deg/s", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

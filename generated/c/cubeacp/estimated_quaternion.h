@@ -79,9 +79,9 @@ static inline icd_status_t cubeacp_estimated_quaternion_encode(
 static inline const icd_field_t *cubeacp_estimated_quaternion_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Estimated q1", "", 0u, 16u, 1u, NULL, 0u},
-        {"Estimated q2", "", 16u, 16u, 1u, NULL, 0u},
-        {"Estimated q3", "", 32u, 16u, 1u, NULL, 0u},
+        {"Estimated q1", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Estimated q2", "", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Estimated q3", "", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

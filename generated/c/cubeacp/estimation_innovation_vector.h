@@ -76,9 +76,9 @@ static inline icd_status_t cubeacp_estimation_innovation_vector_encode(
 static inline const icd_field_t *cubeacp_estimation_innovation_vector_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Innovation Vector X", "", 0u, 16u, 1u, NULL, 0u},
-        {"Innovation Vector Y", "", 16u, 16u, 1u, NULL, 0u},
-        {"Innovation Vector Z", "", 32u, 16u, 1u, NULL, 0u},
+        {"Innovation Vector X", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Innovation Vector Y", "", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Innovation Vector Z", "", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -81,9 +81,9 @@ static inline icd_status_t cubeacp_fine_angular_rates_encode(
 static inline const icd_field_t *cubeacp_fine_angular_rates_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Estimated X Angular Rate", "deg/s", 0u, 16u, 1u, NULL, 0u},
-        {"Estimated Y Angular Rate", "deg/s", 16u, 16u, 1u, NULL, 0u},
-        {"Estimated Z Angular Rate", "deg/s", 32u, 16u, 1u, NULL, 0u},
+        {"Estimated X Angular Rate", "deg/s", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Estimated Y Angular Rate", "deg/s", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Estimated Z Angular Rate", "deg/s", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -72,9 +72,9 @@ static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_encode(
 static inline const icd_field_t *cubeacp_igrf_modelled_magnetic_field_vector_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"IGRF Modelled Magnetic Field X", "uT", 0u, 16u, 1u, NULL, 0u},
-        {"IGRF Modelled Magnetic Field Y", "uT", 16u, 16u, 1u, NULL, 0u},
-        {"IGRF Modelled Magnetic Field Z", "uT", 32u, 16u, 1u, NULL, 0u},
+        {"IGRF Modelled Magnetic Field X", "uT", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"IGRF Modelled Magnetic Field Y", "uT", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"IGRF Modelled Magnetic Field Z", "uT", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -82,9 +82,9 @@ static inline icd_status_t cubeacp_inertial_pointing_reference_vector_encode(
 static inline const icd_field_t *cubeacp_inertial_pointing_reference_vector_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Inertial Reference X", "", 0u, 16u, 1u, NULL, 0u},
-        {"Inertial Reference Y", "", 16u, 16u, 1u, NULL, 0u},
-        {"Inertial Reference Z", "", 32u, 16u, 1u, NULL, 0u},
+        {"Inertial Reference X", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Inertial Reference Y", "", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Inertial Reference Z", "", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

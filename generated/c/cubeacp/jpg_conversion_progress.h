@@ -70,9 +70,9 @@ static inline icd_status_t cubeacp_jpg_conversion_progress_encode(
 static inline const icd_field_t *cubeacp_jpg_conversion_progress_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Progress Percentage", "%", 0u, 8u, 1u, NULL, 0u},
-        {"Conversion Result", "", 8u, 8u, 1u, NULL, 0u},
-        {"Output File Counter", "", 16u, 8u, 1u, NULL, 0u},
+        {"Progress Percentage", "%", 0u, 8u, 1u, NULL, 0u, NULL},
+        {"Conversion Result", "", 8u, 8u, 1u, NULL, 0u, NULL},
+        {"Output File Counter", "", 16u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

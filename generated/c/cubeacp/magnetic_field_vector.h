@@ -70,9 +70,9 @@ static inline icd_status_t cubeacp_magnetic_field_vector_encode(
 static inline const icd_field_t *cubeacp_magnetic_field_vector_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Magnetic Field X", "uT", 0u, 16u, 1u, NULL, 0u},
-        {"Magnetic Field Y", "uT", 16u, 16u, 1u, NULL, 0u},
-        {"Magnetic Field Z", "uT", 32u, 16u, 1u, NULL, 0u},
+        {"Magnetic Field X", "uT", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Magnetic Field Y", "uT", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Magnetic Field Z", "uT", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

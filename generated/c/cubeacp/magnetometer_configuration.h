@@ -145,21 +145,21 @@ static inline icd_status_t cubeacp_magnetometer_configuration_encode(
 static inline const icd_field_t *cubeacp_magnetometer_configuration_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Magnetometer Mounting Transform Alpha Angle", "deg", 0u, 16u, 1u, NULL, 0u},
-        {"Magnetometer Mounting Transform Beta Angle", "deg", 16u, 16u, 1u, NULL, 0u},
-        {"Magnetometer Mounting Transform Gamma Angle", "deg", 32u, 16u, 1u, NULL, 0u},
-        {"Magnetometer Channel 1 Offset", "", 48u, 16u, 1u, NULL, 0u},
-        {"Magnetometer Channel 2 Offset", "", 64u, 16u, 1u, NULL, 0u},
-        {"Magnetometer Channel 3 Offset", "", 80u, 16u, 1u, NULL, 0u},
-        {"Magnetometer Sensitivity Matrix S11", "", 96u, 16u, 1u, NULL, 0u},
-        {"Magnetometer Sensitivity Matrix S22", "", 112u, 16u, 1u, NULL, 0u},
-        {"Magnetometer Sensitivity Matrix S33", "", 128u, 16u, 1u, NULL, 0u},
-        {"Magnetometer Sensitivity Matrix S12", "", 144u, 16u, 1u, NULL, 0u},
-        {"Magnetometer Sensitivity Matrix S13", "", 160u, 16u, 1u, NULL, 0u},
-        {"Magnetometer Sensitivity Matrix S21", "", 176u, 16u, 1u, NULL, 0u},
-        {"Magnetometer Sensitivity Matrix S23", "", 192u, 16u, 1u, NULL, 0u},
-        {"Magnetometer Sensitivity Matrix S31", "", 208u, 16u, 1u, NULL, 0u},
-        {"Magnetometer Sensitivity Matrix S32", "", 224u, 16u, 1u, NULL, 0u},
+        {"Magnetometer Mounting Transform Alpha Angle", "deg", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Magnetometer Mounting Transform Beta Angle", "deg", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Magnetometer Mounting Transform Gamma Angle", "deg", 32u, 16u, 1u, NULL, 0u, NULL},
+        {"Magnetometer Channel 1 Offset", "", 48u, 16u, 1u, NULL, 0u, NULL},
+        {"Magnetometer Channel 2 Offset", "", 64u, 16u, 1u, NULL, 0u, NULL},
+        {"Magnetometer Channel 3 Offset", "", 80u, 16u, 1u, NULL, 0u, NULL},
+        {"Magnetometer Sensitivity Matrix S11", "", 96u, 16u, 1u, NULL, 0u, NULL},
+        {"Magnetometer Sensitivity Matrix S22", "", 112u, 16u, 1u, NULL, 0u, NULL},
+        {"Magnetometer Sensitivity Matrix S33", "", 128u, 16u, 1u, NULL, 0u, NULL},
+        {"Magnetometer Sensitivity Matrix S12", "", 144u, 16u, 1u, NULL, 0u, NULL},
+        {"Magnetometer Sensitivity Matrix S13", "", 160u, 16u, 1u, NULL, 0u, NULL},
+        {"Magnetometer Sensitivity Matrix S21", "", 176u, 16u, 1u, NULL, 0u, NULL},
+        {"Magnetometer Sensitivity Matrix S23", "", 192u, 16u, 1u, NULL, 0u, NULL},
+        {"Magnetometer Sensitivity Matrix S31", "", 208u, 16u, 1u, NULL, 0u, NULL},
+        {"Magnetometer Sensitivity Matrix S32", "", 224u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 15u;
     return fields;

@@ -81,9 +81,9 @@ static inline icd_status_t cubeacp_magnetorquer_command_encode(
 static inline const icd_field_t *cubeacp_magnetorquer_command_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"X Magnetorquer Command", "10ms units", 0u, 16u, 1u, NULL, 0u},
-        {"Y Magnetorquer Command", "10ms units", 16u, 16u, 1u, NULL, 0u},
-        {"Z Magnetorquer Command", "10ms units", 32u, 16u, 1u, NULL, 0u},
+        {"X Magnetorquer Command", "10ms units", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Y Magnetorquer Command", "10ms units", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Z Magnetorquer Command", "10ms units", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

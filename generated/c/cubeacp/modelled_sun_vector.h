@@ -67,9 +67,9 @@ static inline icd_status_t cubeacp_modelled_sun_vector_encode(
 static inline const icd_field_t *cubeacp_modelled_sun_vector_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Modelled Sun Vector X", "", 0u, 16u, 1u, NULL, 0u},
-        {"Modelled Sun Vector Y", "", 16u, 16u, 1u, NULL, 0u},
-        {"Modelled Sun Vector Z", "", 32u, 16u, 1u, NULL, 0u},
+        {"Modelled Sun Vector X", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Modelled Sun Vector Y", "", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Modelled Sun Vector Z", "", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -91,12 +91,12 @@ static inline icd_status_t cubeacp_moment_of_inertia_matrix_encode(
 static inline const icd_field_t *cubeacp_moment_of_inertia_matrix_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Moment Of Inertia - Ixx", "kg.m^2", 0u, 32u, 1u, NULL, 0u},
-        {"Moment Of Inertia - Iyy", "kg.m^2", 32u, 32u, 1u, NULL, 0u},
-        {"Moment Of Inertia - Izz", "kg.m^2", 64u, 32u, 1u, NULL, 0u},
-        {"Product Of Inertia - Ixy", "kg.m^2", 96u, 32u, 1u, NULL, 0u},
-        {"Product Of Inertia - Ixz", "kg.m^2", 128u, 32u, 1u, NULL, 0u},
-        {"Product Of Inertia - Iyz", "kg.m^2", 160u, 32u, 1u, NULL, 0u},
+        {"Moment Of Inertia - Ixx", "kg.m^2", 0u, 32u, 1u, NULL, 0u, NULL},
+        {"Moment Of Inertia - Iyy", "kg.m^2", 32u, 32u, 1u, NULL, 0u, NULL},
+        {"Moment Of Inertia - Izz", "kg.m^2", 64u, 32u, 1u, NULL, 0u, NULL},
+        {"Product Of Inertia - Ixy", "kg.m^2", 96u, 32u, 1u, NULL, 0u, NULL},
+        {"Product Of Inertia - Ixz", "kg.m^2", 128u, 32u, 1u, NULL, 0u, NULL},
+        {"Product Of Inertia - Iyz", "kg.m^2", 160u, 32u, 1u, NULL, 0u, NULL},
     };
     *count = 6u;
     return fields;

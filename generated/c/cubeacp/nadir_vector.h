@@ -70,9 +70,9 @@ static inline icd_status_t cubeacp_nadir_vector_encode(
 static inline const icd_field_t *cubeacp_nadir_vector_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Nadir X", "", 0u, 16u, 1u, NULL, 0u},
-        {"Nadir Y", "", 16u, 16u, 1u, NULL, 0u},
-        {"Nadir Z", "", 32u, 16u, 1u, NULL, 0u},
+        {"Nadir X", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Nadir Y", "", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Nadir Z", "", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

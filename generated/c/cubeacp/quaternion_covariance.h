@@ -76,9 +76,9 @@ static inline icd_status_t cubeacp_quaternion_covariance_encode(
 static inline const icd_field_t *cubeacp_quaternion_covariance_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Quaternion Covariance - Q1 RMS", "", 0u, 16u, 1u, NULL, 0u},
-        {"Quaternion Covariance - Q2 RMS", "", 16u, 16u, 1u, NULL, 0u},
-        {"Quaternion Covariance - Q3 RMS", "", 32u, 16u, 1u, NULL, 0u},
+        {"Quaternion Covariance - Q1 RMS", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Quaternion Covariance - Q2 RMS", "", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Quaternion Covariance - Q3 RMS", "", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

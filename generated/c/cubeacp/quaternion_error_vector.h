@@ -68,9 +68,9 @@ static inline icd_status_t cubeacp_quaternion_error_vector_encode(
 static inline const icd_field_t *cubeacp_quaternion_error_vector_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Quaternion Error - Q1", "", 0u, 16u, 1u, NULL, 0u},
-        {"Quaternion Error - Q2", "", 16u, 16u, 1u, NULL, 0u},
-        {"Quaternion Error - Q3", "", 32u, 16u, 1u, NULL, 0u},
+        {"Quaternion Error - Q1", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Quaternion Error - Q2", "", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Quaternion Error - Q3", "", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -70,9 +70,9 @@ static inline icd_status_t cubeacp_rate_sensor_rates_encode(
 static inline const icd_field_t *cubeacp_rate_sensor_rates_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"X Angular Rate", "deg/s", 0u, 16u, 1u, NULL, 0u},
-        {"Y Angular Rate", "deg/s", 16u, 16u, 1u, NULL, 0u},
-        {"Z Angular Rate", "deg/s", 32u, 16u, 1u, NULL, 0u},
+        {"X Angular Rate", "deg/s", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Y Angular Rate", "deg/s", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Z Angular Rate", "deg/s", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

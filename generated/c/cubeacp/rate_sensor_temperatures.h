@@ -80,9 +80,9 @@ static inline icd_status_t cubeacp_rate_sensor_temperatures_encode(
 static inline const icd_field_t *cubeacp_rate_sensor_temperatures_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"X-Rate Sensor Temperature", "C", 0u, 16u, 1u, NULL, 0u},
-        {"Y-Rate Sensor Temperature", "C", 16u, 16u, 1u, NULL, 0u},
-        {"Z-Rate Sensor Temperature", "C", 32u, 16u, 1u, NULL, 0u},
+        {"X-Rate Sensor Temperature", "C", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Y-Rate Sensor Temperature", "C", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Z-Rate Sensor Temperature", "C", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

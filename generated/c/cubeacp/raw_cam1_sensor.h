@@ -81,10 +81,10 @@ static inline icd_status_t cubeacp_raw_cam1_sensor_encode(
 static inline const icd_field_t *cubeacp_raw_cam1_sensor_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Cam1 centroid X", "", 0u, 16u, 1u, NULL, 0u},
-        {"Cam1 centroid Y", "", 16u, 16u, 1u, NULL, 0u},
-        {"Cam1 Capture status", "", 32u, 8u, 1u, NULL, 0u},
-        {"Cam1 Detection result", "", 40u, 8u, 1u, NULL, 0u},
+        {"Cam1 centroid X", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Cam1 centroid Y", "", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Cam1 Capture status", "", 32u, 8u, 1u, NULL, 0u, NULL},
+        {"Cam1 Detection result", "", 40u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 4u;
     return fields;

@@ -98,12 +98,12 @@ static inline icd_status_t cubeacp_raw_css_1_to_6_encode(
 static inline const icd_field_t *cubeacp_raw_css_1_to_6_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"CSS1", "", 0u, 8u, 1u, NULL, 0u},
-        {"CSS2", "", 8u, 8u, 1u, NULL, 0u},
-        {"CSS3", "", 16u, 8u, 1u, NULL, 0u},
-        {"CSS4", "", 24u, 8u, 1u, NULL, 0u},
-        {"CSS5", "", 32u, 8u, 1u, NULL, 0u},
-        {"CSS6", "", 40u, 8u, 1u, NULL, 0u},
+        {"CSS1", "", 0u, 8u, 1u, NULL, 0u, NULL},
+        {"CSS2", "", 8u, 8u, 1u, NULL, 0u, NULL},
+        {"CSS3", "", 16u, 8u, 1u, NULL, 0u, NULL},
+        {"CSS4", "", 24u, 8u, 1u, NULL, 0u, NULL},
+        {"CSS5", "", 32u, 8u, 1u, NULL, 0u, NULL},
+        {"CSS6", "", 40u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 6u;
     return fields;

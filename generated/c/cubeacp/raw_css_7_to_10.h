@@ -87,10 +87,10 @@ static inline icd_status_t cubeacp_raw_css_7_to_10_encode(
 static inline const icd_field_t *cubeacp_raw_css_7_to_10_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"CSS7", "", 0u, 8u, 1u, NULL, 0u},
-        {"CSS8", "", 8u, 8u, 1u, NULL, 0u},
-        {"CSS9", "", 16u, 8u, 1u, NULL, 0u},
-        {"CSS10", "", 24u, 8u, 1u, NULL, 0u},
+        {"CSS7", "", 0u, 8u, 1u, NULL, 0u, NULL},
+        {"CSS8", "", 8u, 8u, 1u, NULL, 0u, NULL},
+        {"CSS9", "", 16u, 8u, 1u, NULL, 0u, NULL},
+        {"CSS10", "", 24u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 4u;
     return fields;

@@ -92,12 +92,12 @@ static inline icd_status_t cubeacp_raw_gps_status_encode(
 static inline const icd_field_t *cubeacp_raw_gps_status_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Gps Solution Status", "", 0u, 8u, 1u, NULL, 0u},
-        {"Number of tracked GPS satellites", "", 8u, 8u, 1u, NULL, 0u},
-        {"Number of GPS satellites used in solution", "", 16u, 8u, 1u, NULL, 0u},
-        {"Counter for XYZ Lof from GPS", "", 24u, 8u, 1u, NULL, 0u},
-        {"Counter for RANGE log from GPS", "", 32u, 8u, 1u, NULL, 0u},
-        {"Response Message for GPS log setup", "", 40u, 8u, 1u, NULL, 0u},
+        {"Gps Solution Status", "", 0u, 8u, 1u, NULL, 0u, NULL},
+        {"Number of tracked GPS satellites", "", 8u, 8u, 1u, NULL, 0u, NULL},
+        {"Number of GPS satellites used in solution", "", 16u, 8u, 1u, NULL, 0u, NULL},
+        {"Counter for XYZ Lof from GPS", "", 24u, 8u, 1u, NULL, 0u, NULL},
+        {"Counter for RANGE log from GPS", "", 32u, 8u, 1u, NULL, 0u, NULL},
+        {"Response Message for GPS log setup", "", 40u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 6u;
     return fields;

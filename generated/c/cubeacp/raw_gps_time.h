@@ -66,8 +66,8 @@ static inline icd_status_t cubeacp_raw_gps_time_encode(
 static inline const icd_field_t *cubeacp_raw_gps_time_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"GPS Reference Week", "", 0u, 16u, 1u, NULL, 0u},
-        {"GPS Time Milliseconds", "ms", 16u, 32u, 1u, NULL, 0u},
+        {"GPS Reference Week", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"GPS Time Milliseconds", "ms", 16u, 32u, 1u, NULL, 0u, NULL},
     };
     *count = 2u;
     return fields;

@@ -72,8 +72,8 @@ static inline icd_status_t cubeacp_raw_gps_y_encode(
 static inline const icd_field_t *cubeacp_raw_gps_y_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"ECEF Position Y", "m", 0u, 32u, 1u, NULL, 0u},
-        {"ECEF Velocity Y", "m/s", 32u, 16u, 1u, NULL, 0u},
+        {"ECEF Position Y", "m", 0u, 32u, 1u, NULL, 0u, NULL},
+        {"ECEF Velocity Y", "m/s", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 2u;
     return fields;

@@ -72,8 +72,8 @@ static inline icd_status_t cubeacp_raw_gps_z_encode(
 static inline const icd_field_t *cubeacp_raw_gps_z_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"ECEF Position Z", "m", 0u, 32u, 1u, NULL, 0u},
-        {"ECEF Velocity Z", "m/s", 32u, 16u, 1u, NULL, 0u},
+        {"ECEF Position Z", "m", 0u, 32u, 1u, NULL, 0u, NULL},
+        {"ECEF Velocity Z", "m/s", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 2u;
     return fields;

@@ -76,9 +76,9 @@ static inline icd_status_t cubeacp_raw_magnetometer_encode(
 static inline const icd_field_t *cubeacp_raw_magnetometer_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"MagX", "", 0u, 16u, 1u, NULL, 0u},
-        {"MagY", "", 16u, 16u, 1u, NULL, 0u},
-        {"MagZ", "", 32u, 16u, 1u, NULL, 0u},
+        {"MagX", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"MagY", "", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"MagZ", "", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

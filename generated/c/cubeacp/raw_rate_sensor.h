@@ -76,9 +76,9 @@ static inline icd_status_t cubeacp_raw_rate_sensor_encode(
 static inline const icd_field_t *cubeacp_raw_rate_sensor_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"RateX", "", 0u, 16u, 1u, NULL, 0u},
-        {"RateY", "", 16u, 16u, 1u, NULL, 0u},
-        {"RateZ", "", 32u, 16u, 1u, NULL, 0u},
+        {"RateX", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"RateY", "", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"RateZ", "", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

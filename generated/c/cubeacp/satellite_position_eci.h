@@ -66,9 +66,9 @@ static inline icd_status_t cubeacp_satellite_position_eci_encode(
 static inline const icd_field_t *cubeacp_satellite_position_eci_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"X position", "km", 0u, 16u, 1u, NULL, 0u},
-        {"Y position", "km", 16u, 16u, 1u, NULL, 0u},
-        {"Z position", "km", 32u, 16u, 1u, NULL, 0u},
+        {"X position", "km", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Y position", "km", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Z position", "km", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -75,9 +75,9 @@ static inline icd_status_t cubeacp_satellite_position_llh_encode(
 static inline const icd_field_t *cubeacp_satellite_position_llh_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Latitude", "deg", 0u, 16u, 1u, NULL, 0u},
-        {"Longitude", "deg", 16u, 16u, 1u, NULL, 0u},
-        {"Altitude", "km", 32u, 16u, 1u, NULL, 0u},
+        {"Latitude", "deg", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Longitude", "deg", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Altitude", "km", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

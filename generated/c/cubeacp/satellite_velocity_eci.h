@@ -66,9 +66,9 @@ static inline icd_status_t cubeacp_satellite_velocity_eci_encode(
 static inline const icd_field_t *cubeacp_satellite_velocity_eci_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"X Velocity", "m/s", 0u, 16u, 1u, NULL, 0u},
-        {"Y Velocity", "m/s", 16u, 16u, 1u, NULL, 0u},
-        {"Z Velocity", "m/s", 32u, 16u, 1u, NULL, 0u},
+        {"X Velocity", "m/s", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Y Velocity", "m/s", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Z Velocity", "m/s", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -64,8 +64,8 @@ static inline icd_status_t cubeacp_save_image_encode(
 static inline const icd_field_t *cubeacp_save_image_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Camera Select", "", 0u, 8u, 1u, NULL, 0u},
-        {"Image Size", "", 8u, 8u, 1u, NULL, 0u},
+        {"Camera Select", "", 0u, 8u, 1u, NULL, 0u, NULL},
+        {"Image Size", "", 8u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 2u;
     return fields;

@@ -82,9 +82,9 @@ static inline icd_status_t cubeacp_sd_log2_configuration_encode(
 static inline const icd_field_t *cubeacp_sd_log2_configuration_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Log Selection", "", 0u, 80u, 1u, NULL, 0u},
-        {"Log Period", "", 80u, 16u, 1u, NULL, 0u},
-        {"Log Destination", "", 96u, 8u, 1u, NULL, 0u},
+        {"Log Selection", "", 0u, 80u, 1u, NULL, 0u, NULL},
+        {"Log Period", "", 80u, 16u, 1u, NULL, 0u, NULL},
+        {"Log Destination", "", 96u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -63,7 +63,7 @@ static inline icd_status_t cubeacp_set_adcs_run_mode_encode(
 static inline const icd_field_t *cubeacp_set_adcs_run_mode_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Enabled", "", 0u, 8u, 1u, NULL, 0u},
+        {"Enabled", "", 0u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 1u;
     return fields;

@@ -71,8 +71,8 @@ static inline icd_status_t cubeacp_set_attitude_control_mode_encode(
 static inline const icd_field_t *cubeacp_set_attitude_control_mode_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Control Mode", "", 0u, 8u, 1u, NULL, 0u},
-        {"Timeout", "s", 8u, 16u, 1u, NULL, 0u},
+        {"Control Mode", "", 0u, 8u, 1u, NULL, 0u, NULL},
+        {"Timeout", "s", 8u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 2u;
     return fields;

@@ -58,7 +58,7 @@ static inline icd_status_t cubeacp_set_attitude_estimation_mode_encode(
 static inline const icd_field_t *cubeacp_set_attitude_estimation_mode_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Attitude Estimation Mode", "", 0u, 8u, 1u, NULL, 0u},
+        {"Attitude Estimation Mode", "", 0u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 1u;
     return fields;

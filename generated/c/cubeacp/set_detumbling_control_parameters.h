@@ -94,10 +94,10 @@ static inline const icd_field_t *cubeacp_set_detumbling_control_parameters_field
         {ICD_LIMIT_BELOW, 0.0},
     };
     static const icd_field_t fields[] = {
-        {"Detumbling Spin Gain", "", 0u, 32u, 1u, NULL, 0u},
-        {"Detumbling Damping Gain", "", 32u, 32u, 1u, NULL, 0u},
-        {"Reference spin rate", "deg/s", 64u, 16u, 1u, &limits[0], 1u},
-        {"Fast BDot Detumbling Gain", "", 80u, 32u, 1u, NULL, 0u},
+        {"Detumbling Spin Gain", "", 0u, 32u, 1u, NULL, 0u, NULL},
+        {"Detumbling Damping Gain", "", 32u, 32u, 1u, NULL, 0u, NULL},
+        {"Reference spin rate", "deg/s", 64u, 16u, 1u, &limits[0], 1u, NULL},
+        {"Fast BDot Detumbling Gain", "", 80u, 32u, 1u, NULL, 0u, NULL},
     };
     *count = 4u;
     return fields;

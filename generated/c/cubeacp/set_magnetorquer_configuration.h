@@ -81,9 +81,9 @@ static inline icd_status_t cubeacp_set_magnetorquer_configuration_encode(
 static inline const icd_field_t *cubeacp_set_magnetorquer_configuration_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Magnetorquer 1 Configuration", "", 0u, 8u, 1u, NULL, 0u},
-        {"Magnetorquer 2 Configuration", "", 8u, 8u, 1u, NULL, 0u},
-        {"Magnetorquer 3 Configuration", "", 16u, 8u, 1u, NULL, 0u},
+        {"Magnetorquer 1 Configuration", "", 0u, 8u, 1u, NULL, 0u, NULL},
+        {"Magnetorquer 2 Configuration", "", 8u, 8u, 1u, NULL, 0u, NULL},
+        {"Magnetorquer 3 Configuration", "", 16u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -85,9 +85,9 @@ static inline icd_status_t cubeacp_set_magnetorquer_output_encode(
 static inline const icd_field_t *cubeacp_set_magnetorquer_output_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Commanded X Magnetorquer duty cycle", "", 0u, 16u, 1u, NULL, 0u},
-        {"Commanded Y Magnetorquer duty cycle", "", 16u, 16u, 1u, NULL, 0u},
-        {"Commanded Z Magnetorquer duty cycle", "", 32u, 16u, 1u, NULL, 0u},
+        {"Commanded X Magnetorquer duty cycle", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Commanded Y Magnetorquer duty cycle", "", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Commanded Z Magnetorquer duty cycle", "", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -65,7 +65,7 @@ static inline icd_status_t cubeacp_set_mode_of_magnetometer_operation_encode(
 static inline const icd_field_t *cubeacp_set_mode_of_magnetometer_operation_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Magnetometer Mode", "", 0u, 8u, 1u, NULL, 0u},
+        {"Magnetometer Mode", "", 0u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 1u;
     return fields;

@@ -101,13 +101,13 @@ static inline icd_status_t cubeacp_set_rate_gyro_configuration_encode(
 static inline const icd_field_t *cubeacp_set_rate_gyro_configuration_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Gyro1 Configuration", "", 0u, 8u, 1u, NULL, 0u},
-        {"Gyro2 Configuration", "", 8u, 8u, 1u, NULL, 0u},
-        {"Gyro3 Configuration", "", 16u, 8u, 1u, NULL, 0u},
-        {"X-Rate Sensor Offset", "deg/s", 24u, 16u, 1u, NULL, 0u},
-        {"Y-Rate Sensor Offset", "deg/s", 40u, 16u, 1u, NULL, 0u},
-        {"Z-Rate Sensor Offset", "deg/s", 56u, 16u, 1u, NULL, 0u},
-        {"RateSensorMult", "", 72u, 8u, 1u, NULL, 0u},
+        {"Gyro1 Configuration", "", 0u, 8u, 1u, NULL, 0u, NULL},
+        {"Gyro2 Configuration", "", 8u, 8u, 1u, NULL, 0u, NULL},
+        {"Gyro3 Configuration", "", 16u, 8u, 1u, NULL, 0u, NULL},
+        {"X-Rate Sensor Offset", "deg/s", 24u, 16u, 1u, NULL, 0u, NULL},
+        {"Y-Rate Sensor Offset", "deg/s", 40u, 16u, 1u, NULL, 0u, NULL},
+        {"Z-Rate Sensor Offset", "deg/s", 56u, 16u, 1u, NULL, 0u, NULL},
+        {"RateSensorMult", "", 72u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 7u;
     return fields;

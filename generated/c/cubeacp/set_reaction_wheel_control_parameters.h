@@ -117,11 +117,11 @@ static inline icd_status_t cubeacp_set_reaction_wheel_control_parameters_encode(
 static inline const icd_field_t *cubeacp_set_reaction_wheel_control_parameters_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"RWheel Proportional Gain", "", 0u, 32u, 1u, NULL, 0u},
-        {"RWheel Derivative Gain", "", 32u, 32u, 1u, NULL, 0u},
-        {"Y-Wheel Bias Momentum", "Nms", 64u, 32u, 1u, NULL, 0u},
-        {"Sun-pointing Facet", "", 96u, 7u, 1u, NULL, 0u},
-        {"Automatic Control Transition due to Wheel Errors", "", 103u, 1u, 1u, NULL, 0u},
+        {"RWheel Proportional Gain", "", 0u, 32u, 1u, NULL, 0u, NULL},
+        {"RWheel Derivative Gain", "", 32u, 32u, 1u, NULL, 0u, NULL},
+        {"Y-Wheel Bias Momentum", "Nms", 64u, 32u, 1u, NULL, 0u, NULL},
+        {"Sun-pointing Facet", "", 96u, 7u, 1u, NULL, 0u, NULL},
+        {"Automatic Control Transition due to Wheel Errors", "", 103u, 1u, 1u, NULL, 0u, NULL},
     };
     *count = 5u;
     return fields;

@@ -91,10 +91,10 @@ static inline icd_status_t cubeacp_set_tracking_controller_gain_parameters_encod
 static inline const icd_field_t *cubeacp_set_tracking_controller_gain_parameters_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Tracking Proportional Gain", "", 0u, 32u, 1u, NULL, 0u},
-        {"Tracking Derivative Gain", "", 32u, 32u, 1u, NULL, 0u},
-        {"Tracking Integral Gain", "", 64u, 32u, 1u, NULL, 0u},
-        {"Target-tracking Facet", "", 96u, 8u, 1u, NULL, 0u},
+        {"Tracking Proportional Gain", "", 0u, 32u, 1u, NULL, 0u, NULL},
+        {"Tracking Derivative Gain", "", 32u, 32u, 1u, NULL, 0u, NULL},
+        {"Tracking Integral Gain", "", 64u, 32u, 1u, NULL, 0u, NULL},
+        {"Target-tracking Facet", "", 96u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 4u;
     return fields;

@@ -90,10 +90,10 @@ static inline icd_status_t cubeacp_set_wheel_configuration_encode(
 static inline const icd_field_t *cubeacp_set_wheel_configuration_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"RW1 Configuration", "", 0u, 8u, 1u, NULL, 0u},
-        {"RW2 Configuration", "", 8u, 8u, 1u, NULL, 0u},
-        {"RW3 Configuration", "", 16u, 8u, 1u, NULL, 0u},
-        {"RW4 Configuration", "", 24u, 8u, 1u, NULL, 0u},
+        {"RW1 Configuration", "", 0u, 8u, 1u, NULL, 0u, NULL},
+        {"RW2 Configuration", "", 8u, 8u, 1u, NULL, 0u, NULL},
+        {"RW3 Configuration", "", 16u, 8u, 1u, NULL, 0u, NULL},
+        {"RW4 Configuration", "", 24u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 4u;
     return fields;

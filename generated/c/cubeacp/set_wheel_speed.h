@@ -68,9 +68,9 @@ static inline icd_status_t cubeacp_set_wheel_speed_encode(
 static inline const icd_field_t *cubeacp_set_wheel_speed_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Commanded X speed", "rpm", 0u, 16u, 1u, NULL, 0u},
-        {"Commanded Y speed", "rpm", 16u, 16u, 1u, NULL, 0u},
-        {"Commanded Z speed", "rpm", 32u, 16u, 1u, NULL, 0u},
+        {"Commanded X speed", "rpm", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Commanded Y speed", "rpm", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Commanded Z speed", "rpm", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -104,11 +104,11 @@ static inline const icd_field_t *cubeacp_set_y_wheel_control_parameters_fields(s
         {ICD_LIMIT_BELOW, 0.0},
     };
     static const icd_field_t fields[] = {
-        {"Y-Momentum Control Gain", "", 0u, 32u, 1u, NULL, 0u},
-        {"Y-momentum Nutation Damping Gain", "", 32u, 32u, 1u, NULL, 0u},
-        {"Y-momentum Proportional Gain", "", 64u, 32u, 1u, NULL, 0u},
-        {"Y-momentum Derivative Gain", "", 96u, 32u, 1u, NULL, 0u},
-        {"Reference Wheel Momentum", "Nms", 128u, 32u, 1u, &limits[0], 1u},
+        {"Y-Momentum Control Gain", "", 0u, 32u, 1u, NULL, 0u, NULL},
+        {"Y-momentum Nutation Damping Gain", "", 32u, 32u, 1u, NULL, 0u, NULL},
+        {"Y-momentum Proportional Gain", "", 64u, 32u, 1u, NULL, 0u, NULL},
+        {"Y-momentum Derivative Gain", "", 96u, 32u, 1u, NULL, 0u, NULL},
+        {"Reference Wheel Momentum", "Nms", 128u, 32u, 1u, &limits[0], 1u, NULL},
     };
     *count = 5u;
     return fields;

@@ -81,14 +81,14 @@ static inline icd_status_t cubeacp_sgp4_orbit_parameters_encode(
 static inline const icd_field_t *cubeacp_sgp4_orbit_parameters_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Inclination", "deg", 0u, 64u, 1u, NULL, 0u},
-        {"Eccentricity", "", 64u, 64u, 1u, NULL, 0u},
-        {"Right-ascension of the Ascending Node", "deg", 128u, 64u, 1u, NULL, 0u},
-        {"Argument of Perigee", "deg", 192u, 64u, 1u, NULL, 0u},
-        {"B-Star drag term", "", 256u, 64u, 1u, NULL, 0u},
-        {"Mean Motion", "orbits/day", 320u, 64u, 1u, NULL, 0u},
-        {"Mean Anomaly", "deg", 384u, 64u, 1u, NULL, 0u},
-        {"Epoch", "year.day", 448u, 64u, 1u, NULL, 0u},
+        {"Inclination", "deg", 0u, 64u, 1u, NULL, 0u, NULL},
+        {"Eccentricity", "", 64u, 64u, 1u, NULL, 0u, NULL},
+        {"Right-ascension of the Ascending Node", "deg", 128u, 64u, 1u, NULL, 0u, NULL},
+        {"Argument of Perigee", "deg", 192u, 64u, 1u, NULL, 0u, NULL},
+        {"B-Star drag term", "", 256u, 64u, 1u, NULL, 0u, NULL},
+        {"Mean Motion", "orbits/day", 320u, 64u, 1u, NULL, 0u, NULL},
+        {"Mean Anomaly", "deg", 384u, 64u, 1u, NULL, 0u, NULL},
+        {"Epoch", "year.day", 448u, 64u, 1u, NULL, 0u, NULL},
     };
     *count = 8u;
     return fields;

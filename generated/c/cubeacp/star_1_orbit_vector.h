@@ -78,9 +78,9 @@ static inline icd_status_t cubeacp_star_1_orbit_vector_encode(
 static inline const icd_field_t *cubeacp_star_1_orbit_vector_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Star1OX", "", 0u, 16u, 1u, NULL, 0u},
-        {"Star1OY", "", 16u, 16u, 1u, NULL, 0u},
-        {"Star1OZ", "", 32u, 16u, 1u, NULL, 0u},
+        {"Star1OX", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Star1OY", "", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Star1OZ", "", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -76,9 +76,9 @@ static inline icd_status_t cubeacp_star_2_body_vector_encode(
 static inline const icd_field_t *cubeacp_star_2_body_vector_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Star2BX", "", 0u, 16u, 1u, NULL, 0u},
-        {"Star2BY", "", 16u, 16u, 1u, NULL, 0u},
-        {"Star2BZ", "", 32u, 16u, 1u, NULL, 0u},
+        {"Star2BX", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Star2BY", "", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Star2BZ", "", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

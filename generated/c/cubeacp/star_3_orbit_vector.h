@@ -78,9 +78,9 @@ static inline icd_status_t cubeacp_star_3_orbit_vector_encode(
 static inline const icd_field_t *cubeacp_star_3_orbit_vector_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Star3OX", "", 0u, 16u, 1u, NULL, 0u},
-        {"Star3OY", "", 16u, 16u, 1u, NULL, 0u},
-        {"Star3OZ", "", 32u, 16u, 1u, NULL, 0u},
+        {"Star3OX", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Star3OY", "", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Star3OZ", "", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -78,9 +78,9 @@ static inline icd_status_t cubeacp_star_3_raw_data_encode(
 static inline const icd_field_t *cubeacp_star_3_raw_data_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Catalogue Star 3", "", 0u, 16u, 1u, NULL, 0u},
-        {"Centroid X Star 3", "", 16u, 16u, 1u, NULL, 0u},
-        {"Centroid Y Star 3", "", 32u, 16u, 1u, NULL, 0u},
+        {"Catalogue Star 3", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Centroid X Star 3", "", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Centroid Y Star 3", "", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -77,9 +77,9 @@ static inline icd_status_t cubeacp_star_magnitude_encode(
 static inline const icd_field_t *cubeacp_star_magnitude_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Magnitude Star 1", "", 0u, 16u, 1u, NULL, 0u},
-        {"Magnitude Star 2", "", 16u, 16u, 1u, NULL, 0u},
-        {"Magnitude Star 3", "", 32u, 16u, 1u, NULL, 0u},
+        {"Magnitude Star 1", "", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Magnitude Star 2", "", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Magnitude Star 3", "", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -98,12 +98,12 @@ static inline icd_status_t cubeacp_star_performance1_encode(
 static inline const icd_field_t *cubeacp_star_performance1_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Number of stars detected", "stars", 0u, 8u, 1u, NULL, 0u},
-        {"Star image noise", "noise", 8u, 8u, 1u, NULL, 0u},
-        {"Invalid Stars", "Invalid stars", 16u, 8u, 1u, NULL, 0u},
-        {"Number of stars identified", "stars", 24u, 8u, 1u, NULL, 0u},
-        {"Identification mode", "", 32u, 8u, 1u, NULL, 0u},
-        {"Image dark value", "8-bit pixel value", 40u, 8u, 1u, NULL, 0u},
+        {"Number of stars detected", "stars", 0u, 8u, 1u, NULL, 0u, NULL},
+        {"Star image noise", "noise", 8u, 8u, 1u, NULL, 0u, NULL},
+        {"Invalid Stars", "Invalid stars", 16u, 8u, 1u, NULL, 0u, NULL},
+        {"Number of stars identified", "stars", 24u, 8u, 1u, NULL, 0u, NULL},
+        {"Identification mode", "", 32u, 8u, 1u, NULL, 0u, NULL},
+        {"Image dark value", "8-bit pixel value", 40u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 6u;
     return fields;

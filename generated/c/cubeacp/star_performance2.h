@@ -128,18 +128,18 @@ static inline icd_status_t cubeacp_star_performance2_encode(
 static inline const icd_field_t *cubeacp_star_performance2_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Image Capture Success", "", 0u, 1u, 1u, NULL, 0u},
-        {"Detection Success", "", 1u, 1u, 1u, NULL, 0u},
-        {"Identification Success", "", 2u, 1u, 1u, NULL, 0u},
-        {"AttitudeSuccess", "", 3u, 1u, 1u, NULL, 0u},
-        {"Processing Time Error", "", 4u, 1u, 1u, NULL, 0u},
-        {"Tracking Module Enabled", "", 5u, 1u, 1u, NULL, 0u},
-        {"Prediction Enabled", "", 6u, 1u, 1u, NULL, 0u},
-        {"Comms error", "", 7u, 1u, 1u, NULL, 0u},
-        {"Sample Period", "", 8u, 16u, 1u, NULL, 0u},
-        {"Star 1 confidence", "%", 24u, 8u, 1u, NULL, 0u},
-        {"Star 2 confidence", "%", 32u, 8u, 1u, NULL, 0u},
-        {"Star 3 confidence", "%", 40u, 8u, 1u, NULL, 0u},
+        {"Image Capture Success", "", 0u, 1u, 1u, NULL, 0u, NULL},
+        {"Detection Success", "", 1u, 1u, 1u, NULL, 0u, NULL},
+        {"Identification Success", "", 2u, 1u, 1u, NULL, 0u, NULL},
+        {"AttitudeSuccess", "", 3u, 1u, 1u, NULL, 0u, NULL},
+        {"Processing Time Error", "", 4u, 1u, 1u, NULL, 0u, NULL},
+        {"Tracking Module Enabled", "", 5u, 1u, 1u, NULL, 0u, NULL},
+        {"Prediction Enabled", "", 6u, 1u, 1u, NULL, 0u, NULL},
+        {"Comms error", "", 7u, 1u, 1u, NULL, 0u, NULL},
+        {"Sample Period", "", 8u, 16u, 1u, NULL, 0u, NULL},
+        {"Star 1 confidence", "%", 24u, 8u, 1u, NULL, 0u, NULL},
+        {"Star 2 confidence", "%", 32u, 8u, 1u, NULL, 0u, NULL},
+        {"Star 3 confidence", "%", 40u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 12u;
     return fields;

@@ -67,9 +67,9 @@ static inline icd_status_t cubeacp_star_timing_encode(
 static inline const icd_field_t *cubeacp_star_timing_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Capture", "ms", 0u, 16u, 1u, NULL, 0u},
-        {"Detection", "ms", 16u, 16u, 1u, NULL, 0u},
-        {"Identification", "ms", 32u, 16u, 1u, NULL, 0u},
+        {"Capture", "ms", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Detection", "ms", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Identification", "ms", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -97,12 +97,12 @@ static inline icd_status_t cubeacp_state_encode(
 static inline const icd_field_t *cubeacp_state_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"ADCS Config Load Error", "", 0u, 1u, 1u, NULL, 0u},
-        {"Orbit Parameter Load Error", "", 1u, 1u, 1u, NULL, 0u},
-        {"System Configuration Load Error", "", 2u, 1u, 1u, NULL, 0u},
-        {"SD card initialisation error", "", 3u, 1u, 1u, NULL, 0u},
-        {"SD card read error", "", 4u, 1u, 1u, NULL, 0u},
-        {"SD card write error", "", 5u, 1u, 1u, NULL, 0u},
+        {"ADCS Config Load Error", "", 0u, 1u, 1u, NULL, 0u, NULL},
+        {"Orbit Parameter Load Error", "", 1u, 1u, 1u, NULL, 0u, NULL},
+        {"System Configuration Load Error", "", 2u, 1u, 1u, NULL, 0u, NULL},
+        {"SD card initialisation error", "", 3u, 1u, 1u, NULL, 0u, NULL},
+        {"SD card read error", "", 4u, 1u, 1u, NULL, 0u, NULL},
+        {"SD card write error", "", 5u, 1u, 1u, NULL, 0u, NULL},
     };
     *count = 6u;
     return fields;

@@ -69,8 +69,8 @@ static inline icd_status_t cubeacp_status_of_image_capture_and_save_operation_en
 static inline const icd_field_t *cubeacp_status_of_image_capture_and_save_operation_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Percentage Complete", "%", 0u, 8u, 1u, NULL, 0u},
-        {"Status", "", 8u, 8u, 1u, NULL, 0u},
+        {"Percentage Complete", "%", 0u, 8u, 1u, NULL, 0u, NULL},
+        {"Status", "", 8u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 2u;
     return fields;

@@ -82,9 +82,9 @@ static inline icd_status_t cubeacp_tracking_controller_target_reference_encode(
 static inline const icd_field_t *cubeacp_tracking_controller_target_reference_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Geocentric longitude of target", "deg", 0u, 32u, 1u, NULL, 0u},
-        {"Geocentric latitude of target", "deg", 32u, 32u, 1u, NULL, 0u},
-        {"Geocentric altitude of target", "m", 64u, 32u, 1u, NULL, 0u},
+        {"Geocentric longitude of target", "deg", 0u, 32u, 1u, NULL, 0u, NULL},
+        {"Geocentric latitude of target", "deg", 32u, 32u, 1u, NULL, 0u, NULL},
+        {"Geocentric altitude of target", "m", 64u, 32u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -74,8 +74,8 @@ static inline icd_status_t cubeacp_uart_log_configuration_encode(
 static inline const icd_field_t *cubeacp_uart_log_configuration_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Log Selection", "", 0u, 80u, 1u, NULL, 0u},
-        {"Log Period", "", 80u, 16u, 1u, NULL, 0u},
+        {"Log Selection", "", 0u, 80u, 1u, NULL, 0u, NULL},
+        {"Log Period", "", 80u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 2u;
     return fields;

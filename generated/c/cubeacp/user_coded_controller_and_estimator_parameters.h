@@ -72,8 +72,8 @@ static inline icd_status_t cubeacp_user_coded_controller_and_estimator_parameter
 static inline const icd_field_t *cubeacp_user_coded_controller_and_estimator_parameters_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"User Coded Controller Settings", "", 0u, 384u, 1u, NULL, 0u},
-        {"User Coded Estimator Settings", "", 384u, 384u, 1u, NULL, 0u},
+        {"User Coded Controller Settings", "", 0u, 384u, 1u, NULL, 0u, NULL},
+        {"User Coded Estimator Settings", "", 384u, 384u, 1u, NULL, 0u, NULL},
     };
     *count = 2u;
     return fields;

@@ -82,9 +82,9 @@ static inline icd_status_t cubeacp_wheel_currents_encode(
 static inline const icd_field_t *cubeacp_wheel_currents_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Wheel1Current", "mA", 0u, 16u, 1u, NULL, 0u},
-        {"Wheel2Current", "mA", 16u, 16u, 1u, NULL, 0u},
-        {"Wheel3Current", "mA", 32u, 16u, 1u, NULL, 0u},
+        {"Wheel1Current", "mA", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Wheel2Current", "mA", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Wheel3Current", "mA", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

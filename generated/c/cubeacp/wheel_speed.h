@@ -67,9 +67,9 @@ static inline icd_status_t cubeacp_wheel_speed_encode(
 static inline const icd_field_t *cubeacp_wheel_speed_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"X Wheel Speed", "rpm", 0u, 16u, 1u, NULL, 0u},
-        {"Y Wheel Speed", "rpm", 16u, 16u, 1u, NULL, 0u},
-        {"Z Wheel Speed", "rpm", 32u, 16u, 1u, NULL, 0u},
+        {"X Wheel Speed", "rpm", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Y Wheel Speed", "rpm", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Z Wheel Speed", "rpm", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -76,9 +76,9 @@ static inline icd_status_t cubeacp_wheel_speed_commands_encode(
 static inline const icd_field_t *cubeacp_wheel_speed_commands_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Commanded X Wheel Speed", "rpm", 0u, 16u, 1u, NULL, 0u},
-        {"Commanded Y Wheel Speed", "rpm", 16u, 16u, 1u, NULL, 0u},
-        {"Commanded Z Wheel Speed", "rpm", 32u, 16u, 1u, NULL, 0u},
+        {"Commanded X Wheel Speed", "rpm", 0u, 16u, 1u, NULL, 0u, NULL},
+        {"Commanded Y Wheel Speed", "rpm", 16u, 16u, 1u, NULL, 0u, NULL},
+        {"Commanded Z Wheel Speed", "rpm", 32u, 16u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -111,12 +111,12 @@ static inline icd_status_t cubemag_deployment_status_encode(
 static inline const icd_field_t *cubemag_deployment_status_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Burn Current", "mA", 0u, 32u, 1u, NULL, 0u},
-        {"Deployment Pin State", "", 32u, 1u, 1u, NULL, 0u},
-        {"Burn Pin State", "", 33u, 1u, 1u, NULL, 0u},
-        {"Burn UnderCurrent", "", 34u, 1u, 1u, NULL, 0u},
-        {"Burn OverCurrent", "", 35u, 1u, 1u, NULL, 0u},
-        {"Deployment Timeout", "", 36u, 1u, 1u, NULL, 0u},
+        {"Burn Current", "mA", 0u, 32u, 1u, NULL, 0u, NULL},
+        {"Deployment Pin State", "", 32u, 1u, 1u, NULL, 0u, NULL},
+        {"Burn Pin State", "", 33u, 1u, 1u, NULL, 0u, NULL},
+        {"Burn UnderCurrent", "", 34u, 1u, 1u, NULL, 0u, NULL},
+        {"Burn OverCurrent", "", 35u, 1u, 1u, NULL, 0u, NULL},
+        {"Deployment Timeout", "", 36u, 1u, 1u, NULL, 0u, NULL},
     };
     *count = 6u;
     return fields;

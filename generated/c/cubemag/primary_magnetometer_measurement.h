@@ -88,10 +88,10 @@ static inline icd_status_t cubemag_primary_magnetometer_measurement_encode(
 static inline const icd_field_t *cubemag_primary_magnetometer_measurement_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"X_axis", "nT", 0u, 32u, 1u, NULL, 0u},
-        {"Y_axis", "nT", 32u, 32u, 1u, NULL, 0u},
-        {"Z_axis", "nT", 64u, 32u, 1u, NULL, 0u},
-        {"Data Valid", "", 96u, 1u, 1u, NULL, 0u},
+        {"X_axis", "nT", 0u, 32u, 1u, NULL, 0u, NULL},
+        {"Y_axis", "nT", 32u, 32u, 1u, NULL, 0u, NULL},
+        {"Z_axis", "nT", 64u, 32u, 1u, NULL, 0u, NULL},
+        {"Data Valid", "", 96u, 1u, 1u, NULL, 0u, NULL},
     };
     *count = 4u;
     return fields;

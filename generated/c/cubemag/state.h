@@ -79,9 +79,9 @@ static inline icd_status_t cubemag_state_encode(
 static inline const icd_field_t *cubemag_state_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"MagSvc State", "", 0u, 8u, 1u, NULL, 0u},
-        {"Primary Mag State", "", 8u, 8u, 1u, NULL, 0u},
-        {"Red Mag State", "", 16u, 8u, 1u, NULL, 0u},
+        {"MagSvc State", "", 0u, 8u, 1u, NULL, 0u, NULL},
+        {"Primary Mag State", "", 8u, 8u, 1u, NULL, 0u, NULL},
+        {"Red Mag State", "", 16u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 3u;
     return fields;

@@ -67,7 +67,7 @@ static inline icd_status_t cubewheel_motor_power_encode(
 static inline const icd_field_t *cubewheel_motor_power_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Motor Power Switch", "", 0u, 1u, 1u, NULL, 0u},
+        {"Motor Power Switch", "", 0u, 1u, 1u, NULL, 0u, NULL},
     };
     *count = 1u;
     return fields;

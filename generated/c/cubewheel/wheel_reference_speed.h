@@ -71,7 +71,7 @@ static inline icd_status_t cubewheel_wheel_reference_speed_encode(
 static inline const icd_field_t *cubewheel_wheel_reference_speed_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Reference Speed", "rpm", 0u, 32u, 1u, NULL, 0u},
+        {"Reference Speed", "rpm", 0u, 32u, 1u, NULL, 0u, NULL},
     };
     *count = 1u;
     return fields;

@@ -75,8 +75,8 @@ static inline icd_status_t cubewheel_wheel_speed_encode(
 static inline const icd_field_t *cubewheel_wheel_speed_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
-        {"Wheel Speed", "rpm", 0u, 32u, 1u, NULL, 0u},
-        {"Wheel Error State", "", 32u, 8u, 1u, NULL, 0u},
+        {"Wheel Speed", "rpm", 0u, 32u, 1u, NULL, 0u, NULL},
+        {"Wheel Error State", "", 32u, 8u, 1u, NULL, 0u, NULL},
     };
     *count = 2u;
     return fields;

@@ -13,14 +13,15 @@ typedef struct {
 } icd_limit_t;
 
 /** What the ICD says of a field. */
-typedef struct {
+typedef struct icd_field {
     const char *name; /**< What the ICD calls it. */
     const char *unit; /**< Of the physical value; empty without one. */
-    uint32_t at;      /**< Its first bit in the frame; behind the longest, if only a frame's length tells its value. */
-    uint32_t bits;    /**< How many bits it has; of an array, each element. */
-    uint32_t count;   /**< How many elements an array has, or can have; 1 if it is none. */
+    uint32_t at;   /**< Its first bit in the frame, or struct; behind the longest, if only a frame's length tells it. */
+    uint32_t bits; /**< How many bits it has; of an array, each element. */
+    uint32_t count; /**< How many elements an array has, or can have; 1 if it is none. */
     const icd_limit_t *limits;
     size_t limit_count;
+    const struct icd_field *(*fields)(size_t *count); /**< What a struct is made of; NULL of what is none. */
 } icd_field_t;
 
 #ifndef ICDGEN_NO_DOUBLE

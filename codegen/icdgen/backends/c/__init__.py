@@ -7,9 +7,21 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any
 
 from icdgen.backends import Identifier
-from icdgen.backends.c import accessors, bits, conditional, constants, decoding, encoding, fields, names, parts, types
+from icdgen.backends.c import (
+    accessors,
+    bits,
+    conditional,
+    constants,
+    decoding,
+    encoding,
+    fields,
+    misfits,
+    names,
+    parts,
+    types,
+)
 from icdgen.backends.c.declared_names import declared_names
-from icdgen.backends.c.member_groups import in_groups
+from icdgen.backends.c.member_groups import Groups, Structs, in_groups
 from icdgen.backends.c.reserved_words import RESERVED
 from icdgen.backends.c.runtime import whole
 from icdgen.backends.c.statement import call, head, like
@@ -19,6 +31,7 @@ from icdgen.describe import Description, MessageDescription, NodeDescription, de
 from icdgen.describe.comments import sentence, text_comment, words
 from icdgen.describe.description import Composite, TailDescription
 from icdgen.describe.numbers import byte_count, length_text
+from icdgen.describe.repeated import Repeated, all_repeated, repeated_in
 from icdgen.icd.model import Icd
 
 if TYPE_CHECKING:
@@ -93,51 +106,67 @@ def _composite(one: Composite[Any], more: Iterable[str] = ()) -> dict[str, objec
         "declaration": types.declaration,
         "whole_accessors": accessors.whole_accessors(one),
         "accessors": accessors.accessors(one),
+        "known": fields.fields(one),
     }
 
 
 def _message(message: MessageDescription) -> dict[str, object]:
-    groups = in_groups(message.steady)
+    groups = in_groups(message.steady) + _arrays(message, (one for one in repeated_in(message) if not one.part.is_open))
+    excess, excess_open = misfits.gathering(message), misfits.gathering(message, is_open=True)
     return {
         **_composite(message, parts.headers(message)),
         "empty": decoding.EMPTY,
         "decode": decoding.statements(message, groups),
+        "repeated": [_repeated(message, one) for one in all_repeated(message)],
         "element": None,
         "inner": [],
         "miscount": "",
-        "excess": bits.excess,
-        "narrow": [(field, bits.excess(field)) for field in message.fields if field.is_narrow and not field.is_open],
+        "misfits": misfits.naming(message),
+        "misfits_of_end": misfits.naming(message, is_open=True),
+        "excess": excess + excess_open,
         "excess_type": bits.excess_type(message),
         "encode": encoding.statements(message, groups),
         "conditional": conditional.conditional(message),
         **(_tail(message, message.tail) if message.tail else {}),
         "views": [accessors.view(field) for field in message.seen],
         "parts": parts.parts(message),
-        "known": fields.fields(message),
+    }
+
+
+def _arrays(message: MessageDescription, found: Iterable[Repeated]) -> Groups:
+    return [
+        Structs(one.part, one.begin, one.step, names.reading(message, one.name), names.writing(message, one.name))
+        for one in found
+    ]
+
+
+def _repeated(message: MessageDescription, one: Repeated) -> dict[str, object]:
+    """The functions that read and write an element of an array of structs."""
+    groups = in_groups(one.element.sent_fields) + _arrays(message, repeated_in(one.element, f"{one.name}_"))
+    return {
+        "part": one.part,
+        "type": f"{names.stem(one.element)}_t",
+        "reading": names.reading(message, one.name),
+        "writing": names.writing(message, one.name),
+        "read": decoding.statements(one.element, groups),
+        "write": encoding.statements(one.element, groups),
     }
 
 
 def _tail(message: MessageDescription, tail: TailDescription) -> dict[str, object]:
     """What the code of frames that differ in length needs."""
-    element = tail.element
-    own = in_groups(element.fields) if element is not None else []
-    of_element = (
-        None
-        if element is None
-        else {
-            "type": f"{names.stem(element)}_t",
-            "reading": names.reading(message, tail),
-            "writing": names.writing(message, tail),
+    of_element = None
+    if tail.element is not None:
+        reading, writing = names.reading(message, tail.part.name), names.writing(message, tail.part.name)
+        of_element = {
+            "type": f"{names.stem(tail.element)}_t",
+            "reading": reading,
             "walking": names.walking(message, tail) if not message.inner else "",
             "there": decoding.there(tail),
-            "place": decoding.element_place(tail),
-            "read": decoding.statements(element, own),
-            "write": encoding.statements(element, own),
-            "decode": decoding.of_elements(message, tail),
-            "encode": encoding.of_elements(message, tail),
-            "narrow": [one for one in element.fields if one.is_narrow],
+            "place": decoding.place(tail.begin, tail.step),
+            "decode": decoding.of_elements(tail, reading),
+            "encode": [encoding.of_elements(tail, writing)],
         }
-    )
     return {
         "element": of_element,
         "inner": decoding.of_inner(message),

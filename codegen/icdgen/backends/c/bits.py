@@ -37,18 +37,18 @@ class Read(NamedTuple):
         return self.value.format(bits=joined(self.terms))
 
 
-def read(field: FieldDescription) -> Read:
-    """The raw value of an integer, enum or bool field (the bits of a float) over ``buffer``."""
+def read(field: FieldDescription, frame: str = "buffer") -> Read:
+    """The raw value of an integer, enum or bool field (the bits of a float) over the bytes that ``frame`` points to."""
     bits = field.model.bits
     if is_word(field):
-        return Read(32, (_load(field),), f"icdgen_i{bits}({BITS})" if field.storage.signed else BITS)
+        return Read(32, (_load(field, frame),), f"icdgen_i{bits}({BITS})" if field.storage.signed else BITS)
     pieces = field.pieces
     if field.model.type == "bool":
-        return Read(32, (f"{_byte(pieces[0])} & {mask(pieces[0].mask, 8)}",), f"({BITS}) != 0u")
+        return Read(32, (f"{_byte(pieces[0], frame)} & {mask(pieces[0].mask, 8)}",), f"({BITS}) != 0u")
     wide = 64 if bits > 32 else 32
     if len(pieces) == 1:
-        return Read(wide, (_low_bits(pieces[0]),), _from_bits(field, wide, joined=False))
-    terms = tuple(_shifted(piece, wide) for piece in sorted(pieces, key=lambda p: p.at))
+        return Read(wide, (_low_bits(pieces[0], frame),), _from_bits(field, wide, joined=False))
+    terms = tuple(_shifted(piece, wide, frame) for piece in sorted(pieces, key=lambda p: p.at))
     return Read(wide, terms, _from_bits(field, wide, joined=True))
 
 
@@ -63,25 +63,25 @@ def _from_bits(field: FieldDescription, wide: int, joined: bool) -> str:
     return extended if storage.bits == wide else cast(extended, storage.bits, True)
 
 
-def _load(field: FieldDescription) -> str:
+def _load(field: FieldDescription, frame: str) -> str:
     byte, bits = field.model.at // 8, field.model.bits
-    return f"buffer[{byte}]" if bits == 8 else f"icdgen_load_u{bits}{order(field)}(&buffer[{byte}])"
+    return f"{frame}[{byte}]" if bits == 8 else f"icdgen_load_u{bits}{order(field)}(&{frame}[{byte}])"
 
 
-def _byte(piece: Piece) -> str:
-    return f"buffer[{piece.byte}]"
+def _byte(piece: Piece, frame: str) -> str:
+    return f"{frame}[{piece.byte}]"
 
 
-def _low_bits(piece: Piece) -> str:
+def _low_bits(piece: Piece, frame: str) -> str:
     """The run of bits, moved down to bit 0."""
     if piece.shift == 0:
-        return _byte(piece) if piece.bits == 8 else f"{_byte(piece)} & {mask(piece.mask, 8)}"
-    return f"({_byte(piece)} >> {piece.shift}) & {mask((1 << piece.bits) - 1, 8)}"
+        return _byte(piece, frame) if piece.bits == 8 else f"{_byte(piece, frame)} & {mask(piece.mask, 8)}"
+    return f"({_byte(piece, frame)} >> {piece.shift}) & {mask((1 << piece.bits) - 1, 8)}"
 
 
-def _shifted(piece: Piece, wide: int) -> str:
+def _shifted(piece: Piece, wide: int, frame: str) -> str:
     """The run of bits, moved to its place in the value."""
-    low = cast(_low_bits(piece), wide)
+    low = cast(_low_bits(piece, frame), wide)
     return f"{low} << {piece.at}" if piece.at else low
 
 
@@ -98,14 +98,14 @@ def put(field: FieldDescription, piece: Piece) -> str:
     return f"{grouped(value)} << {piece.shift}" if piece.shift else value
 
 
-def store(field: FieldDescription) -> str:
-    """The statement that stores a field for which `is_word` holds."""
+def store(field: FieldDescription, frame: str = "buffer") -> str:
+    """The statement that stores a field for which `is_word` holds in the bytes that ``frame`` points to."""
     byte, bits, value = field.model.at // 8, field.model.bits, _raw(field)
     if field.storage.signed or field.storage.bits > bits:
         value = cast(value, bits)
     if bits == 8:
-        return f"buffer[{byte}] = {value};"
-    return f"icdgen_store_u{bits}{order(field)}(&buffer[{byte}], {value});"
+        return f"{frame}[{byte}] = {value};"
+    return f"icdgen_store_u{bits}{order(field)}(&{frame}[{byte}], {value});"
 
 
 def _raw(field: FieldDescription) -> str:

@@ -11,6 +11,7 @@ from icdgen.backends.c.parts import part_name
 from icdgen.describe import Description, FieldDescription, MessageDescription, NodeDescription, StructDescription
 from icdgen.describe.description import Composite
 from icdgen.describe.parts import parts_of
+from icdgen.describe.repeated import all_repeated
 
 FILE = "C names at file scope"
 FILES = "C header files"
@@ -95,7 +96,7 @@ def _struct(struct: StructDescription) -> Iterator[Identifier]:
     stem = names.stem(struct)
     yield struct.identifier(FILES, f"{struct.node.name}/{struct.name}.h")
     yield struct.identifier(FILE, names.constant(struct, "h"))
-    for end in ("t", "init"):
+    for end in ("t", "init", "fields"):
         yield struct.identifier(FILE, f"{stem}_{end}")
     yield from _fields(struct)
 
@@ -108,9 +109,11 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
     rare = (*(("misfit",) if message.is_narrow else ()), *(("size",) if message.tail else ()))
     for end in ("t", "init", "decode", "encode", "fields", *rare):
         yield message.identifier(FILE, f"{stem}_{end}")
-    if message.tail is not None and message.tail.element is not None:
-        for name in (names.reading, names.writing, *((names.walking,) if not message.inner else ())):
-            yield message.identifier(FILE, name(message, message.tail))
+    for one in all_repeated(message):
+        yield message.identifier(FILE, names.reading(message, one.name))
+        yield message.identifier(FILE, names.writing(message, one.name))
+    if message.tail is not None and message.tail.element is not None and not message.inner:
+        yield message.identifier(FILE, names.walking(message, message.tail))
     for part in parts_of(message):
         yield message.identifier(FILE, f"{stem}_{part_name(part.message)}")
     yield from _fields(message)

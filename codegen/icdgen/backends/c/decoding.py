@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 from icdgen.backends.c import bits
-from icdgen.backends.c.member_groups import Flags, Groups, Row
-from icdgen.backends.c.names import reading, stem
+from icdgen.backends.c.member_groups import Array, Flags, Groups, Row, Structs
+from icdgen.backends.c.names import stem
 from icdgen.backends.c.statement import call
 from icdgen.backends.c.text import WIDTH
 from icdgen.backends.c.types import cast, type_of
 from icdgen.backends.lines import STEP
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.description import Composite, TailDescription
+from icdgen.describe.rounds import Rounds
 
 EMPTY = "empty"
 """Member of the struct of a message without fields: C has no empty structs."""
 
 
 def statements(message: Composite[Any], groups: Groups) -> list[str]:
-    """One statement a field or a group, in the order of the struct."""
+    """One statement a field or a group, in the order of the groups."""
     if not message.fields:
         return ["(void)buffer;", f"message->{EMPTY} = 0u;"]
     found = [_one(one) if isinstance(one, FieldDescription) else _group(one, message) for one in groups]
@@ -82,15 +84,22 @@ def _bytes(count: str, step: int) -> str:
     return count if step == 1 else f"{count} * {step}u"
 
 
-def of_elements(message: MessageDescription, tail: TailDescription) -> list[str]:
+def of_elements(tail: TailDescription, reading: str) -> list[str]:
     """The statements that read the structs of an open end, each where it stands in ``buffer``."""
     name = tail.part.member
     return [
         f"(void)memset(message->{name}, 0, sizeof message->{name});",
-        f"for (size_t element = 0u; element < {there(tail)}; element++) {{",
-        f"{STEP}{reading(message, tail)}(&message->{name}[element], &buffer[{element_place(tail)}]);",
-        "}",
+        for_each(name, there(tail), reading, tail.begin, tail.step),
     ]
+
+
+def for_each(name: str, count: str, function: str, begin: int, step: int) -> str:
+    """The loop that calls a function for each element of an array of structs, and where it stands in ``buffer``."""
+    arguments = (f"&message->{name}[element]", f"&buffer[{place(begin, step)}]")
+    return (
+        f"for (size_t element = 0u; element < {count}; element++) {{\n"
+        f"{STEP * 2}{call(function, arguments, depth=2)}\n{STEP}}}"
+    )
 
 
 def there(tail: TailDescription) -> str:
@@ -100,10 +109,11 @@ def there(tail: TailDescription) -> str:
     return count + (f" + {tail.fewest}u" if tail.fewest else "")
 
 
-def element_place(tail: TailDescription) -> str:
-    """The byte at which ``element`` begins."""
-    offset = "element" if tail.step == 1 else f"element * {tail.step}u"
-    return f"{tail.begin}u + {f'({offset})' if tail.step > 1 else offset}" if tail.begin else offset
+def place(begin: int, step: int, in_round: int = 1) -> str:
+    """The byte at which ``element`` begins, or the round of so many of them that begins with it."""
+    number = "element" if in_round == 1 else f"(element / {in_round}u)"
+    offset = number if step == 1 else f"{number} * {step}u"
+    return f"{begin}u + {f'({offset})' if step > 1 else offset}" if begin else offset
 
 
 def elements(tail: TailDescription, counter: str = "") -> str:
@@ -122,7 +132,20 @@ def miscount(tail: TailDescription, counter: str = "") -> str:
     return " || ".join(f"({test})" for test in tests) if len(tests) > 1 else tests[0]
 
 
-def _group(group: Flags | Row, message: Composite[Any]) -> str:
+def in_rounds(rounds: Rounds, const: str, lines: Iterable[str]) -> str:
+    """The loop around lines for one round, whose bytes ``part`` points to; ``const`` if they are only read."""
+    step = "element++" if rounds.in_round == 1 else f"element += {rounds.in_round}u"
+    pointer = f"{const}uint8_t *const part = &buffer[{place(rounds.begin, rounds.step, rounds.in_round)}];"
+    body = "".join(f"{STEP * 2}{line}\n".replace(f"\n{STEP}", f"\n{STEP * 2}") for line in (pointer, *lines))
+    return f"for (size_t element = 0u; element < {rounds.elements}u; {step}) {{\n{body}{STEP}}}"
+
+
+def _group(group: Flags | Row | Array | Structs, message: Composite[Any]) -> str:
+    if isinstance(group, Array):
+        lines = (_number(one, f"message->{one.member}", "part") for one in group.members)
+        return in_rounds(group.rounds, "const ", lines)
+    if isinstance(group, Structs):
+        return for_each(group.part.member, f"{group.part.count}u", group.reading, group.begin, group.step)
     members = [field.member for field in group.members]
     target = f"{stem(message)}_t", "message"
     if isinstance(group, Flags):
@@ -149,8 +172,8 @@ def _one(field: FieldDescription) -> str:
     return _number(field, f"message->{field.member}")
 
 
-def _number(field: FieldDescription, target: str) -> str:
-    read = bits.read(field)
+def _number(field: FieldDescription, target: str, frame: str = "buffer") -> str:
+    read = bits.read(field, frame)
     line = _assigned(field, target, read.whole)
     if len(STEP) + len(line) <= WIDTH or len(read.terms) == 1:
         return line

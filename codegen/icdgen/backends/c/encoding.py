@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from icdgen.backends.c import bits
-from icdgen.backends.c.decoding import element_place, elements
-from icdgen.backends.c.member_groups import Flags, Groups, Row
-from icdgen.backends.c.names import stem, writing
+from icdgen.backends.c.decoding import elements, for_each, in_rounds
+from icdgen.backends.c.member_groups import Array, Flags, Groups, Row, Structs
+from icdgen.backends.c.names import stem
 from icdgen.backends.c.statement import assigned_byte, call
-from icdgen.backends.lines import STEP
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.description import Composite, TailDescription
 
@@ -40,14 +39,9 @@ def counted_text(tail: TailDescription) -> str:
     return f"strlen(text) + {tail.low}u" if tail.low else "strlen(text)"
 
 
-def of_elements(message: MessageDescription, tail: TailDescription) -> list[str]:
-    """The statements that write the structs of an open end, each where it stands in ``buffer``."""
-    name = tail.part.member
-    return [
-        f"for (size_t element = 0u; element < {elements(tail)}; element++) {{",
-        f"{STEP}{writing(message, tail)}(&message->{name}[element], &buffer[{element_place(tail)}]);",
-        "}",
-    ]
+def of_elements(tail: TailDescription, writing: str) -> str:
+    """The loop that writes the structs of an open end, each where it stands in ``buffer``."""
+    return for_each(tail.part.member, elements(tail), writing, tail.begin, tail.step)
 
 
 def statements(message: Composite[Any], groups: Groups) -> list[str]:
@@ -64,8 +58,8 @@ def statements(message: Composite[Any], groups: Groups) -> list[str]:
 class _Frame:
     """What goes where: whole bytes by a statement, others as terms that are or-ed together."""
 
-    def __init__(self, message: Composite[Any], groups: Groups, length: int) -> None:
-        self.message, self.length = message, length
+    def __init__(self, message: Composite[Any], groups: Groups, length: int, frame: str = "buffer") -> None:
+        self.message, self.length, self.frame = message, length, frame
         self.whole: dict[int, tuple[int, str]] = {}  # first byte -> number of bytes, statement
         self.parts: dict[int, list[tuple[int, str]]] = {}  # byte -> (shift, term)
         self.joined: dict[int, list[str]] = {}  # byte -> statements that its terms need
@@ -84,12 +78,21 @@ class _Frame:
         if one.is_bytes:
             self.whole[first] = size, f"(void)memcpy(&buffer[{first}], message->{field.member}, {size}u);"
         elif bits.is_word(field):
-            self.whole[first] = size, bits.store(field)
+            self.whole[first] = size, bits.store(field, self.frame)
         else:
             for piece in field.pieces:
                 self._add(piece.byte, piece.shift, bits.put(field, piece))
 
-    def _group(self, group: Flags | Row) -> None:
+    def _group(self, group: Flags | Row | Array | Structs) -> None:
+        if isinstance(group, Array):
+            rounds = group.rounds
+            lines = _Frame(self.message, list(group.members), rounds.step, "part").in_order()
+            self.whole[rounds.begin] = rounds.length, in_rounds(rounds, "", lines)
+            return
+        if isinstance(group, Structs):
+            loop = for_each(group.part.member, f"{group.part.count}u", group.writing, group.begin, group.step)
+            self.whole[group.begin] = group.length, loop
+            return
         names = [field.member for field in group.members]
         byte, source = group.byte, (f"{stem(self.message)}_t", "message")
         if isinstance(group, Row):
@@ -115,7 +118,7 @@ class _Frame:
                 byte += size
             elif byte in self.parts:
                 found += self.joined.get(byte, ())
-                found.append(assigned_byte(f"buffer[{byte}]", [term for _, term in sorted(self.parts[byte])]))
+                found.append(assigned_byte(f"{self.frame}[{byte}]", [term for _, term in sorted(self.parts[byte])]))
                 byte += 1
             else:
                 end = next((n for n in range(byte, length) if n in self.whole or n in self.parts), length)

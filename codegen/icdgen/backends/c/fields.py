@@ -1,11 +1,12 @@
-"""The fields of a message as data: rows of tables."""
+"""The fields of a message, or of a struct, as data: rows of tables."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+from icdgen.backends.c.names import stem
 from icdgen.backends.c.text import literal
-from icdgen.describe import MessageDescription
+from icdgen.describe.description import Composite
 
 
 class Fields(NamedTuple):
@@ -15,16 +16,16 @@ class Fields(NamedTuple):
     rows: list[str]
 
 
-def fields(message: MessageDescription) -> Fields:
-    """Those of a message, in the order of the ICD, an array as one, of structs each field."""
+def fields(one: Composite[Any]) -> Fields:
+    """Those of a message or a struct, in the order of the ICD, an array as one, and a struct."""
     found = Fields([], [])
-    for field in message.leaves:
-        one, bounds = field.model, field.bounds
+    for field in one.members:
+        model, bounds = field.model, field.bounds
         limits = f"&limits[{len(found.limits)}]" if bounds else "NULL"
-        unit = literal(one.unit.symbol if one.unit else "")
-        found.rows.append(
-            f"{{{literal(one.name)}, {unit}, {one.at}u, {one.bits}u, {field.count or 1}u, {limits}, {len(bounds)}u}}"
-        )
+        unit = literal(model.unit.symbol if model.unit else "")
+        inside = "NULL" if field.struct is None else f"{stem(field.struct)}_fields"
+        place = f"{model.at}u, {model.bits}u, {field.count or 1}u"
+        found.rows.append(f"{{{literal(model.name)}, {unit}, {place}, {limits}, {len(bounds)}u, {inside}}}")
         for bound in bounds:
             value = repr(bound.value.numerator / bound.value.denominator)
             found.limits.append(f"{{ICD_LIMIT_{bound.key.upper()}, {value}}}")

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from icdgen.backends.c.bits import is_word, order
 from icdgen.describe import FieldDescription
+from icdgen.describe.rounds import Rounds, rounds_of
 from icdgen.frozen import dataclass
 
 LONG_ENOUGH = 8
@@ -51,7 +52,31 @@ class Row:
         return f"ROW_{order(self.members[0]).upper()}"
 
 
-Groups = list[Flags | Row | FieldDescription]
+@dataclass(frozen=True, slots=True)
+class Structs:
+    """An array of structs, which a loop reads and writes."""
+
+    part: FieldDescription
+    begin: int  # the first byte of the frame
+    step: int  # bytes of an element
+    reading: str  # the function for an element
+    writing: str
+
+    @property
+    def length(self) -> int:
+        """Bytes of the frame."""
+        return self.part.count * self.step
+
+
+@dataclass(frozen=True, slots=True)
+class Array:
+    """An array of numbers that are no words, which a loop reads and writes; ``members`` are those of a round, at ``element``."""
+
+    members: Members
+    rounds: Rounds
+
+
+Groups = list[Flags | Row | Array | FieldDescription | Structs]
 
 
 def in_groups(fields: Members) -> Groups:
@@ -60,10 +85,20 @@ def in_groups(fields: Members) -> Groups:
     found: Groups = []
     index = 0
     while index < len(fields):
-        group = _flags(fields, positions, index) or _row(fields, index)
+        group = _array(fields[index]) or _flags(fields, positions, index) or _row(fields, index)
         found.append(group or fields[index])
-        index += len(group.members) if group else 1
+        index += group.rounds.elements if isinstance(group, Array) else len(group.members) if group else 1
     return found
+
+
+def _array(first: FieldDescription) -> Array | None:
+    is_row = is_word(first) and first.storage.bits == first.model.bits
+    rounds = rounds_of(first, first.model.path[-1].count) if first.model.index == 0 and not is_row else None
+    if rounds is None:
+        return None
+    name = first.member.removesuffix("[0]")
+    members = rounds.members(first, lambda element: f"{name}[element{f' + {element}u' if element else ''}]")
+    return Array(members, rounds)
 
 
 def _position(field: FieldDescription) -> tuple[int, int] | None:

@@ -20,14 +20,14 @@ def enumerator(enum: EnumDescription, member: MemberDescription) -> str:
     return f"{stem(enum)}_{member.name}".upper()
 
 
-def reading(message: MessageDescription, tail: TailDescription) -> str:
-    """The function that reads a struct of an open end."""
-    return f"{stem(message)}_read_{tail.part.name}"
+def reading(message: MessageDescription, name: str) -> str:
+    """The function that reads an element of an array of structs; ``name`` is that of `icdgen.describe.repeated`."""
+    return f"{stem(message)}_read_{name}"
 
 
-def writing(message: MessageDescription, tail: TailDescription) -> str:
+def writing(message: MessageDescription, name: str) -> str:
     """The function that writes one."""
-    return f"{stem(message)}_write_{tail.part.name}"
+    return f"{stem(message)}_write_{name}"
 
 
 def walking(message: MessageDescription, tail: TailDescription) -> str:

@@ -9,6 +9,7 @@ from icdgen.backends.rust.names import field_name, own_name, struct_path
 from icdgen.backends.rust.text import WIDTH, mask
 from icdgen.describe import FieldDescription, StructDescription
 from icdgen.describe.description import Composite
+from icdgen.describe.rounds import Rounds, rounds_of
 from icdgen.describe.storage import holding
 from icdgen.layout import Piece, is_whole_bytes
 
@@ -17,13 +18,16 @@ RAW = "raw"  # the variable that holds the value of what is not always there
 FLAGS_FROM = 4  # so many flags of one byte are taken from the table of the support module
 
 
-def reading(field: FieldDescription, tables: set[int], depth: int = 3) -> str:
+def reading(field: FieldDescription, tables: set[int], depth: int = 3, within: str = "") -> str:
     """Expression of the raw value, from ``bytes``; ``tables`` are the bytes whose flags stand in ``flags_N``.
 
-    It stands in a line indented by ``depth`` steps.
+    It stands in a line indented by ``depth`` steps; ``within`` is where the names of functions for elements begin.
     """
+    helper = helper_of(field)
+    if helper:
+        return _called(field, helper, within, depth)
     if field.struct is not None:
-        return _open(field) if field.is_open else _structs(field, field.struct, tables, depth)
+        return _struct(field, field.struct, tables, depth, within)
     if field.model.implied:
         return "0"
     if field.count:
@@ -46,23 +50,42 @@ def reading(field: FieldDescription, tables: set[int], depth: int = 3) -> str:
     return f"{{{body}\n{STEP * depth}}}"
 
 
-def _open(field: FieldDescription) -> str:
-    """The structs of an open end."""
-    return f"structs(bytes, {field.model.at // 8}, |bytes| Self::read_element(&bytes))"
+def helper_of(field: FieldDescription) -> str:
+    """The helper that reads an array by a function for an element, or for as many as are whole bytes; empty of all others."""
+    rounds = None if field.element is not None else rounds_in(field)
+    return (
+        "each" if field.element is not None else "" if rounds is None else "rounds" if rounds.in_round > 1 else "each"
+    )
 
 
-def _structs(field: FieldDescription, struct: StructDescription, tables: set[int], depth: int) -> str:
-    """A struct, or an array of them."""
-    path, inner = struct_path(struct, field.message.seen_from), depth + bool(field.count)
-    pad = STEP * inner
-    found = []
-    for row in field.instances:
-        lines = "".join(f"{pad}{STEP}{own_name(one)}: {reading(one, tables, inner + 1)},\n" for one in row)
-        found.append(f"{path} {{\n{lines}{pad}}}")
-    if not field.count:
-        return found[0]
-    rows = "".join(f"{pad}{one},\n" for one in found)
-    return f"[\n{rows}{STEP * depth}]"
+def rounds_in(field: FieldDescription) -> Rounds | None:
+    """How the elements of an array of numbers are read and written, where a function does it."""
+    if not field.count or field.struct is not None or _is_run(field):
+        return None
+    rounds = rounds_of(field, field.count)
+    return rounds if rounds is not None and rounds.elements == field.count else None
+
+
+def reader(name: str) -> str:
+    """The function that reads an element, or a round of them; ``name`` is that of the array, from the message on."""
+    return f"read_{name}"
+
+
+def writer(name: str) -> str:
+    """The function that writes it."""
+    return f"write_{name}"
+
+
+def _called(field: FieldDescription, helper: str, within: str, depth: int) -> str:
+    target = f"{own_name(field)}: "
+    arguments = ("bytes", str(field.model.at // 8), f"Self::{reader(within + field.name)}")
+    return bracketed(f"{target}{helper}(", arguments, ")", WIDTH - 1, STEP * depth).removeprefix(target)
+
+
+def _struct(field: FieldDescription, struct: StructDescription, tables: set[int], depth: int, within: str) -> str:
+    pad, (row,) = STEP * depth, field.instances
+    lines = (f"{pad}{STEP}{own_name(one)}: {reading(one, tables, depth + 1, within)},\n" for one in row)
+    return f"{struct_path(struct, field.message.seen_from)} {{\n{''.join(lines)}{pad}}}"
 
 
 def _is_run(field: FieldDescription) -> bool:
@@ -189,13 +212,19 @@ def fitting(field: FieldDescription) -> list[str]:
 
 def _source(field: FieldDescription, owner: str = "self") -> str:
     """What is written: the member, or the variable that holds its value where it is not always there."""
-    return RAW if field.model.when else f"{owner}.{field_name(field)}"
+    name = field_name(field)
+    return RAW if field.model.when else f"{owner}.{name}" if owner else name
 
 
-def writing(field: FieldDescription, owner: str = "self") -> list[str]:
+def writing(field: FieldDescription, owner: str = "self", within: str = "") -> list[str]:
     """Statements that put the raw value into ``bytes``, without the bits that its field has no room for."""
     if field.model.implied:
         return []
+    helper = helper_of(field)
+    if helper:
+        values, function = f"&{owner}.{field_name(field)}", f"Self::{writer(within + field.name)}"
+        arguments = ("&mut bytes", str(field.model.at // 8), values, function)
+        return [bracketed(f"put_{helper}(", arguments, ");", WIDTH, STEP * 2)]
     if field.count:
         if _is_run(field):
             return _put_run(field, f"{owner}.{field_name(field)}")
@@ -220,17 +249,6 @@ def writing(field: FieldDescription, owner: str = "self") -> list[str]:
         lines.append(f"let value = u{size}::from_le_bytes({source}.to_le_bytes());")
         source = "value"
     return lines + _put_pieces(row, source, size)
-
-
-def put_open(field: FieldDescription) -> list[str]:
-    """The statement that writes the structs of an open end."""
-    arguments = (
-        "&mut bytes",
-        str(field.model.at // 8),
-        f"&self.{field_name(field)}",
-        "|part| Self::write_element(&part)",
-    )
-    return [bracketed("put_words(", arguments, ");", WIDTH, STEP * 2)]
 
 
 def _put_run(field: FieldDescription, source: str) -> list[str]:
@@ -290,7 +308,6 @@ def _put(piece: Piece, part: str) -> str:
 
 def flag_tables(message: Composite[Any]) -> set[int]:
     """The bytes that hold so many flags that a table is worth its load."""
-    flags = [
-        field.pieces[0].byte for field in message.sent_fields if field.model.type == "bool" and not field.model.when
-    ]
+    steady = [one for one in message.blocks if one.model.type == "bool" and not one.model.when and not helper_of(one)]
+    flags = [field.pieces[0].byte for one in steady for field in one.elements or (one,)]
     return {byte for byte in flags if flags.count(byte) >= FLAGS_FROM}

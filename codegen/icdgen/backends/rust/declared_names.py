@@ -6,14 +6,15 @@ from collections.abc import Iterator
 from typing import Any
 
 from icdgen.backends import Identifier
-from icdgen.backends.rust import names
+from icdgen.backends.rust import elements, names
 from icdgen.backends.rust.accessors import single_name, whole_of
-from icdgen.describe import Description, NodeDescription
+from icdgen.backends.rust.bits import reader, writer
+from icdgen.describe import Description, MessageDescription, NodeDescription
 from icdgen.describe.description import Composite
 from icdgen.naming import DEVICES
 
 _METHODS = ("from_bytes", "from_array", "to_bytes", "default")
-_OPEN_METHODS = ("from_longest", "size", "read_element", "write_element")
+_OPEN_METHODS = ("from_longest", "size")
 _CONSTANTS = ("NAME", "LENGTH", "ID", "SET_ID", "GET_ID")
 _METHODS_OF_STRUCTS = ("fit", "rows", "default")
 _CONSTANTS_OF_STRUCTS = ("NAME", "FIELDS")
@@ -76,6 +77,10 @@ def _members(
         (*_OPEN_METHODS, *(("inner",) if message.model.open_parts[:-1] else ())) if message.tail is not None else ()
     )
     yield from _ours(methods, (*used_methods, *of_open))
+    if isinstance(message, MessageDescription):
+        for _, name in elements.names(message):
+            yield message.identifier(methods, reader(name))
+            yield message.identifier(methods, writer(name))
     yield from _ours(associated, used_constants)
     for field in message.all_members:
         is_view = field.model.view

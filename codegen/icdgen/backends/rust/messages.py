@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from icdgen.backends.rust import bits, conditional, constants, derived, parts
-from icdgen.backends.rust.names import field_name, own_name, struct_path
+from icdgen.backends.rust import bits, conditional, constants, derived, elements, parts
+from icdgen.backends.rust.names import field_name, struct_path
 from icdgen.backends.rust.physical import has_constant
 from icdgen.backends.rust.text import integer
 from icdgen.describe import FieldDescription, MessageDescription, StructDescription
@@ -19,26 +19,23 @@ def values(message: MessageDescription) -> dict[str, object]:
     fields, tables, tail = message.members, bits.flag_tables(message), message.tail
     readings = ["None" if field.model.when else bits.reading(field, tables) for field in fields]
     views = [(field, bits.reading(field, set(), depth=2)) for field in message.seen]
-    element = tail.element if tail is not None else None
     conditions = conditional.conditional(message)
-    sent = [leaf for field in message.members if not (element and field.is_open) for leaf in field.leaves]
-    writings = [line for field in sent if not field.model.when for line in bits.writing(field)]
-    of_element = None
-    if tail is not None and element is not None:
-        writings += bits.put_open(tail.part)
-        of_element = _element(tail.part, element)
+    writings = [line for one in message.blocks if not one.model.when for line in bits.writing(one)]
+    repeated = list(elements.functions(message))
     read = [*readings, *(one.decode for one in conditions), *(reading for _, reading in views)]
+    read += [one.value for one in repeated]
     written = [*writings, *(line for one in conditions for line in one.encode)]
-    if of_element is not None:
-        read += of_element.readings
-        written += of_element.writings
+    written += [line for one in repeated for line in one.writings]
+    helpers = {one.helper for one in repeated}
     imported = {
         "array": any("array(" in reading for reading in read),
         "arrays": any("arrays(" in reading for reading in read),
-        "flags": bool(tables or (of_element and of_element.tables)),
+        "flags": bool(tables or any(one.tables for one in repeated)),
         "message": True,
         "put": any("put!(" in line for line in written),
         "put_array": any("put_array(" in line for line in written),
+        "put_each": "each" in helpers,
+        "put_rounds": "rounds" in helpers,
         "put_words": any("put_words(" in line for line in written),
         "take": any("take!(" in reading for reading in read),
         "there": bool(conditions),
@@ -49,7 +46,8 @@ def values(message: MessageDescription) -> dict[str, object]:
         "longest": (tail is not None and not message.inner) or bool(message.model.may_end_early),
         **dict.fromkeys(("beginning", "spread", "told"), bool(message.inner)),
         "present": tail is not None,
-        "structs": any("structs(" in reading for reading in read),
+        "each": "each" in helpers,
+        "rounds": "rounds" in helpers,
         "words": any("words(" in reading for reading in read),
         "Coded": any(field.enum for field in message.all_fields),
         "Error": True,
@@ -69,10 +67,10 @@ def values(message: MessageDescription) -> dict[str, object]:
         "counted_text": "" if tail is None else _counted_text(tail),
         "open_parts": [] if tail is None else [(one, _number(one)) for one in (*message.inner, tail)],
         "tables": sorted(tables),
-        "literal": _literal(fields, readings),
+        "literal": elements.literal(fields, readings),
         "views": views,
         "writings": writings,
-        "element": of_element,
+        "repeated": repeated,
         "parts": parts.parts(message),
     }
 
@@ -96,24 +94,6 @@ def _times(step: int, count: str) -> str:
     if step == 1:
         return count
     return f"{step} * ({count})" if " + " in count else f"{step} * {count}"
-
-
-class Element(NamedTuple):
-    """How an element of an open end is read and written, where that is a struct."""
-
-    type: str
-    tables: list[int]
-    readings: list[str]
-    literal: str
-    writings: list[str]
-
-
-def _element(part: FieldDescription, struct: StructDescription) -> Element:
-    tables = bits.flag_tables(struct)
-    readings = [bits.reading(one, tables) for one in struct.members]
-    type = struct_path(struct, struct.seen_from)
-    writings = [line for one in struct.leaves for line in bits.writing(one, "part")]
-    return Element(type, sorted(tables), readings, _literal(struct.members, readings, type), writings)
 
 
 def of_struct(struct: StructDescription) -> dict[str, object]:
@@ -160,7 +140,7 @@ def _shared(one: Composite[Any], imported: dict[str, bool]) -> dict[str, object]
         "fits": [line for field in narrow if not field.model.when for line in bits.fitting(field)],
         "scales": scales,
         "curves": curves,
-        "default": None if has_default else _literal(fields, [_fresh(field) for field in fields]),
+        "default": None if has_default else elements.literal(fields, [_fresh(field) for field in fields]),
         "derives": ", ".join(traits + ([] if one.has_floats else ["Eq", "Hash"])),
         "imports": f"{{{', '.join(names)}}}" if len(names) > 1 else names[0],
         "uses_enums": any(enum.node is one.node for enum in one.enums),
@@ -196,7 +176,7 @@ def _is_long(field: FieldDescription) -> bool:
 def _fresh(field: FieldDescription) -> str:
     if field.is_open and field.count:
         length = field.struct.model.length if field.struct is not None else 0
-        absent = f"Self::read_element(&[0; {length}])" if length else _zero(field)
+        absent = f"Self::{bits.reader(field.name)}(&[0; {length}])" if length else _zero(field)
         return (
             f"first({field.message.fewest}, {_one_fresh(field)}, {absent})"
             if _has_first(field)
@@ -234,9 +214,3 @@ def _valued(field: FieldDescription, raw: int) -> str:
     if kind == "float":
         return "0.0"
     return ("true" if raw else "false") if kind == "bool" else integer(raw)
-
-
-def _literal(fields: tuple[FieldDescription, ...], values: list[str], type: str = "Self") -> str:
-    """``Self { ... }`` in the body of a function."""
-    lines = "".join(f"            {own_name(field)}: {value},\n" for field, value in zip(fields, values, strict=True))
-    return f"        {type} {{\n{lines}        }}" if fields else f"        {type} {{}}"

@@ -84,8 +84,8 @@ def integer_type(field: FieldDescription) -> str:
 def raw_type(field: FieldDescription) -> str:
     """Type of the raw value in the message's struct."""
     if field.model.when:
-        return f"Option<{_one_type(field)}>"
-    return f"[{_one_type(field)}; {field.count}]" if field.count else _one_type(field)
+        return f"Option<{one_type(field)}>"
+    return f"[{one_type(field)}; {field.count}]" if field.count else one_type(field)
 
 
 def has(field: FieldDescription) -> str:
@@ -95,10 +95,11 @@ def has(field: FieldDescription) -> str:
 
 def open_type(field: FieldDescription) -> str:
     """Type of the elements that are in a frame."""
-    return f"[{_one_type(field)}]" if field.count else "[u8]"
+    return f"[{one_type(field)}]" if field.count else "[u8]"
 
 
-def _one_type(field: FieldDescription) -> str:
+def one_type(field: FieldDescription) -> str:
+    """Type of the raw value, or of an element."""
     one = field.model
     if field.struct is not None:
         return struct_path(field.struct, field.message.node)

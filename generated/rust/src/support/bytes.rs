@@ -101,19 +101,33 @@ pub(crate) fn words<T: Copy + Default, const SIZE: usize, const N: usize>(
     values
 }
 
-/// The same of the structs of an open end: those that are not in the frame, or are all zeros, are read once.
+/// The same, for what is long: elements that are not in the frame, or are all zeros, are read once.
 #[inline(always)]
-pub(crate) fn structs<T: Copy, const SIZE: usize, const N: usize>(
+pub(crate) fn each<T: Copy, const SIZE: usize, const N: usize>(
     bytes: &[u8],
     at: usize,
-    value: impl Fn([u8; SIZE]) -> T,
+    value: impl Fn(&[u8; SIZE]) -> T,
 ) -> [T; N] {
-    let mut values = [value([0; SIZE]); N];
+    let mut values = [value(&[0; SIZE]); N];
     for (index, target) in values.iter_mut().enumerate() {
         let element = array(bytes, at + index * SIZE);
         if element != [0; SIZE] {
-            *target = value(element);
+            *target = value(&element);
         }
+    }
+    values
+}
+
+/// `N` values, of which `value` makes `MANY` at once of `SIZE` bytes, from `at` on.
+#[inline(always)]
+pub(crate) fn rounds<T: Copy + Default, const SIZE: usize, const MANY: usize, const N: usize>(
+    bytes: &[u8],
+    at: usize,
+    value: impl Fn(&[u8; SIZE]) -> [T; MANY],
+) -> [T; N] {
+    let mut values = [T::default(); N];
+    for (index, part) in values.chunks_exact_mut(MANY).enumerate() {
+        part.copy_from_slice(&value(&array(bytes, at + index * SIZE)));
     }
     values
 }
@@ -141,6 +155,34 @@ pub(crate) fn put_words<T: Copy, const SIZE: usize, const N: usize>(
 ) {
     for (index, value) in values.iter().enumerate() {
         put_array(bytes, at + index * SIZE, &word(*value));
+    }
+}
+
+/// The same, for what is long.
+#[inline(always)]
+pub(crate) fn put_each<T, const SIZE: usize, const N: usize>(
+    bytes: &mut [u8],
+    at: usize,
+    values: &[T; N],
+    octets: impl Fn(&T) -> [u8; SIZE],
+) {
+    for (index, value) in values.iter().enumerate() {
+        put_array(bytes, at + index * SIZE, &octets(value));
+    }
+}
+
+/// Puts values, of `MANY` of which `octets` makes `SIZE` bytes, from `at` on.
+#[inline(always)]
+pub(crate) fn put_rounds<T: Copy, const SIZE: usize, const MANY: usize, const N: usize>(
+    bytes: &mut [u8],
+    at: usize,
+    values: &[T; N],
+    octets: impl Fn(&[T; MANY]) -> [u8; SIZE],
+) {
+    for (index, part) in values.chunks_exact(MANY).enumerate() {
+        if let Ok(part) = part.try_into() {
+            put_array(bytes, at + index * SIZE, &octets(part));
+        }
     }
 }
 

@@ -20,8 +20,8 @@ mod text;
 mod wide;
 
 pub(crate) use self::bytes::{
-    array, arrays, element_of, flags, put, put_array, put_element, put_words, structs, take, words,
-    write_to,
+    array, arrays, each, element_of, flags, put, put_array, put_each, put_element, put_rounds,
+    put_words, rounds, take, words, write_to,
 };
 pub(crate) use self::curve::Curve;
 pub(crate) use self::derived::{power, quiet, whole};
