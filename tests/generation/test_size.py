@@ -16,7 +16,7 @@ structs:
     length: 10
     fields:
       - {{at: 0, bits: 12, name: Voltage, type: uint}}
-      - {{at: 12, bits: 4, name: State, type: uint}}
+      - {{at: 12, bits: 4, name: State, type: uint, const: 3}}
       - {{at: 16, bits: 16, count: 4, name: Words, type: int}}
   - name: Pack
     length: {pack}
@@ -24,8 +24,13 @@ structs:
 messages:
   - {{name: Words, id: 1, kind: telemetry, length: {two}, fields: [{{at: 0, bits: 16, name: W, type: int, count: {count}}}]}}
   - {{name: Threes, id: 2, kind: telemetry, length: {three}, fields: [{{at: 0, bits: 24, name: T, type: int, count: {count}}}]}}
-  - {{name: Halves, id: 3, kind: telecommand, length: {half}, fields: [{{at: 0, bits: 12, name: H, type: int, count: {count}}}]}}
+  - name: Halves
+    id: 3
+    kind: telecommand
+    length: {half}
+    fields: [{{at: 0, bits: 12, name: H, type: int, count: {count}, const: -2}}]
   - {{name: Flags, id: 4, kind: telemetry, length: {eighth}, fields: [{{at: 0, bits: 1, name: F, type: bool, count: {count}}}]}}
+  - {{name: Octets, id: 7, kind: telecommand, length: {three}, fields: [{{at: 0, bits: 24, name: O, type: text, count: {count}}}]}}
   - {{name: Packs, id: 5, kind: telecommand, length: {packs}, fields: [{{at: 0, name: Packs, struct: Pack, count: {count}}}]}}
   - name: Open
     id: 6

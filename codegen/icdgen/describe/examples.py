@@ -11,6 +11,7 @@ from icdgen.describe.messages import MessageDescription
 
 _NUMBERS = (1234, 123, 12, 1, 0)  # the first that the field takes and may hold
 _FLOAT = 1.5  # the same in any width
+FEW = 8  # constants in arrays that are worth showing
 
 
 class Shown(NamedTuple):
@@ -26,13 +27,14 @@ class Example(NamedTuple):
 
     shown: Shown | None
     frame: bytes
+    brief: bytes  # the same without constants in arrays, if there are many
 
     @property
     def runs(self) -> Iterator[tuple[int, bytes]]:
-        """What is not 0 in the frame: where it begins, and its bytes."""
+        """What is not 0 in the frame, constants in arrays only if they are few: where it begins, and its bytes."""
         start = 0
         for end in range(len(self.frame) + 1):
-            if end == len(self.frame) or not self.frame[end]:
+            if end == len(self.frame) or not self.brief[end]:
                 if end > start:
                     yield start, self.frame[start:end]
                 start = end + 1
@@ -65,7 +67,12 @@ def example(message: MessageDescription) -> Example:
     }
     if shown is not None:
         raw[shown.field.model.name] = shown.raw
-    return Example(shown, codec.frame_with(message.node, message.model, raw))
+    in_arrays = [
+        one.name for one in message.model.owners if one.const is not None and any(step.count for step in one.path)
+    ]
+    few = raw if len(in_arrays) <= FEW else {name: value for name, value in raw.items() if name not in set(in_arrays)}
+    frame, brief = (codec.frame_with(message.node, message.model, values) for values in (raw, few))
+    return Example(shown, frame, brief)
 
 
 def _shown(field: FieldDescription) -> Shown | None:

@@ -114,17 +114,17 @@ def _raw(field: FieldDescription) -> str:
     return f"icdgen_bits_f{field.model.bits}(&{member})" if field.model.type == "float" else member
 
 
-def excess(field: FieldDescription, member: str = "") -> str:
-    """An expression that is 0 if and only if the raw value of a narrow field fits; ``member`` if it is not the field's."""
-    if field.model.when and not member:
-        return f"{has(field)}(message) ? ({excess(field, field.member)}) : 0u"
-    storage, one, member = field.storage, field.model, member or field.member
+def excess(field: FieldDescription, member: str) -> str:
+    """An expression that is 0 if and only if the raw value of a narrow field, which is in ``member``, fits."""
+    storage, one = field.storage, field.model
     wide = 64 if storage.bits == 64 else 32
-    if not storage.signed:
+    if storage.signed:
+        beyond = ((1 << wide) - 1) ^ ((1 << one.bits) - 1)
+        found = f"({cast(f'message->{member}', wide)} + {mask(1 << (one.bits - 1), wide)}) & {mask(beyond, wide)}"
+    else:
         beyond = ((1 << storage.bits) - 1) ^ one.raw_max
-        return f"message->{member} & {mask(beyond, storage.bits)}"
-    beyond = ((1 << wide) - 1) ^ ((1 << one.bits) - 1)
-    return f"({cast(f'message->{member}', wide)} + {mask(1 << (one.bits - 1), wide)}) & {mask(beyond, wide)}"
+        found = f"message->{member} & {mask(beyond, storage.bits)}"
+    return f"{has(field)}(message) ? ({found}) : 0u" if one.when else found
 
 
 def excess_type(message: MessageDescription) -> str:

@@ -7,6 +7,7 @@ from functools import partial
 from typing import Any
 
 from icdgen.backends.c import names
+from icdgen.backends.c.members import statements
 from icdgen.backends.c.types import mask
 from icdgen.describe import EnumDescription, FieldDescription
 from icdgen.describe.constants import Constant
@@ -52,24 +53,22 @@ def initial(message: Composite[Any]) -> list[str]:
     """Statements that give fields with only one valid value that value, and what counts an open end its smallest."""
     counts = {part.counter for part in message.model.open_parts if part.low}
     counters = [field for field in message.members if field.model.name in counts]
-    counted = [f"message->{field.member} = {field.fresh}u;" for field in counters]
-    return counted + [
-        f"message->{field.member} = {only(field)};"
-        for field in message.fields
-        if field.model.const is not None and (not field.is_open or _is_always_there(field))
-    ]
+    found = [f"message->{field.member} = {field.fresh}u;" for field in counters]
+    for field in message.blocks:
+        count = message.fewest if field.is_open else field.count
+        if count or not field.count:
+            found += statements(field, _valid, f"{count}u")
+    return found
+
+
+def _valid(field: FieldDescription, member: str, name: str) -> list[str]:
+    return [] if field.model.const is None else [f"message->{member} = {only(field)};"]
 
 
 def only(field: FieldDescription) -> str:
     """The constant of the only valid value of a field that has one."""
     (name,) = (one.name for one in field.constants if one.key == "const")
     return names.constant(field.declaration.message, name)
-
-
-def _is_always_there(field: FieldDescription) -> bool:
-    """Whether every frame has an element of an open end, or what stands in it."""
-    path = field.model.path
-    return bool(path) and (path[0].index or 0) < field.message.fewest
 
 
 def of_enum(enum: EnumDescription) -> tuple[bool, Callable[[int], str]]:

@@ -95,11 +95,10 @@ def of_elements(tail: TailDescription, reading: str) -> list[str]:
 
 def for_each(name: str, count: str, function: str, begin: int, step: int) -> str:
     """The loop that calls a function for each element of an array of structs, and where it stands in ``buffer``."""
-    arguments = (f"&message->{name}[element]", f"&buffer[{place(begin, step)}]")
-    return (
-        f"for (size_t element = 0u; element < {count}; element++) {{\n"
-        f"{STEP * 2}{call(function, arguments, depth=2)}\n{STEP}}}"
-    )
+    if count == "1u":
+        return call(function, (f"&message->{name}[0]", f"&buffer[{begin}]"))
+    made = call(function, (f"&message->{name}[element]", f"&buffer[{place(begin, step)}]"), depth=2)
+    return f"for (size_t element = 0u; element < {count}; element++) {{\n{STEP * 2}{made}\n{STEP}}}"
 
 
 def there(tail: TailDescription) -> str:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
+from dataclasses import replace
 
 from icdgen.backends.c.bits import is_word, order
 from icdgen.describe import FieldDescription
@@ -85,10 +87,22 @@ def in_groups(fields: Members) -> Groups:
     found: Groups = []
     index = 0
     while index < len(fields):
+        if fields[index].model.is_bytes and fields[index].model.index == 0:
+            found.append(_octets(fields[index]))
+            index += fields[index].model.path[-1].count
+            continue
         group = _array(fields[index]) or _flags(fields, positions, index) or _row(fields, index)
         found.append(group or fields[index])
         index += group.rounds.elements if isinstance(group, Array) else len(group.members) if group else 1
     return found
+
+
+def _octets(first: FieldDescription) -> FieldDescription:
+    """An array of bytes or texts as one, for it lies in memory as in the frame; ``first`` is its first element."""
+    whole = copy(first)
+    whole.model = replace(first.model, bits=first.model.bits * first.model.path[-1].count)
+    whole.member = first.member.removesuffix("[0]")
+    return whole
 
 
 def _array(first: FieldDescription) -> Array | None:

@@ -119,7 +119,9 @@ def _sent(message: MessageDescription, one: Example) -> list[str]:
         lines = [f"let mut command = {name}::default();", _written(one.shown)]
     if len(one.frame) <= _WHOLE:
         return [*lines, f"assert_eq!(command.to_bytes()?, {_bytes(one.frame)});"]
-    places = (f"assert_eq!(frame[{start}..{start + len(run)}], {_bytes(run)});" for start, run in one.runs)
+    places = [f"assert_eq!(frame[{start}..{start + len(run)}], {_bytes(run)});" for start, run in one.runs]
+    if not places:
+        return [*lines, f"assert_eq!(command.to_bytes()?.len(), {len(one.frame)});"]
     return [*lines, "let frame = command.to_bytes()?;", *places]
 
 
