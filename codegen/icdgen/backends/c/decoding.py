@@ -176,7 +176,9 @@ def _number(field: FieldDescription, target: str, frame: str = "buffer") -> str:
     line = _assigned(field, target, read.whole)
     if len(STEP) + len(line) <= WIDTH or len(read.terms) == 1:
         return line
-    local = f"bits_{field.model.at}"
+    local = (
+        f"bits_{field.model.at}" if frame == "buffer" else f"{frame}_bits_{field.model.at}"
+    )  # in a loop others are near
     first, *others = read.terms
     joined = [f"uint{read.bits}_t {local} = {first};", *(f"{local} |= {term};" for term in others)]
     return f"\n{STEP}".join([*joined, _assigned(field, target, read.value.format(bits=local))])
