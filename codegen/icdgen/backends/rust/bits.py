@@ -52,10 +52,10 @@ def reading(field: FieldDescription, tables: set[int], depth: int = 3, within: s
 
 def helper_of(field: FieldDescription) -> str:
     """The helper that reads an array by a function for an element, or for as many as are whole bytes; empty of all others."""
-    rounds = None if field.element is not None else rounds_in(field)
-    return (
-        "each" if field.element is not None else "" if rounds is None else "rounds" if rounds.in_round > 1 else "each"
-    )
+    if field.element is not None:
+        return "each"
+    rounds = rounds_in(field)
+    return "" if rounds is None else "rounds" if rounds.in_round > 1 else "each"
 
 
 def rounds_in(field: FieldDescription) -> Rounds | None:
