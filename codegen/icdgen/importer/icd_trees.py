@@ -106,6 +106,8 @@ def _message(one: ReadMessage, prose: bool) -> dict[str, Any]:
 
 def _field(one: ReadField, prose: bool) -> dict[str, Any]:
     made: dict[str, Any] = {"at": one.at, "bits": one.bits, "name": one.name, "type": one.type}
+    if one.count:
+        made["count"] = one.count
     if one.enum:
         made["enum"] = one.enum
     said = one.described

@@ -191,7 +191,7 @@ def complete(node: NodeParts, troubles: list[Trouble], id_bits: int = DEFAULT_BI
             troubles.append(
                 Trouble("IMP025", f"{title}: nothing names the message", spot, "name it in the ICD", "error")
             )
-        needed = max((f.at + f.bits + 7) // 8 for f in message.fields) if message.fields else 0
+        needed = max((f.end + 7) // 8 for f in message.fields) if message.fields else 0
         if message.length is None:
             message.length = needed
             severity = "error" if messages.gaps(message) else "warning"

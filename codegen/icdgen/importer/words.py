@@ -47,6 +47,10 @@ _GROWING = re.compile(
 )
 
 
+BY_HAND = "write it by hand, with `count:` and `up_to:`, and a struct for what is repeated"
+"""What to do with what a message counts: see 'Variable length' in ``docs/icd-format.md``."""
+
+
 def grows(text: str) -> bool:
     """Whether a figure depends on a count: ``8 + 6*N``, ``N + 1``."""
     return _GROWING.fullmatch(plain(text).strip("() ")) is not None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from icdgen.icd.units import SPELLINGS, STANDARD
@@ -14,7 +14,7 @@ from icdgen.importer.understand.counting import Extent, Units
 from icdgen.importer.understand.model import ReadField
 from icdgen.importer.understand.rows import Entry, entries
 from icdgen.importer.understand.types import Type
-from icdgen.importer.words import folded, grows, number, tidy_unit
+from icdgen.importer.words import BY_HAND, folded, grows, number, tidy_unit
 
 MOST_BITS = 64  # of a number
 _NONE = ("", "-", "–", "n/a", "na", "none")
@@ -88,7 +88,7 @@ def read(table: Table, profile: Profile, length: int | None, troubles: list[Trou
                 break
             continue
         start = at if implicit else (line.at or 0) * (line.units[0] or units.at) + _within(line, header)
-        made += _fields(line, start, bits, table, profile, troubles)
+        made.append(_field(line, start, bits, table, profile, troubles))
         at = start + bits
     if not is_register:
         return made
@@ -119,15 +119,24 @@ def _mirrored(
 ) -> list[ReadField]:  # fmt: skip
     """The fields of a register, whose bits are counted from the lowest one, in the order of the node."""
     node = profile.data["node"]
-    total = 8 * (length or (max((f.at + f.bits for f in made), default=0) + 7) // 8)
+    total = 8 * (length or (max((f.end for f in made), default=0) + 7) // 8)
     if node.get("bit_order") == "msb0":
+        made = [element for one in made for element in _elements(one)]  # the order of an array's elements turns, too
         for one in made:
-            one.at = total - one.at - one.bits
+            one.at = total - one.end
     elif node.get("byte_order") == "big" and total > 8:
         troubles.append(Trouble("IMP037", f"{table.title}: its bits are counted down over {total // 8} bytes, the highest byte "
                                 "first", table.spot, "set `bit_order: msb0` in the profile; it was left out", "error"))  # fmt: skip
         raise Unreadable
     return sorted(made, key=lambda f: f.at)
+
+
+def _elements(array: ReadField) -> list[ReadField]:
+    """A field for each element."""
+    if not array.count:
+        return [array]
+    places = ((f"{array.name} {index + 1}", array.at + index * array.bits) for index in range(array.count))
+    return [replace(array, name=name, at=at, count=0) for name, at in places]
 
 
 def _positions(header: Header) -> bool:
@@ -192,8 +201,8 @@ def _line(entry: Entry, header: Header, table: Table, profile: Profile, troubles
 
 def _refuse(text: str, what: str, line: Line, table: Table, troubles: list[Trouble]) -> None:
     if grows(text):
-        troubles.append(Trouble("IMP037", f"{line.where}: {what} `{text}` depends on a count, which the ICD format cannot hold",
-                                line.entry.spot, "the row was left out", "error"))  # fmt: skip
+        troubles.append(Trouble("IMP037", f"{line.where}: {what} `{text}` depends on a count, which import does not read",
+                                line.entry.spot, f"the row was left out; {BY_HAND}", "error"))  # fmt: skip
     else:
         numbers.refused(text, what, line.where, line.entry.spot, troubles)
 
@@ -229,10 +238,10 @@ def _is_range(line: Line) -> bool:
     return not line.entry.get("bits") and not line.entry.get("bits_bytes")
 
 
-def _fields(
+def _field(
     line: Line, at: int, bits: int, table: Table, profile: Profile, troubles: list[Trouble]
-) -> list[ReadField]:  # fmt: skip
-    """The field of a row; for an array one for each element."""
+) -> ReadField:  # fmt: skip
+    """The field of a row."""
     entry, name = line.entry, line.entry.get("name")
     has_scale = any(role in table.header.roles for role in ("unit", "formula")) if table.header else False
     name, scale = (name, "") if has_scale else scaled_name(name)
@@ -248,10 +257,7 @@ def _fields(
         troubles.append(Trouble("IMP040", f"{line.where}: {problem}{text}", entry.spot, "read the page"))
     count = line.type.times if line.type else 1
     if count > 1 and kind != "bytes":
-        troubles.append(Trouble("IMP029", f"{line.where}: its {count} elements are held as {count} fields", entry.spot,
-                                "the ICD format has no arrays", "note"))  # fmt: skip
-        each = bits // count
-        return [ReadField(f"{name} {i + 1}", at + i * each, each, kind, described, entry.spot) for i in range(count)]
+        return ReadField(name, at, bits // count, kind, described, entry.spot, count)
     made = ReadField(name, at, bits, kind, described, entry.spot)
     if kind == "uint" and bits <= MOST_BITS:
         found = bitfields.read(entry.get("description"), bits)
@@ -262,7 +268,7 @@ def _fields(
             made.bitfields = found
             troubles.append(Trouble("IMP029", f"{line.where}: its description names {len(found)} fields of bits", entry.spot,
                                     "held under `bitfields:`; compare them with the page", "note"))  # fmt: skip
-    return [made]
+    return made
 
 
 def _kind(line: Line, bits: int, has_types: bool, troubles: list[Trouble]) -> str:

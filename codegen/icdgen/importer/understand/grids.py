@@ -135,7 +135,7 @@ def read(
     for index, row in enumerate(row for row in rows if any(row.cells)):
         label = next((n for cell in row.cells[: min(grid.columns)] if (n := _label(cell)) is not None), index)
         message.fields += _fields(grid, row, table, 0 if grid.unit == 8 else label * grid.count, profile, troubles)
-    message.length = max((f.at + f.bits + 7) // 8 for f in message.fields) if message.fields else None
+    message.length = max((f.end + 7) // 8 for f in message.fields) if message.fields else None
     return [message]
 
 

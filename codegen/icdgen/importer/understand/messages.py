@@ -10,7 +10,7 @@ from icdgen.importer.profile import Profile
 from icdgen.importer.understand import around, fields, numbers
 from icdgen.importer.understand.around import Around
 from icdgen.importer.understand.model import ReadMessage
-from icdgen.importer.words import grows, number, plain
+from icdgen.importer.words import BY_HAND, grows, number, plain
 
 KINDS = ("telecommand", "telemetry", "configuration")
 
@@ -36,7 +36,7 @@ def read(table: Table, profile: Profile, troubles: list[Trouble], about: Around 
     take(message, said)
     length = values.get("telecommand_length") or values.get("telemetry_length") or values.get("length") or said.length
     if length and grows(length):
-        message.lacks = f"its length `{length}` depends on a count, which the ICD format cannot hold"
+        message.lacks = f"its length `{length}` depends on a count, which import does not read: {BY_HAND}"
     elif length:
         message.length = numbers.whole(length, "the length", table.title, table.spot, troubles)
     message.summary = _summary(table, profile)
@@ -201,7 +201,7 @@ def gaps(message: ReadMessage) -> list[tuple[int, int]]:
     for one in sorted(message.fields, key=lambda f: f.at):
         if one.at > at:
             free.append((at, min(one.at, total) - 1))
-        at = max(at, one.at + one.bits)
+        at = max(at, one.end)
     if at < total:
         free.append((at, total - 1))
     return [(a, b) for a, b in free if b >= a]

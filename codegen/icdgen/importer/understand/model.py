@@ -11,7 +11,7 @@ from icdgen.importer.understand.descriptions import Described
 
 @dataclass(slots=True)
 class ReadField:
-    """A field; ``enum`` is the name of its enumeration once that is known."""
+    """A field; ``bits`` are those of an element where it is an array, ``enum`` names its enumeration once that is known."""
 
     name: str
     at: int
@@ -19,8 +19,14 @@ class ReadField:
     type: str
     described: Described
     spot: Spot
+    count: int = 0  # elements of an array
     enum: str = ""
     bitfields: list[Bits] = field(default_factory=list)
+
+    @property
+    def end(self) -> int:
+        """The bit behind it."""
+        return self.at + self.bits * (self.count or 1)
 
 
 @dataclass(slots=True)

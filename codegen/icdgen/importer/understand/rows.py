@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from icdgen.importer.document import Header, Row, Spot, Table, Trouble
 from icdgen.importer.pages.bands import KEYS, is_key
-from icdgen.importer.words import join, squeezed
+from icdgen.importer.words import BY_HAND, join, squeezed
 
 _WORDS = ("name", "description", "values", "unit", "formula", "range", "default")
 
@@ -46,8 +46,8 @@ def entries(table: Table, troubles: list[Trouble], stands_alone: StandsAlone | N
             continue
         elif header.kind == "fields" and _REPEATS.search(text := " ".join(cell for cell in row.cells if cell)):
             table.doubts.append("it has a repeated block")
-            troubles.append(Trouble("IMP037", f"{table.title}: `{text[:80]}`: a repeated block, which the ICD format cannot hold",
-                                    spot, "hold the message by hand, or leave it out", "error"))  # fmt: skip
+            troubles.append(Trouble("IMP037", f"{table.title}: `{text[:80]}`: a repeated block, which import does not read",
+                                    spot, BY_HAND, "error"))  # fmt: skip
         elif header.kind == "list" and (title := _group(row, header, made, last_page)):
             group = title
         elif made:

@@ -11,7 +11,7 @@ from icdgen.importer.profile import Profile
 from icdgen.importer.understand import around, grids, lists, messages
 from icdgen.importer.understand.around import Around, Said, kind_of
 from icdgen.importer.understand.model import ReadEnum, ReadList, ReadLog, ReadMessage, Thing
-from icdgen.importer.words import grows
+from icdgen.importer.words import BY_HAND, grows
 
 BACKGROUND, UNKNOWN = "background", "not understood"
 T = TypeVar("T", ReadEnum, ReadList, ReadLog, ReadMessage)
@@ -116,7 +116,7 @@ def _is_repeated(table: Table, made: Survey) -> bool:
     figure = next((cell for cell in cells if grows(cell)), "")
     if not figure or not messages:
         return False
-    messages[-1][1].lacks = f"its rows from `{figure}` on depend on a count, which the ICD format cannot hold"
+    messages[-1][1].lacks = f"its rows from `{figure}` on depend on a count, which import does not read: {BY_HAND}"
     return True
 
 
