@@ -5,7 +5,7 @@ const icdgenPasted = ((frames) => {
   const ID = "(?<id>[0-9A-Fa-f]{8}|[0-9A-Fa-f]{3})";
   const PACKETS = [
     new RegExp(`${BEFORE}${ID}\\s*\\[(?<size>\\d{1,2})\\]\\s*(?<data>(?:[0-9A-Fa-f]{2}(?:\\s+|$))*|remote request)(?:'.*)?$`),
-    new RegExp(`${BEFORE}${ID}#(?<data>(?:[0-9A-Fa-f]{2}\\.?)*|R[0-8]?)(?:\\s+[TR])?$`),
+    new RegExp(`${BEFORE}${ID}#(?:#[0-9A-Fa-f])?(?<data>(?:[0-9A-Fa-f]{2}\\.?)*|R[0-8]?)(?:\\s+[TR])?$`),
     /^T(?<id>[0-9A-Fa-f]{8})(?<size>[0-8])(?<data>(?:[0-9A-Fa-f]{2})*)$/,
     /^t(?<id>[0-9A-Fa-f]{3})(?<size>[0-8])(?<data>(?:[0-9A-Fa-f]{2})*)$/,
     /^R(?<id>[0-9A-Fa-f]{8})[0-8](?<data>)$/,

@@ -36,6 +36,7 @@ def icd(tmp_path_factory) -> Icd:
     [
         f"100#{DRIVE}",
         f"(1600000000.000000) can0 100#{DRIVE}",
+        f"(1600000000.000000) can0 100##5{DRIVE}",
         "  can0  100   [8]  39 30 01 01 0A 00 00 00",
         f"t1008{DRIVE}",
     ],

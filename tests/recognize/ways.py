@@ -58,6 +58,7 @@ WHOLE = {
     "candump with time": " (000.000000)  can0  05920201   [6]  2E FB 0A 00 00 00   '......'",
     "log of candump": "(1436509052.249713) vcan0 05920201#2EFB0A000000",
     "cansend": "05920201#2EFB0A000000",
+    "cansend, CAN FD": "05920201##12EFB0A000000",
     "slcan": "T0592020162EFB0A000000",
     "slcan with time": "T0592020162EFB0A0000001234",
 }

@@ -12,7 +12,7 @@ _FORMS = (
     re.compile(
         _BEFORE + _ID + r"\s*\[(?P<size>\d{1,2})\]\s*(?P<data>(?:[0-9A-Fa-f]{2}(?:\s+|$))*|remote request)(?:'.*)?"
     ),
-    re.compile(_BEFORE + _ID + r"#(?P<data>(?:[0-9A-Fa-f]{2}\.?)*|R[0-8]?)(?:\s+[TR])?"),
+    re.compile(_BEFORE + _ID + r"#(?:#[0-9A-Fa-f])?(?P<data>(?:[0-9A-Fa-f]{2}\.?)*|R[0-8]?)(?:\s+[TR])?"),
     re.compile(r"T(?P<id>[0-9A-Fa-f]{8})(?P<size>[0-8])(?P<data>(?:[0-9A-Fa-f]{2})*)"),
     re.compile(r"t(?P<id>[0-9A-Fa-f]{3})(?P<size>[0-8])(?P<data>(?:[0-9A-Fa-f]{2})*)"),
     re.compile(r"R(?P<id>[0-9A-Fa-f]{8})[0-8](?P<data>)"),
