@@ -125,7 +125,10 @@ pub(crate) fn rounds<T: Copy + Default, const SIZE: usize, const MANY: usize, co
 ) -> [T; N] {
     let mut values = [T::default(); N];
     for (index, part) in values.chunks_exact_mut(MANY).enumerate() {
-        part.copy_from_slice(&value(&array(bytes, at + index * SIZE)));
+        let made = value(&array(bytes, at + index * SIZE));
+        for (target, one) in part.iter_mut().zip(made.iter()) {
+            *target = *one;
+        }
     }
     values
 }
