@@ -139,7 +139,7 @@ class FieldDescription(Named[Field]):
 
     @cached_property
     def blocks(self) -> tuple[FieldDescription, ...]:
-        """The same, but an array of structs is one, too."""
+        """The same as `leaves`, but an array of structs is one, too."""
         if self.struct is None or self.count:
             return (self,)
         return tuple(block for one in self.instances[0] for block in one.blocks)
@@ -382,7 +382,7 @@ class Composite(Named[Fielded]):
 
     @cached_property
     def blocks(self) -> tuple[FieldDescription, ...]:
-        """The same, but an array of structs is one, too."""
+        """The same as `leaves`, but an array of structs is one, too."""
         return tuple(block for one in self.members for block in one.blocks)
 
     def element(self, part: FieldDescription, struct: StructDescription) -> StructDescription:

@@ -8,7 +8,7 @@ from typing import Any
 from icdgen.backends.c import bits
 from icdgen.backends.c.member_groups import Array, Flags, Groups, Row, Structs
 from icdgen.backends.c.names import stem
-from icdgen.backends.c.statement import call
+from icdgen.backends.c.statement import call, loop
 from icdgen.backends.c.text import WIDTH
 from icdgen.backends.c.types import cast, type_of
 from icdgen.backends.lines import STEP
@@ -98,7 +98,7 @@ def for_each(name: str, count: str, function: str, begin: int, step: int) -> str
     if count == "1u":
         return call(function, (f"&message->{name}[0]", f"&buffer[{begin}]"))
     made = call(function, (f"&message->{name}[element]", f"&buffer[{place(begin, step)}]"), depth=2)
-    return f"for (size_t element = 0u; element < {count}; element++) {{\n{STEP * 2}{made}\n{STEP}}}"
+    return f"{loop('element', count)}\n{STEP * 2}{made}\n{STEP}}}"
 
 
 def there(tail: TailDescription) -> str:
@@ -133,10 +133,9 @@ def miscount(tail: TailDescription, counter: str = "") -> str:
 
 def in_rounds(rounds: Rounds, const: str, lines: Iterable[str]) -> str:
     """The loop around lines for one round, whose bytes ``part`` points to; ``const`` if they are only read."""
-    step = "element++" if rounds.in_round == 1 else f"element += {rounds.in_round}u"
     pointer = f"{const}uint8_t *const part = &buffer[{place(rounds.begin, rounds.step, rounds.in_round)}];"
     body = "".join(f"{STEP * 2}{line}\n".replace(f"\n{STEP}", f"\n{STEP * 2}") for line in (pointer, *lines))
-    return f"for (size_t element = 0u; element < {rounds.elements}u; {step}) {{\n{body}{STEP}}}"
+    return f"{loop('element', f'{rounds.elements}u', rounds.in_round)}\n{body}{STEP}}}"
 
 
 def _group(group: Flags | Row | Array | Structs, message: Composite[Any]) -> str:
@@ -176,9 +175,8 @@ def _number(field: FieldDescription, target: str, frame: str = "buffer") -> str:
     line = _assigned(field, target, read.whole)
     if len(STEP) + len(line) <= WIDTH or len(read.terms) == 1:
         return line
-    local = (
-        f"bits_{field.model.at}" if frame == "buffer" else f"{frame}_bits_{field.model.at}"
-    )  # in a loop others are near
+    within = "" if frame == "buffer" else f"{frame}_"  # in a loop it hides none that stands before it
+    local = f"{within}bits_{field.model.at}"
     first, *others = read.terms
     joined = [f"uint{read.bits}_t {local} = {first};", *(f"{local} |= {term};" for term in others)]
     return f"\n{STEP}".join([*joined, _assigned(field, target, read.value.format(bits=local))])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from icdgen.backends.c.statement import loop
 from icdgen.backends.lines import STEP
 from icdgen.describe import FieldDescription
 
@@ -29,5 +30,4 @@ def statements(
         ]
     if not lines or index == "0":
         return lines
-    head = f"for (size_t {index} = 0u; {index} < {count}; {index}++) {{"
-    return [head, *(f"{STEP}{line}" for line in lines), "}"]
+    return [loop(index, count), *(f"{STEP}{line}" for line in lines), "}"]

@@ -28,6 +28,12 @@ def call(function: str, arguments: Sequence[str], depth: int = 1) -> str:
     return bracketed(f"{function}(", arguments, ");", WIDTH, STEP * depth, last="")
 
 
+def loop(index: str, count: str, by: int = 1) -> str:
+    """The head of a loop over so many elements; ``by`` of them at once."""
+    step = f"{index}++" if by == 1 else f"{index} += {by}u"
+    return f"for (size_t {index} = 0u; {index} < {count}; {step}) {{"
+
+
 def assigned_byte(target: str, terms: Sequence[str]) -> str:
     """A statement that gives a byte the value of terms or-ed together."""
     value = joined(terms)
