@@ -67,10 +67,10 @@ def example(message: MessageDescription) -> Example:
     }
     if shown is not None:
         raw[shown.field.model.name] = shown.raw
-    in_arrays = [
+    in_arrays = {
         one.name for one in message.model.owners if one.const is not None and any(step.count for step in one.path)
-    ]
-    few = raw if len(in_arrays) <= FEW else {name: value for name, value in raw.items() if name not in set(in_arrays)}
+    }
+    few = raw if len(in_arrays) <= FEW else {name: value for name, value in raw.items() if name not in in_arrays}
     frame, brief = (codec.frame_with(message.node, message.model, values) for values in (raw, few))
     return Example(shown, frame, brief)
 

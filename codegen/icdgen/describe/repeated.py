@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 from icdgen.describe.description import Composite, FieldDescription, StructDescription
@@ -31,8 +31,20 @@ def repeated_in(one: Composite[Any], within: str = "") -> tuple[Repeated, ...]:
     return tuple(Repeated(part, part.element, within + part.name) for part in one.blocks if part.element is not None)
 
 
-def all_repeated(one: Composite[Any], within: str = "") -> Iterator[Repeated]:
+def all_repeated(one: Composite[Any]) -> Iterator[Repeated]:
     """All of a message, those in others before them."""
-    for found in repeated_in(one, within):
-        yield from all_repeated(found.element, f"{found.name}_")
-        yield found
+    for part, name in arrays_named(one, lambda part: part.element is not None):
+        if part.element is not None:
+            yield Repeated(part, part.element, name)
+
+
+def arrays_named(
+    one: Composite[Any], wanted: Callable[[FieldDescription], bool], within: str = ""
+) -> Iterator[tuple[FieldDescription, str]]:
+    """The arrays of a message that are wanted, arrays of structs among them, and their names; those in others come first."""
+    for part in one.blocks:
+        if wanted(part):
+            name = within + part.name
+            if part.element is not None:
+                yield from arrays_named(part.element, wanted, f"{name}_")
+            yield part, name

@@ -134,10 +134,7 @@ def _message(message: MessageDescription) -> dict[str, object]:
 
 
 def _arrays(message: MessageDescription, found: Iterable[Repeated]) -> Groups:
-    return [
-        Structs(one.part, one.begin, one.step, names.reading(message, one.name), names.writing(message, one.name))
-        for one in found
-    ]
+    return [Structs(one, names.reading(message, one.name), names.writing(message, one.name)) for one in found]
 
 
 def _repeated(message: MessageDescription, one: Repeated) -> dict[str, object]:
@@ -161,11 +158,11 @@ def _tail(message: MessageDescription, tail: TailDescription) -> dict[str, objec
         of_element = {
             "type": f"{names.stem(tail.element)}_t",
             "reading": reading,
-            "walking": names.walking(message, tail) if not message.inner else "",
+            "walking": names.walking(message, tail.part.name) if not message.inner else "",
             "there": decoding.there(tail),
             "place": decoding.place(tail.begin, tail.step),
             "decode": decoding.of_elements(tail, reading),
-            "encode": [encoding.of_elements(tail, writing)],
+            "encode": encoding.of_elements(tail, writing),
         }
     return {
         "element": of_element,

@@ -113,7 +113,7 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
         yield message.identifier(FILE, names.reading(message, one.name))
         yield message.identifier(FILE, names.writing(message, one.name))
     if message.tail is not None and message.tail.element is not None and not message.inner:
-        yield message.identifier(FILE, names.walking(message, message.tail))
+        yield message.identifier(FILE, names.walking(message, message.tail.part.name))
     for part in parts_of(message):
         yield message.identifier(FILE, f"{stem}_{part_name(part.message)}")
     yield from _fields(message)

@@ -14,6 +14,7 @@ from icdgen.backends.c.types import cast, type_of
 from icdgen.backends.lines import STEP
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.description import Composite, TailDescription
+from icdgen.describe.repeated import Repeated
 from icdgen.describe.rounds import Rounds
 
 EMPTY = "empty"
@@ -101,6 +102,11 @@ def for_each(name: str, count: str, function: str, begin: int, step: int) -> str
     return f"{loop('element', count)}\n{STEP * 2}{made}\n{STEP}}}"
 
 
+def of_array(array: Repeated, function: str) -> str:
+    """The same for all of an array."""
+    return for_each(array.part.member, f"{array.part.count}u", function, array.begin, array.step)
+
+
 def there(tail: TailDescription) -> str:
     """How many elements a frame of ``length`` bytes has."""
     count = _count(tail)
@@ -143,7 +149,7 @@ def _group(group: Flags | Row | Array | Structs, message: Composite[Any]) -> str
         lines = (_number(one, f"message->{one.member}", "part") for one in group.members)
         return in_rounds(group.rounds, "const ", lines)
     if isinstance(group, Structs):
-        return for_each(group.part.member, f"{group.part.count}u", group.reading, group.begin, group.step)
+        return of_array(group.array, group.reading)
     members = [field.member for field in group.members]
     target = f"{stem(message)}_t", "message"
     if isinstance(group, Flags):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from icdgen.backends.c import bits
-from icdgen.backends.c.decoding import elements, for_each, in_rounds
+from icdgen.backends.c.decoding import elements, for_each, in_rounds, of_array
 from icdgen.backends.c.member_groups import Array, Flags, Groups, Row, Structs
 from icdgen.backends.c.names import stem
 from icdgen.backends.c.statement import assigned_byte, call
@@ -39,9 +39,9 @@ def counted_text(tail: TailDescription) -> str:
     return f"strlen(text) + {tail.low}u" if tail.low else "strlen(text)"
 
 
-def of_elements(tail: TailDescription, writing: str) -> str:
+def of_elements(tail: TailDescription, writing: str) -> list[str]:
     """The loop that writes the structs of an open end, each where it stands in ``buffer``."""
-    return for_each(tail.part.member, elements(tail), writing, tail.begin, tail.step)
+    return [for_each(tail.part.member, elements(tail), writing, tail.begin, tail.step)]
 
 
 def statements(message: Composite[Any], groups: Groups) -> list[str]:
@@ -90,8 +90,7 @@ class _Frame:
             self.whole[rounds.begin] = rounds.length, in_rounds(rounds, "", lines)
             return
         if isinstance(group, Structs):
-            loop = for_each(group.part.member, f"{group.part.count}u", group.writing, group.begin, group.step)
-            self.whole[group.begin] = group.length, loop
+            self.whole[group.array.begin] = group.length, of_array(group.array, group.writing)
             return
         names = [field.member for field in group.members]
         byte, source = group.byte, (f"{stem(self.message)}_t", "message")

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from icdgen.backends.c.bits import is_word, order
 from icdgen.describe import FieldDescription
+from icdgen.describe.repeated import Repeated
 from icdgen.describe.rounds import Rounds, rounds_of
 from icdgen.frozen import dataclass
 
@@ -58,16 +59,14 @@ class Row:
 class Structs:
     """An array of structs, which a loop reads and writes."""
 
-    part: FieldDescription
-    begin: int  # the first byte of the frame
-    step: int  # bytes of an element
+    array: Repeated
     reading: str  # the function for an element
     writing: str
 
     @property
     def length(self) -> int:
         """Bytes of the frame."""
-        return self.part.count * self.step
+        return self.array.part.count * self.array.step
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,13 +105,18 @@ def _octets(first: FieldDescription) -> FieldDescription:
 
 
 def _array(first: FieldDescription) -> Array | None:
-    is_row = is_word(first) and first.storage.bits == first.model.bits
-    rounds = rounds_of(first, first.model.path[-1].count) if first.model.index == 0 and not is_row else None
+    begins = first.model.index == 0 and not _is_plain_word(first)
+    rounds = rounds_of(first, first.model.path[-1].count) if begins else None
     if rounds is None:
         return None
     name = first.member.removesuffix("[0]")
     members = rounds.members(first, lambda element: f"{name}[element{f' + {element}u' if element else ''}]")
     return Array(members, rounds)
+
+
+def _is_plain_word(field: FieldDescription) -> bool:
+    """Whether its member has as many bits as the word."""
+    return is_word(field) and field.storage.bits == field.model.bits
 
 
 def _position(field: FieldDescription) -> tuple[int, int] | None:
@@ -139,13 +143,13 @@ def _flags(fields: Members, positions: Sequence[tuple[int, int] | None], first: 
 def _row(fields: Members, begin: int) -> Row | None:
     first, end = fields[begin], begin + 1
     bits, at = first.model.bits, first.model.at
-    if not is_word(first) or first.storage.bits != bits:
+    if not _is_plain_word(first):
         return None
     for field in fields[end:]:
         at += bits
         is_next = field.model.bits == bits and field.model.at == at
         is_next = is_next and field.holder == first.holder  # a struct may end with padding
-        if not (is_next and is_word(field) and field.storage.bits == bits and field.byte_order == first.byte_order):
+        if not (is_next and _is_plain_word(field) and field.byte_order == first.byte_order):
             break
         end += 1
     row = fields[begin:end]

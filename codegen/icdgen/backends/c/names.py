@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from icdgen.describe import EnumDescription, FieldDescription, MessageDescription
-from icdgen.describe.description import Composite, TailDescription
+from icdgen.describe.description import Composite
 from icdgen.describe.enums import MemberDescription
 
 
@@ -30,9 +30,9 @@ def writing(message: MessageDescription, name: str) -> str:
     return f"{stem(message)}_write_{name}"
 
 
-def walking(message: MessageDescription, tail: TailDescription) -> str:
+def walking(message: MessageDescription, name: str) -> str:
     """The function that reads one of a frame that is not decoded."""
-    return f"{stem(message)}_{tail.part.name}_at"
+    return f"{stem(message)}_{name}_at"
 
 
 def has(field: FieldDescription) -> str:

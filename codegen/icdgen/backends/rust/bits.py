@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from icdgen.backends.lines import STEP, bracketed
+from icdgen.backends.rust.arrays import helper_of, is_run, reader, writer
 from icdgen.backends.rust.names import field_name, own_name, struct_path
 from icdgen.backends.rust.text import WIDTH, mask
 from icdgen.describe import FieldDescription, StructDescription
 from icdgen.describe.description import Composite
-from icdgen.describe.rounds import Rounds, rounds_of
 from icdgen.describe.storage import holding
 from icdgen.layout import Piece, is_whole_bytes
 
@@ -31,7 +31,7 @@ def reading(field: FieldDescription, tables: set[int], depth: int = 3, within: s
     if field.model.implied:
         return "0"
     if field.count:
-        return _array(field, depth) if _is_run(field) else _listed(field, tables, depth)
+        return _array(field, depth) if is_run(field) else _listed(field, tables, depth)
     one, row = field.model, field.pieces
     if one.is_bytes:
         return f"array(bytes, {one.at // 8})"
@@ -50,32 +50,6 @@ def reading(field: FieldDescription, tables: set[int], depth: int = 3, within: s
     return f"{{{body}\n{STEP * depth}}}"
 
 
-def helper_of(field: FieldDescription) -> str:
-    """The helper that reads an array by a function for an element, or for as many as are whole bytes; empty of all others."""
-    if field.element is not None:
-        return "each"
-    rounds = rounds_in(field)
-    return "" if rounds is None else "rounds" if rounds.in_round > 1 else "each"
-
-
-def rounds_in(field: FieldDescription) -> Rounds | None:
-    """How the elements of an array of numbers are read and written, where a function does it."""
-    if not field.count or field.struct is not None or _is_run(field):
-        return None
-    rounds = rounds_of(field, field.count)
-    return rounds if rounds is not None and rounds.elements == field.count else None
-
-
-def reader(name: str) -> str:
-    """The function that reads an element, or a round of them; ``name`` is that of the array, from the message on."""
-    return f"read_{name}"
-
-
-def writer(name: str) -> str:
-    """The function that writes it."""
-    return f"write_{name}"
-
-
 def _called(field: FieldDescription, helper: str, within: str, depth: int) -> str:
     target = f"{own_name(field)}: "
     arguments = ("bytes", str(field.model.at // 8), f"Self::{reader(within + field.name)}")
@@ -86,12 +60,6 @@ def _struct(field: FieldDescription, struct: StructDescription, tables: set[int]
     pad, (row,) = STEP * depth, field.instances
     lines = (f"{pad}{STEP}{own_name(one)}: {reading(one, tables, depth + 1, within)},\n" for one in row)
     return f"{struct_path(struct, field.message.seen_from)} {{\n{''.join(lines)}{pad}}}"
-
-
-def _is_run(field: FieldDescription) -> bool:
-    """Whether the elements of an array are words that lie in the frame as they do in memory, but for their byte order."""
-    one = field.model
-    return one.is_bytes or (is_whole_bytes(one) and one.bits == field.storage.bits and one.type != "bool")
 
 
 def _array(field: FieldDescription, depth: int) -> str:
@@ -226,7 +194,7 @@ def writing(field: FieldDescription, owner: str = "self", within: str = "") -> l
         arguments = ("&mut bytes", str(field.model.at // 8), values, function)
         return [bracketed(f"put_{helper}(", arguments, ");", WIDTH, STEP * 2)]
     if field.count:
-        if _is_run(field):
+        if is_run(field):
             return _put_run(field, f"{owner}.{field_name(field)}")
         return [line for one in field.elements for line in writing(one, owner)]
     one, row, source = field.model, field.pieces, _source(field, owner)

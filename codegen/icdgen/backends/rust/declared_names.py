@@ -6,9 +6,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from icdgen.backends import Identifier
-from icdgen.backends.rust import elements, names
+from icdgen.backends.rust import arrays, names
 from icdgen.backends.rust.accessors import single_name, whole_of
-from icdgen.backends.rust.bits import reader, writer
 from icdgen.describe import Description, MessageDescription, NodeDescription
 from icdgen.describe.description import Composite
 from icdgen.naming import DEVICES
@@ -78,9 +77,9 @@ def _members(
     )
     yield from _ours(methods, (*used_methods, *of_open))
     if isinstance(message, MessageDescription):
-        for _, name in elements.names(message):
-            yield message.identifier(methods, reader(name))
-            yield message.identifier(methods, writer(name))
+        for _, name in arrays.named(message):
+            yield message.identifier(methods, arrays.reader(name))
+            yield message.identifier(methods, arrays.writer(name))
     yield from _ours(associated, used_constants)
     for field in message.all_members:
         is_view = field.model.view

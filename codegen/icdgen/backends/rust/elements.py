@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from icdgen.backends.lines import STEP
-from icdgen.backends.rust import bits
+from icdgen.backends.rust import arrays, bits
 from icdgen.backends.rust.names import one_type, own_name, struct_path
 from icdgen.describe import FieldDescription, StructDescription
 from icdgen.describe.description import Composite
@@ -29,20 +29,10 @@ class Functions(NamedTuple):
     writings: list[str]
 
 
-def names(one: Composite[Any], within: str = "") -> Iterator[tuple[FieldDescription, str]]:
-    """The arrays that have such functions, those in elements of others before these; and their names, from the message on."""
-    for field in one.blocks:
-        if bits.helper_of(field):
-            name = within + field.name
-            if field.element is not None:
-                yield from names(field.element, f"{name}_")
-            yield field, name
-
-
 def functions(one: Composite[Any]) -> Iterator[Functions]:
     """All of a message."""
-    for field, name in names(one):
-        rounds = bits.rounds_in(field)
+    for field, name in arrays.named(one):
+        rounds = arrays.rounds_in(field)
         if field.element is not None:
             yield _of_struct(field, field.element, name)
         elif rounds is not None:
@@ -53,8 +43,7 @@ def _of_struct(field: FieldDescription, struct: StructDescription, name: str) ->
     within, tables, type = f"{name}_", bits.flag_tables(struct), struct_path(struct, struct.seen_from)
     value = literal(struct.members, [bits.reading(one, tables, within=within) for one in struct.members], type)
     writings = [line for one in struct.blocks for line in bits.writing(one, "part", within)]
-    names = bits.reader(name), bits.writer(name), field.model.name
-    return Functions("each", *names, struct.model.length, type, sorted(tables), value, writings)
+    return Functions(*_called(field, name), struct.model.length, type, sorted(tables), value, writings)
 
 
 def _of_numbers(field: FieldDescription, rounds: Rounds, name: str) -> Functions:
@@ -66,10 +55,13 @@ def _of_numbers(field: FieldDescription, rounds: Rounds, name: str) -> Functions
     else:
         value = bits.reading(members[0], set(), DEPTH - 1)  # a block is the body of the function
         value = value[2:-2].rstrip() if value.startswith("{\n") else pad + value
-    names = bits.reader(name), bits.writer(name), field.model.name
     writings = [line for one in members for line in bits.writing(one, "")]
     type = f"[{type}; {rounds.in_round}]" if many else type
-    return Functions(bits.helper_of(field), *names, rounds.step, type, [], value, writings)
+    return Functions(*_called(field, name), rounds.step, type, [], value, writings)
+
+
+def _called(field: FieldDescription, name: str) -> tuple[str, str, str, str]:
+    return arrays.helper_of(field), arrays.reader(name), arrays.writer(name), field.model.name
 
 
 def literal(fields: tuple[FieldDescription, ...], values: list[str], type: str = "Self") -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from icdgen.backends.rust import bits, conditional, constants, derived, elements, parts
+from icdgen.backends.rust import arrays, bits, conditional, constants, derived, elements, parts
 from icdgen.backends.rust.names import field_name, struct_path
 from icdgen.backends.rust.physical import has_constant
 from icdgen.backends.rust.text import integer
@@ -176,7 +176,7 @@ def _is_long(field: FieldDescription) -> bool:
 def _fresh(field: FieldDescription) -> str:
     if field.is_open and field.count:
         length = field.struct.model.length if field.struct is not None else 0
-        absent = f"Self::{bits.reader(field.name)}(&[0; {length}])" if length else _zero(field)
+        absent = f"Self::{arrays.reader(field.name)}(&[0; {length}])" if length else _zero(field)
         return (
             f"first({field.message.fewest}, {_one_fresh(field)}, {absent})"
             if _has_first(field)
