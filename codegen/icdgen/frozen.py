@@ -24,6 +24,7 @@ else:
         """For classes that are frozen; options are those of `dataclasses.dataclass`."""
 
         def made(plain: type[Any]) -> type[Any]:
+            plain.__doc__ = plain.__doc__ or plain.__name__  # else the signature is worked out, to stand in place of it
             kind = dataclasses.dataclass(init=False, eq=False, repr=False, **options)(plain)
             _begin_late(kind)
             if eq:

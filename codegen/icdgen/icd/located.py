@@ -9,24 +9,31 @@ from icdgen.diagnostics import Place
 
 
 class Mark(Protocol):
-    """A point in the text, as the reader of YAML gives it; all count from 0."""
+    """A point in the file ``name``, as the reader of YAML gives it; lines and columns count from 0."""
 
-    index: int
+    name: str
     line: int
     column: int
 
 
-Spot = Place | tuple[str, Mark, Mark]
-"""Where something stood: the place, or what it is worked out from (file, beginning, end) once it is asked for: few are."""
+class Stretch(Protocol):
+    """What begins and ends somewhere."""
+
+    start_mark: Mark
+    end_mark: Mark
+
+
+Spot = Place | Stretch
+"""Where something stood: the place, or what it is worked out from once it is asked for: few are."""
 
 
 def place_of(spot: Spot) -> Place:
     """The place that a spot is."""
     if isinstance(spot, Place):
         return spot
-    file, start, end = spot
+    start, end = spot.start_mark, spot.end_mark
     length = end.column - start.column if end.line == start.line else 1
-    return Place(file, start.line + 1, start.column + 1, max(length, 1))
+    return Place(start.name, start.line + 1, start.column + 1, max(length, 1))
 
 
 class Map(dict[str, Any]):

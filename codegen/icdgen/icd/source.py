@@ -7,11 +7,12 @@ int, bool, float or None. Only spellings that every YAML reader takes alike are 
 from __future__ import annotations
 
 import re
+from io import StringIO
 from pathlib import Path
 from typing import Any, Protocol, cast
 
 from icdgen.diagnostics import Finding, Findings, Place
-from icdgen.icd.located import Map, Mark, Seq, Spot, place_of
+from icdgen.icd.located import Map, Seq, Stretch, place_of
 
 TREACHEROUS = "ICD003"
 MAX_BYTES = 4_000_000
@@ -22,6 +23,7 @@ _INTEGER = re.compile(r"-?(?:0|[1-9][0-9]*)\Z")
 _HEX = re.compile(r"0x[0-9A-Fa-f]+\Z")
 _DECIMAL = re.compile(r"-?(?:0|[1-9][0-9]*)\.[0-9]+(?:[eE][-+][0-9]{1,2})?\Z")
 _SCIENTIFIC = re.compile(r"([-+]?)([0-9]+)(?:\.([0-9]*))?[eE]([-+]?)([0-9]+)\Z")
+_DEEPER_THAN_LIBYAML = "exceeded maximum nesting depth"  # which looks ahead, and so finds it first on a line
 _LONGEST_WORD = len("false")  # of those that mean something else to some reader of YAML
 _WORDS = {"true": True, "false": False, "null": None, "~": None, "": None}
 _UNPRINTABLE = (
@@ -93,11 +95,9 @@ def parse_on(data: bytes, name: str) -> tuple[Map, list[Finding]]:
     return tree, findings
 
 
-class Event(Protocol):
-    """A YAML event: what all have, and what scalars and openings of containers have beside it."""
+class Event(Stretch, Protocol):
+    """A YAML event: where it stands, and what scalars and openings of containers have beside it."""
 
-    start_mark: Mark
-    end_mark: Mark
     anchor: str | None
     tag: str | None
     value: str
@@ -129,29 +129,29 @@ class Builder:
         roots = Seq(Place(self.name))
         container: Any = roots  # what is being filled
         key: str | None = None  # of a mapping, whose value comes next
-        key_spot: Spot = roots.spot
-        stack: list[tuple[Any, str | None, Spot]] = []  # those around it
-        name, known = self.name, self.scalars  # the latter stands for 'not seen yet' too
-        next_event = event_parser(self.text).get_event
+        key_event: Any = None
+        stack: list[tuple[Any, str | None, Any]] = []  # those around it
+        known = self.scalars  # stands for 'not seen yet', too
+        next_event = event_parser(self.text, self.name).get_event
+        scalar, mapping, sequence = events.ScalarEvent, events.MappingStartEvent, events.SequenceStartEvent
         try:
             while True:  # once an event, by the ten thousand: nothing is called that can be said here
                 event = next_event()
                 kind = type(event)
-                if kind is events.MappingEndEvent or kind is events.SequenceEndEvent:
-                    container, key, key_spot = stack.pop()
-                    continue
-                spot = name, event.start_mark, event.end_mark
                 value: Any
-                if kind is events.ScalarEvent:
+                if kind is scalar:
                     plain = not event.style and event.anchor is None and event.tag is None
                     value = known.get(event.value, known) if plain else known
                     if value is known:
                         value = self.scalar(event)
-                elif kind is events.MappingStartEvent or kind is events.SequenceStartEvent:
+                elif kind is events.MappingEndEvent or kind is events.SequenceEndEvent:
+                    container, key, key_event = stack.pop()
+                    continue
+                elif kind is mapping or kind is sequence:
                     if event.anchor is not None:
                         self.refuse_alias(event)
                     self.check_tag(event)
-                    value = (Map if kind is events.MappingStartEvent else Seq)(spot)
+                    value = (Map if kind is mapping else Seq)(event)
                 elif kind is events.AliasEvent:
                     self.refuse_alias(event)
                     return None, self.findings
@@ -164,20 +164,20 @@ class Builder:
                     continue
                 if type(container) is Seq:
                     container.append(value)
-                    container.spots.append(spot)
+                    container.spots.append(event)
                 elif key is None:
-                    key, key_spot = value if type(value) is str else self.key(value, event), spot
+                    key, key_event = value if type(value) is str else self.key(value, event), event
                 else:
                     if key in container:
-                        self.refuse_twin(key, place_of(key_spot), container.key_at(key))
+                        self.refuse_twin(key, place_of(key_event), container.key_at(key))
                     container[key] = value
-                    container.spots[key] = key_spot, spot
+                    container.spots[key] = key_event, event
                     key = None
-                if kind is not events.ScalarEvent:
+                if kind is not scalar:
                     if len(stack) >= MAX_DEPTH:
-                        self.add("ICD001", f"nested more than {MAX_DEPTH} deep", event, "an ICD needs five levels")
+                        self.findings.append(_too_deep(place_of(event)))
                         return None, self.findings
-                    stack.append((container, key, key_spot))
+                    stack.append((container, key, key_event))
                     container, key = value, None
         except yaml.YAMLError as error:
             from icdgen.icd import remedies
@@ -185,6 +185,9 @@ class Builder:
             mark = getattr(error, "problem_mark", None)
             place = Place(self.name, mark.line + 1, mark.column + 1) if mark else self.unprintable()
             problem = getattr(error, "problem", None) or getattr(error, "reason", None) or "the text cannot be read"
+            if problem == _DEEPER_THAN_LIBYAML:
+                self.findings.append(_too_deep(place))
+                return None, self.findings
             help = (
                 remedies.of_syntax(problem, "".join(self.text.split("\n")[mark.line : mark.line + 1]), mark.column)
                 if mark
@@ -255,7 +258,11 @@ class Builder:
         return _after(self.name, self.text[: found.start()]) if found else Place(self.name)
 
     def add(self, code: str, message: str, event: Event, help: str) -> None:
-        self.findings.append(Finding(code, message, place_of((self.name, event.start_mark, event.end_mark)), help))
+        self.findings.append(Finding(code, message, place_of(event), help))
+
+
+def _too_deep(place: Place) -> Finding:
+    return Finding("ICD001", f"nested more than {MAX_DEPTH} deep", place, "an ICD needs five levels")
 
 
 def _spelled(text: str) -> str:
@@ -279,8 +286,10 @@ def _after(name: str, before: str) -> Place:
     return Place(name, before.count("\n") + 1, len(before) - before.rfind("\n"))
 
 
-def event_parser(text: str) -> EventParser:
-    """libyaml's event parser (ten times faster) where PyYAML was built with it."""
+def event_parser(text: str, name: str) -> EventParser:
+    """libyaml's event parser (ten times faster) where PyYAML was built with it; marks tell the ``name`` of the file."""
+    file = StringIO(text)
+    file.name = name  # type: ignore[attr-defined]
     try:
         from yaml.cyaml import CParser  # type: ignore[attr-defined]
     except ImportError:
@@ -289,10 +298,10 @@ def event_parser(text: str) -> EventParser:
         from yaml.scanner import Scanner
 
         class PythonParser(Reader, Scanner, Parser):
-            def __init__(self, stream: str) -> None:
+            def __init__(self, stream: StringIO) -> None:
                 Reader.__init__(self, stream)
                 Scanner.__init__(self)
                 Parser.__init__(self)
 
-        return cast(EventParser, PythonParser(text))
-    return cast(EventParser, CParser(text))
+        return cast(EventParser, PythonParser(file))
+    return cast(EventParser, CParser(file))

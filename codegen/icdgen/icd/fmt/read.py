@@ -27,7 +27,7 @@ def comments(text: str) -> list[str]:
 
     found: list[str] = []
     reached = 0
-    parser = source.event_parser(text)
+    parser = source.event_parser(text, "")
     while True:
         event = parser.get_event()
         kind, start = type(event), event.start_mark.index
@@ -64,7 +64,7 @@ class _Reader:
             events.MappingEndEvent: self.close,
             events.SequenceEndEvent: self.close,
         }
-        parser = source.event_parser(self.text)
+        parser = source.event_parser(self.text, "")
         while True:
             event = parser.get_event()
             kind = type(event)
