@@ -19,8 +19,9 @@ MAX_BYTES = 4_000_000
 MAX_DEPTH = 40
 MAX_SCALAR = 20_000
 
-_INTEGER = re.compile(r"-?(?:0|[1-9][0-9]*)\Z")
-_HEX = re.compile(r"0x[0-9A-Fa-f]+\Z")
+_NUMBER = re.compile(
+    r"(?:(?P<whole>-?(?:0|[1-9][0-9]*))|(?P<hex>0x[0-9A-Fa-f]+)|(?P<decimal>-?(?:0|[1-9][0-9]*)\.[0-9]+(?:[eE][-+][0-9]{1,2})?))\Z"
+)
 _DECIMAL = re.compile(r"-?(?:0|[1-9][0-9]*)\.[0-9]+(?:[eE][-+][0-9]{1,2})?\Z")
 _SCIENTIFIC = re.compile(r"([-+]?)([0-9]+)(?:\.([0-9]*))?[eE]([-+]?)([0-9]+)\Z")
 _DEEPER_THAN_LIBYAML = "exceeded maximum nesting depth"  # which looks ahead, and so finds it first on a line
@@ -216,34 +217,30 @@ class Builder:
         if len(text) > MAX_SCALAR:
             self.add("ICD001", f"a text of {len(text):,} characters", event, f"at most {MAX_SCALAR:,} are allowed")
             return text[:100]
-        if event.style:
-            if "\0" in text:
-                self.add("ICD001", "the text holds a NUL character", event, "remove it")
-            return text
-        value = self.plain(text, event)
-        if value is not self:
-            self.scalars[text] = value
-            return value
+        if not event.style:
+            return self.plain(text, event)
+        if "\0" in text:
+            self.add("ICD001", "the text holds a NUL character", event, "remove it")
         return text
 
     def plain(self, text: str, event: Event) -> object:
-        """The value of an unquoted scalar; ``self`` if YAML readers disagree about it."""
+        """The value of an unquoted scalar; the text itself, with a finding, if YAML readers disagree about it."""
         if len(text) > _LONGEST_WORD and text[0].isalpha():
-            return text
-        if text in _WORDS:
-            return _WORDS[text]
-        if _INTEGER.match(text):
-            return int(text) if len(text) < 40 else text
-        if _HEX.match(text):
-            return int(text, 16) if len(text) < 40 else text
-        if _DECIMAL.match(text):
-            return _number(text) if len(text) < 40 else text
-        if _TREACHEROUS.match(text) and text not in (".", "-"):
-            number = _spelled(text) or "a plain decimal or 0x number"
-            help = f'write "{text}" in quotes if it is text, {number} if it is a number'
+            value: object = text
+        elif text in _WORDS:
+            value = _WORDS[text]
+        elif (number := _NUMBER.match(text)) is not None:
+            kind = number.lastgroup
+            value = text if len(text) >= 40 else int(text, 16) if kind == "hex" else int(text) if kind == "whole" else _number(text)
+        elif _TREACHEROUS.match(text) and text not in (".", "-"):
+            meant = _spelled(text) or "a plain decimal or 0x number"
+            help = f'write "{text}" in quotes if it is text, {meant} if it is a number'
             self.add(TREACHEROUS, f"YAML readers disagree about what `{text}` is", event, help)
-            return self
-        return text
+            return text
+        else:
+            value = text
+        self.scalars[text] = value
+        return value
 
     def check_tag(self, event: Event) -> None:
         if event.tag is not None and event.tag != "!":
