@@ -30,6 +30,8 @@ class Job:
 
 @dataclass(eq=False, repr=False)
 class Outcome:
+    """What came of it."""
+
     loaded: Loaded
     may_be_remembered: bool = True  # nothing but the files of `inputs` and icdgen itself decides
     plans: list[write.Plan] = field(default_factory=list)
