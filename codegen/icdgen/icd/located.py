@@ -9,9 +9,10 @@ from icdgen.diagnostics import Place
 
 
 class Mark(Protocol):
-    """A point in the file ``name``, as the reader of YAML gives it; lines and columns count from 0."""
+    """A point in the file ``name``, as the reader of YAML gives it; all count from 0."""
 
     name: str
+    index: int
     line: int
     column: int
 

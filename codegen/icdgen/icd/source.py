@@ -231,7 +231,11 @@ class Builder:
             value = _WORDS[text]
         elif (number := _NUMBER.match(text)) is not None:
             kind = number.lastgroup
-            value = text if len(text) >= 40 else int(text, 16) if kind == "hex" else int(text) if kind == "whole" else _number(text)
+            value = (
+                text
+                if len(text) >= 40
+                else int(text, 16) if kind == "hex" else int(text) if kind == "whole" else _number(text)
+            )
         elif _TREACHEROUS.match(text) and text not in (".", "-"):
             meant = _spelled(text) or "a plain decimal or 0x number"
             help = f'write "{text}" in quotes if it is text, {meant} if it is a number'
@@ -286,7 +290,7 @@ def _after(name: str, before: str) -> Place:
 def event_parser(text: str, name: str) -> EventParser:
     """libyaml's event parser (ten times faster) where PyYAML was built with it; marks tell the ``name`` of the file."""
     file = StringIO(text)
-    file.name = name  # type: ignore[attr-defined]
+    file.name = name
     try:
         from yaml.cyaml import CParser  # type: ignore[attr-defined]
     except ImportError:

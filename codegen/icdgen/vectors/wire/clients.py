@@ -19,19 +19,19 @@ OURS = 0x42
 
 
 class Sample:
-    """Messages of the node that the scripts speak of."""
+    """Messages of the node that the scripts speak of; where it has none of a kind, others in their place."""
 
     def __init__(self, known: Facts, source: Random) -> None:
         self.known = known
-        sent = known.telecommands.values()
+        sent, frames = known.telecommands.values(), known.telemetry.values()
         acknowledged = [m for m in sent if m.acknowledge and m.kind != CONFIGURATION]
-        self.plain: Message = max(acknowledged, key=lambda m: (m.length <= 8, m.length))
+        self.plain: Message = max(acknowledged or sent, key=lambda m: (m.length <= 8, m.length))
         self.long: Message = max(sent, key=lambda m: m.length)
         self.setting = next((m for m in sent if m.kind == CONFIGURATION), None)
         self.silent = next((m for m in sent if not m.acknowledge and not m.expects_reset), None)
         self.reset = next((m for m in sent if m.expects_reset), None)
-        self.frame: Message = next(m for m in known.telemetry.values() if m.length > 1)
-        self.wide: Message = max(known.telemetry.values(), key=lambda m: m.length)
+        self.wide: Message = max(frames, key=lambda m: m.length)
+        self.frame: Message = next((m for m in frames if m.length > 1), self.wide)
         self.source = source
 
     def ask(self, at: int, message: Message, **more: object) -> dict[str, Any]:
@@ -96,7 +96,7 @@ def _uart(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]
         return {"at": at, "receive": _line(known, bytes([message.telemetry_id or 0]) + data)}
 
     plain, frame = s.plain, s.frame
-    other = next(m for m in known.telecommands.values() if m.acknowledge and m is not plain)
+    other = next((m for m in known.telecommands.values() if m.acknowledge and m is not plain), plain)
     yield "a telecommand and its acknowledge", [s.ask(0, plain), ack(30, plain), s.ask(30, plain), ack(40, plain)]
     for name, code in known.errors.items():
         if name != "none":
@@ -203,7 +203,7 @@ def _i2c(known: Facts, s: Sample, checked: bool) -> Iterator[tuple[str, list[dic
         return {"at": at, "receive": frame(polled.message, codec.encode(known.node, polled.message, raw))}
 
     plain, wide = s.plain, s.frame
-    other = next(m for m in known.telecommands.values() if m is not plain)
+    other = next((m for m in known.telecommands.values() if m is not plain), plain)
     written, failed = {"at": 1, "receive": ""}, {"receive": None}
     yield "a telecommand, polled until it is processed", [
         s.ask(0, plain), written, {"at": 10}, {"at": 11}, state(12, plain, 0), {"at": 22}, state(23, plain, 1),

@@ -7,6 +7,7 @@ from random import Random
 
 from icdgen.protocol import stream
 from icdgen.protocol.envelope import DIRECTIONS, GIVEN, PACKET, Stream, StreamRow
+from icdgen.protocol.errors import RangeError
 from icdgen.protocol.facts import Facts, need
 from icdgen.vectors.wire import Requests
 
@@ -161,8 +162,11 @@ def _strangers(
         others.append(("that is too short by one", StreamRow(row.id, 0, row.most - 1, False, row.seed, None, "")))
     for why, one in others:
         strange = replace(form, telecommands=(one,), telemetry=(one,))
-        data = b"\x2a" * one.most
-        yield f"a message {why}", good + stream.encode(strange, direction, one.id, data) + good
+        try:
+            line = stream.encode(strange, direction, one.id, b"\x2a" * one.most)
+        except RangeError:  # no header says such a length
+            continue
+        yield f"a message {why}", good + line + good
 
 
 def _gaps(form: Stream, direction: str, row: StreamRow, source: Random) -> Iterator[tuple[str, bytes]]:

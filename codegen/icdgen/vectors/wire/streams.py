@@ -42,7 +42,7 @@ def _messages(known: Facts, source: Random) -> Iterator[tuple[str, bytes]]:
     yield "what looks like a start within the data", bytes([1, escape, start, 2, escape])
     yield "the markers as data", bytes([end, start, end])
     yield "every byte", bytes([0x90, *range(256)])[: known.longest]
-    for id in sorted({min(known.telecommands, default=0), max(known.telecommands, default=0)}):
+    for id in sorted({min(known.telecommands), max(known.telecommands)} if known.telecommands else ()):
         yield f"telecommand {id}", bytes([id]) + source.randbytes(known.telecommands[id].length)
     longest = known.longest
     yield "the longest message", bytes([0x80]) + source.randbytes(longest - 1)
@@ -93,7 +93,7 @@ def streams(known: Facts, source: Random) -> Requests:
         pieces = [stream[a:b].hex() for a, b in zip([0, *cuts], [*cuts, len(stream)], strict=True)]
         yield f"{why}, cut at odd places", {"op": "uart_events", "chunks": pieces}
     long = line(0x90, *range(1, 9), escape)
-    for limit in (9, 10):
+    for limit in (9, 10) if known.longest >= 10 else ():  # no buffer is longer than the longest message
         yield f"ten bytes in a buffer of {limit}", {
             "op": "uart_events",
             "limit": limit,

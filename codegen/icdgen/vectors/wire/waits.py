@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from random import Random
 from typing import Any
 
+from icdgen.icd.model import Message
 from icdgen.protocol import i2c
 from icdgen.protocol.client import TELEMETRY
 from icdgen.protocol.facts import Facts
@@ -86,16 +87,20 @@ def _clients(known: Facts) -> Requests:
     for bus in (bus for bus, form in waits.items() if form):
         rows = [{"at": patience * n + late} for n in range(1, tries + 1) for late in (-1, 0)]
         yield f"{bus}: silence", {"op": "client", "bus": bus, "script": [asked, *rows, {"at": patience * (tries + 1)}]}
-    if known.polled and known.i2c_address is not None:
+    sent = next((m for m in known.telecommands.values() if m.acknowledge), None)
+    if sent is not None and known.polled and known.i2c_address is not None:
         for early in (1, 0):
             why = "a millisecond before its time is over" if early else "when its time is over"
-            yield f"{I2C}: not processed {why}", {"op": "client", "bus": I2C, "script": list(_polls(known, early))}
+            yield f"{I2C}: not processed {why}", {
+                "op": "client",
+                "bus": I2C,
+                "script": list(_polls(known, sent, early)),
+            }
 
 
-def _polls(known: Facts, early: int) -> Iterator[dict[str, Any]]:
+def _polls(known: Facts, sent: Message, early: int) -> Iterator[dict[str, Any]]:
     """A telecommand that is still not processed at the end of its time."""
     assert known.polled
-    sent = next(m for m in known.telecommands.values() if m.acknowledge)
     data = Step(known.polled.message, {"id": known.polled.id}).frame(known.node, {"id": sent.telecommand_id or 0})
     state = i2c.telecommand(known, known.polled.message.telemetry_id or 0, data, False)[1:].hex()
     yield {"at": 0, "telecommand": sent.telecommand_id, "bytes": bytes(sent.length).hex()}
