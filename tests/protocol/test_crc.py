@@ -45,13 +45,3 @@ def test_the_narrow_one_shifts_after_the_constant_is_applied(known, data):
         for _ in range(8):
             register = (register ^ 0x91 if register & 1 else register) >> 1
     assert crc.compute(known.checksum.crc, data) == register
-
-
-@quick
-@given(pieces=st.lists(st.binary(max_size=20)))
-def test_pieces_give_what_the_whole_gives(known, pieces):
-    for parameters in (known.checksum.crc, known.crc16):
-        register = crc.Register(parameters)
-        for piece in pieces:
-            register.feed(piece)
-        assert register.result() == crc.compute(parameters, b"".join(pieces))

@@ -50,9 +50,6 @@ def test_a_truncated_log_gives_its_whole_entries_and_says_what_is_left(known, bi
     else:
         assert log.mask == chosen
         assert (len(log.entries), log.truncated) == divmod(len(part) - 10, size)
-    reader = logs.Reader(known)
-    pieces = [entry for at in range(0, len(part), piece) for entry in reader.feed(part[at : at + piece])]
-    assert (pieces, reader.truncated) == (log.entries, log.truncated)
 
 
 def test_an_unsolicited_log_has_id_mask_and_frames(known):

@@ -36,49 +36,21 @@ class Log(NamedTuple):
 
 def decode(facts: Facts, data: bytes) -> Log:
     """What a log file holds."""
-    reader = Reader(facts)
-    entries = reader.feed(data)
-    return Log(reader.mask, entries, reader.truncated)
+    form, layout = need(facts.log_file, "telemetry_log"), need(facts.mask, "log_mask")
+    head, rest = data[: form.header_bytes], data[form.header_bytes :]
+    if len(head) < form.header_bytes:
+        return Log(None, [], len(data))
+    mask = head[form.mask_at : form.mask_at + layout.size]
+    slots = layout.selected(mask)
+    size = form.frames_at + len(slots) * layout.slot_bytes
+    starts = range(0, len(rest) - size + 1, size)
+    return Log(mask, [_entry(facts, slots, rest[at : at + size]) for at in starts], len(rest) % size)
 
 
-class Reader:
-    """Reads a log file in pieces of any size."""
-
-    def __init__(self, facts: Facts) -> None:
-        self.facts, self.form, self.layout = facts, need(facts.log_file, "telemetry_log"), need(facts.mask, "log_mask")
-        self.mask: bytes | None = None
-        self.slots: list[LogBit] = []
-        self.buffer = b""
-
-    @property
-    def entry_bytes(self) -> int:
-        return self.form.frames_at + len(self.slots) * self.layout.slot_bytes
-
-    @property
-    def truncated(self) -> int:
-        """At the end of the file: bytes that belong to no whole entry."""
-        return len(self.buffer)
-
-    def feed(self, data: bytes) -> list[Entry]:
-        """The entries that are complete now."""
-        self.buffer += data
-        entries = []
-        if self.mask is None and len(self.buffer) >= self.form.header_bytes:
-            self.mask = self.buffer[self.form.mask_at : self.form.mask_at + self.layout.size]
-            self.slots = self.layout.selected(self.mask)
-            self.buffer = self.buffer[self.form.header_bytes :]
-        while self.mask is not None and len(self.buffer) >= self.entry_bytes:
-            entries.append(self._entry(self.buffer[: self.entry_bytes]))
-            self.buffer = self.buffer[self.entry_bytes :]
-        return entries
-
-    def _entry(self, data: bytes) -> Entry:
-        (seconds, size), (milliseconds, rest) = self.form.seconds, self.form.milliseconds
-        return Entry(
-            self.facts.number(data[seconds : seconds + size]),
-            self.facts.number(data[milliseconds : milliseconds + rest]),
-            frames(self.facts, self.slots, data[self.form.frames_at :]),
-        )
+def _entry(facts: Facts, slots: Iterable[LogBit], data: bytes) -> Entry:
+    form = need(facts.log_file, "telemetry_log")
+    seconds, milliseconds = (facts.number(data[at : at + size]) for at, size in (form.seconds, form.milliseconds))
+    return Entry(seconds, milliseconds, frames(facts, slots, data[form.frames_at :]))
 
 
 def frames(facts: Facts, slots: Iterable[LogBit], data: bytes) -> tuple[Frame, ...]:
@@ -90,8 +62,7 @@ def frames(facts: Facts, slots: Iterable[LogBit], data: bytes) -> tuple[Frame, .
 def encode(facts: Facts, mask: bytes, entries: Iterable[tuple[int, int, Iterable[bytes]]]) -> bytes:
     """A log file. An entry is seconds, milliseconds and the data of each frame. Raises `LengthError`, `OverflowError`."""
     form = need(facts.log_file, "telemetry_log")
-    out = bytearray(form.header_bytes)
-    out[form.mask_at : form.mask_at + len(_mask(facts, mask))] = mask
+    out = _head(facts, form.header_bytes, form.mask_at, mask)
     for seconds, milliseconds, data in entries:
         head = bytearray(form.frames_at)
         for (at, size), number in ((form.seconds, seconds), (form.milliseconds, milliseconds)):
@@ -116,17 +87,19 @@ def decode_message(facts: Facts, message: bytes) -> tuple[bytes, tuple[Frame, ..
 def encode_message(facts: Facts, mask: bytes, data: Iterable[bytes]) -> bytes:
     """An unsolicited log message with its id. Raises `LengthError`."""
     form = need(facts.log_message, "unsolicited_log")
-    out = bytearray(form.frames_at)
+    out = _head(facts, form.frames_at, form.mask_at, mask)
     out[0] = form.id
-    out[form.mask_at : form.mask_at + len(_mask(facts, mask))] = mask
     return bytes(out) + _slots(facts, mask, data)
 
 
-def _mask(facts: Facts, mask: bytes) -> bytes:
-    layout = need(facts.mask, "log_mask")
-    if len(mask) != layout.size:
-        raise LengthError(layout.size, len(mask))
-    return mask
+def _head(facts: Facts, size: int, at: int, mask: bytes) -> bytearray:
+    """So many bytes, with the mask at its place."""
+    expected = need(facts.mask, "log_mask").size
+    if len(mask) != expected:
+        raise LengthError(expected, len(mask))
+    head = bytearray(size)
+    head[at : at + expected] = mask
+    return head
 
 
 def _slots(facts: Facts, mask: bytes, data: Iterable[bytes]) -> bytes:
