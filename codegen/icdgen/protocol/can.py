@@ -82,14 +82,11 @@ def split(facts: Facts, message: Message) -> list[Packet]:
         raise TooLongError(room, size)
     if size > form.bytes:
         raise TooLongError(form.bytes, size)
-    count, packets = ceil(size / form.data_bytes), []
-    for number in range(count):
-        piece = data[number * form.data_bytes : (number + 1) * form.data_bytes].ljust(
-            form.data_bytes, bytes([form.fill])
-        )
-        left = form.left_in_last + count - 1 - number
-        packets.append(packet(can.extended_types, piece.ljust(form.left_at, bytes([form.fill])) + bytes([left])))
-    return packets
+    pieces = [data[at : at + form.data_bytes] for at in range(0, size, form.data_bytes)]
+    width, fill = max(form.data_bytes, form.left_at), bytes([form.fill])
+    lefts = range(form.left_in_last + len(pieces) - 1, form.left_in_last - 1, -1)
+    filled = [piece.ljust(width, fill) + bytes([left]) for piece, left in zip(pieces, lefts, strict=True)]
+    return [packet(can.extended_types, one) for one in filled]
 
 
 @dataclass
@@ -166,12 +163,9 @@ class Joiner:
         if old and (old.completed_by in (None, number)) and old.packets.get(number) == piece:
             old.came(number, now)
             return [Event(DUPLICATE, id, source)]
-        if old and (
-            old.completed_by is not None or old.count != count or number in old.packets
-        ):  # another message has begun
-            if (
-                old.completed_by is None and number == old.in_order
-            ):  # ... with the same packets as the old one up to here
+        # another message has begun, perhaps with the same packets as the old one up to here
+        if old and (old.completed_by is not None or old.count != count or number in old.packets):
+            if old.completed_by is None and number == old.in_order:
                 kept = {n: old.packets[n] for n in range(number)}
             events += self._give_up(old)
             old = None

@@ -30,12 +30,16 @@ Event = dict[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """``repeat``: whether it may be sent again although it may have arrived. Of telemetry it always may."""
+    """``repeat``: whether it may be sent again although it may have arrived. Of telemetry it always may.
+
+    ``reply``: over envelopes, id of the telemetry that answers a telecommand, where the ICD does not say so.
+    """
 
     kind: str
     id: int
     data: bytes = b""
     repeat: bool = False
+    reply: int | None = None
 
 
 class Client:
@@ -56,9 +60,8 @@ class Client:
         else:
             need(known.i2c_address, "i2c")
         self.out: list[Any] = []  # UART: bytes; CAN: packets; I2C: (bytes to write, count to read)
-        self._transfers_asked = self._transfers_reported = (
-            0  # I2C: transactions that went to `out`, and those that came back
-        )
+        # I2C: transactions that went to `out`, and those that came back
+        self._transfers_asked = self._transfers_reported = 0
         self.state = IDLE
         self.request: Request | None = None
         self.attempts = 0

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from icdgen.icd.model import Message, Node
+from icdgen.icd.model import Node
 from icdgen.icd.variants import Ids, Variant
-from icdgen.protocol.envelope import DATA, DIRECTIONS, ROLES, Check, EnvelopeField, StreamRow
+from icdgen.protocol.envelope import DATA, DIRECTIONS, ROLES, Check, EnvelopeField, Stream, StreamRow
 from icdgen.protocol.sections import Crc
 
 Section = Mapping[str, Any]
@@ -40,17 +40,17 @@ def values_of(row: Section, little: bool) -> tuple[int, int]:
 
 
 def rows_of(
-    ids: Mapping[int, tuple[Variant, ...]], seeds: Mapping[str, int], replies: Mapping[str, int] | None = None
+    ids: Mapping[int, tuple[Variant, ...]], seeds: Mapping[str, int], replies: Mapping[str, int]
 ) -> tuple[StreamRow, ...]:
     """The messages of a direction, those that share an id as one: in the envelope they are alike (ICD174)."""
-    return tuple(_row(id, [one.message for one in those], seeds, replies or {}) for id, those in sorted(ids.items()))
-
-
-def _row(id: int, messages: list[Message], seeds: Mapping[str, int], replies: Mapping[str, int]) -> StreamRow:
-    least, most = min(one.least for one in messages), max(one.length for one in messages)
-    first, name = messages[0], " or ".join(one.name for one in messages)
-    reply = next((replies[one.name] for one in messages if one.name in replies), None)
-    return StreamRow(id, least, most, bool(first.may_end_early), seeds.get(first.name, 0), reply, name)
+    rows = []
+    for id, those in sorted(ids.items()):
+        messages = [one.message for one in those]
+        least, most = min(one.least for one in messages), max(one.length for one in messages)
+        first, name = messages[0], " or ".join(one.name for one in messages)
+        reply = next((replies[one.name] for one in messages if one.name in replies), None)
+        rows.append(StreamRow(id, least, most, bool(first.may_end_early), seeds.get(first.name, 0), reply, name))
+    return tuple(rows)
 
 
 def place_of(rows: Iterable[Section], name: str, last: bool) -> Section | None:
@@ -81,13 +81,8 @@ def check_of(section: Section, checksums: Section) -> Check | None:
     )
 
 
-def stream_of(
-    node: Node,
-    section: Section,
-    checksums: Section,
-    ids: Ids,
-) -> dict[str, Any]:
-    """What code makes of the section, beside its declared facts."""
+def stream_of(node: Node, section: Section, checksums: Section, ids: Ids) -> Stream:
+    """What code makes of the section."""
     header, trailer = section.get("header", ()), section.get("trailer", ())
     fields = [field_of(node, row, row_in is trailer) for row_in in (header, trailer) for row in row_in]
     sizes = [bytes_of((row["at"], row["bits"]) for row in rows) for rows in (header, trailer)]
@@ -98,14 +93,14 @@ def stream_of(
     replies = {sent: named[came] for sent, came in section.get("replies", {}).items() if came in named}
     counts_all = length.get("counts", DATA) == "message"
     assert all(field.role in ROLES for field in fields)
-    return {
-        "delimited_by": section["delimited_by"],
-        "header_bytes": sizes[0],
-        "trailer_bytes": sizes[1],
-        "length_plus": length.get("plus", 0) + (sum(sizes) if counts_all else 0),
-        "per_id": sequence.get("per", "link") == "id",
-        "fields": tuple(fields),
-        "check": check_of(section, checksums),
-        "telecommands": rows_of(ids.telecommand, seeds, replies),
-        "telemetry": rows_of(ids.telemetry, seeds),
-    }
+    return Stream(
+        delimited_by=section["delimited_by"],
+        header_bytes=sizes[0],
+        trailer_bytes=sizes[1],
+        length_plus=length.get("plus", 0) + (sum(sizes) if counts_all else 0),
+        per_id=sequence.get("per", "link") == "id",
+        fields=tuple(fields),
+        check=check_of(section, checksums),
+        telecommands=rows_of(ids.telecommand, seeds, replies),
+        telemetry=rows_of(ids.telemetry, seeds, {}),
+    )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from icdgen.protocol.errors import RangeError
 from icdgen.protocol.facts import Facts, need
 from icdgen.protocol.sections import Operation
@@ -14,9 +16,12 @@ class ProgramOperation(Procedure):
     Raises `icdgen.protocol.facts.Unsupported` and `RangeError`.
     """
 
-    def __init__(self, known: Facts, form: Operation | None, name: str, program: int) -> None:
+    name: ClassVar[str]  # of the section
+
+    def __init__(self, known: Facts, program: int) -> None:
         super().__init__(known)
-        self.form, self.program = need(form, name), program
+        self.form: Operation = need(getattr(known, self.name), self.name)
+        self.program = program
         self.values: dict[str, int] = {}  # of the last frame, by role
         if self.form.programs and program not in self.form.programs:
             raise RangeError("program")
@@ -35,15 +40,13 @@ class ProgramOperation(Procedure):
 class ProgramCopy(ProgramOperation):
     """Copies a stored program to where it can run."""
 
-    def __init__(self, known: Facts, program: int) -> None:
-        super().__init__(known, known.program_copy, "program_copy", program)
+    name = "program_copy"
 
 
 class ProgramInformation(ProgramOperation):
     """Reads ``size`` and ``checksum`` of a stored program; None until then, or if the frame does not have them."""
 
-    def __init__(self, known: Facts, program: int) -> None:
-        super().__init__(known, known.program_information, "program_information", program)
+    name = "program_information"
 
     @property
     def size(self) -> int | None:

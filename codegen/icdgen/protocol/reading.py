@@ -163,8 +163,7 @@ class Reader:
         section = self.section("stream")
         if not section:
             return None
-        made = stream_of(self.node, section, self.section("checksums"), ids_of(self.icd, self.node))
-        return Stream(**made)
+        return stream_of(self.node, section, self.section("checksums"), ids_of(self.icd, self.node))
 
     def mask(self) -> LogMask | None:
         slot, bits = self.section("log_mask").get("frame_bytes", 0), {}

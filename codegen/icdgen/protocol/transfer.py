@@ -151,6 +151,12 @@ class Transfer(Procedure):
         super().__init__(known)
         self.files = need(known.files, "file_transfer")
 
+    def hole_maps(self, count: int) -> list[Step]:
+        """The messages that carry the map of a block of so many packets, each with its field for the role ``map``."""
+        form = need(self.known.hole_map, "file_transfer.hole_map")
+        carrying = -(-count // (form.message_bytes * 8))
+        return [Step(message, {"map": form.field}) for message in form.messages[:carrying]]
+
 
 class FileList(Transfer):
     """The files of the node, one after the other, in ``entries``: values of the information frame by role."""
@@ -260,13 +266,10 @@ class Download(Transfer):
             yield Wait(self.last + self.form.silence)
 
     def _send_hole_map(self) -> Steps:
-        form, first = need(self.known.hole_map, "file_transfer.hole_map"), self.files.first_packet
+        first = self.files.first_packet
         map_ = files.hole_map(self.known, self.count, [first + position for position in self.got])
-        carried = -(-self.count // (form.message_bytes * 8))  # messages that carry the map of this block
-        for message, piece in list(zip(form.messages, files.in_messages(self.known, map_), strict=True))[:carried]:
-            assert message.telecommand_id is not None
-            data = codec.encode(self.known.node, message, {form.field: piece})
-            yield from self.demand(Request(TELECOMMAND, message.telecommand_id, data, repeat=True))
+        for step, piece in zip(self.hole_maps(self.count), files.in_messages(self.known, map_), strict=False):
+            yield from self.telecommand(step, map=piece)
 
 
 class Upload(Transfer):
@@ -328,14 +331,12 @@ class Upload(Transfer):
 
     def _missing(self, count: int) -> Asking[list[int]]:
         """Positions of the packets that the node has not."""
-        form = need(self.known.hole_map, "file_transfer.hole_map")
         map_ = b""
-        for message in form.messages[: -(-count // (form.message_bytes * 8))]:
-            assert message.telemetry_id is not None
-            outcome = yield from self.demand(Request(TELEMETRY, message.telemetry_id, repeat=True))
-            raw = codec.decode(self.known.node, message, bytes.fromhex(outcome["bytes"]))
-            map_ += raw[form.field]  # type: ignore[operator]
-        lost = files.missing(self.known, count, map_.ljust(form.bytes, b"\0"))
+        for step in self.hole_maps(count):
+            values, _ = yield from self.telemetry(step)
+            map_ += values["map"]
+        size = need(self.known.hole_map, "file_transfer.hole_map").bytes
+        lost = files.missing(self.known, count, map_.ljust(size, b"\0"))
         return [number - self.files.first_packet for number in lost]
 
 
