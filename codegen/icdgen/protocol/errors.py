@@ -5,14 +5,24 @@ from __future__ import annotations
 from typing import ClassVar
 
 
-class Mismatch(ValueError):
-    """Something is not as it must be. ``error`` is what answers call it."""
+class Refused(Exception):
+    """A "no". ``error`` is what answers call it, ``told`` all that they say of it, ``answer`` a whole one."""
 
-    error: ClassVar[str]
+    error: str
+
+    def __init__(self, text: object = "", **more: object) -> None:
+        super().__init__(text)
+        self.told = {"error": self.error, **more}
+        self.answer = {"ok": False, **self.told}
+
+
+class Mismatch(Refused, ValueError):
+    """Something is not as it must be."""
+
     text: ClassVar[str]
 
     def __init__(self, expected: int, actual: int) -> None:
-        super().__init__(self.text.format(expected=expected, actual=actual))
+        super().__init__(self.text.format(expected=expected, actual=actual), expected=expected, actual=actual)
         self.expected, self.actual = expected, actual
 
 
@@ -45,9 +55,13 @@ class RangeError(ValueError):
         self.field = field
 
 
-class BusyError(RuntimeError):
+class BusyError(Refused, RuntimeError):
     """A request is going on: another one would overrun the node's buffer."""
 
+    error = "busy"
 
-class UnknownIdError(LookupError):
+
+class UnknownIdError(Refused, LookupError):
     """The node has no such message."""
+
+    error = "unknown-id"

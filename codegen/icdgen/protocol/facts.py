@@ -12,6 +12,7 @@ from icdgen.frozen import dataclass
 from icdgen.icd.kept import kept
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.protocol.envelope import Stream
+from icdgen.protocol.errors import Refused
 from icdgen.protocol.reading import Assumption, Reader
 from icdgen.protocol.sections import (
     Acknowledge,
@@ -36,8 +37,10 @@ from icdgen.protocol.sections import (
 T = TypeVar("T")
 
 
-class Unsupported(LookupError):
+class Unsupported(Refused, LookupError):
     """The ICD does not describe this part of the protocol."""
+
+    error = "unsupported"
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

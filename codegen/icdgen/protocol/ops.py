@@ -23,17 +23,11 @@ def answer(icd: Icd, request: Request) -> dict[str, Any]:
     """The answer to one request. ``op`` must be one of `OPS`."""
     try:
         return {"ok": True, **OPS[request["op"]](_facts(icd, request), request)}
-    except Refusal as refusal:
+    except errors.Refused as refusal:
         return refusal.answer
-    except facts.Unsupported:
-        return {"ok": False, "error": "unsupported"}
-    except errors.Mismatch as error:
-        return {"ok": False, "error": error.error, "expected": error.expected, "actual": error.actual}
     except errors.RangeError as error:
         told = error.field in (GIVEN if request["op"] == stream_encode.__name__ else times.PARTS)
         return {"ok": False, "error": "range"} | ({"field": error.field} if told else {})
-    except errors.UnknownIdError:
-        return {"ok": False, "error": "unknown-id"}
     except OverflowError:
         return {"ok": False, "error": "range"}
 
@@ -64,7 +58,7 @@ def crc16(known: Facts, request: Request) -> dict[str, Any]:
 def uart_encode(known: Facts, request: Request) -> dict[str, Any]:
     message, framing = octets(request), facts.need(known.framing, "uart")
     if not message:
-        raise Refusal("length", expected=1, actual=0)
+        raise errors.LengthError(1, 0)
     return {"bytes": uart.encode(framing, message).hex()}
 
 
@@ -129,7 +123,7 @@ def i2c_request(known: Facts, request: Request) -> dict[str, Any]:
     kind, id, checked = text(request, "kind"), number(request, "id", 0, 255), flag(request, "crc")
     if kind == "telemetry":
         if id not in known.telemetry:
-            raise Refusal("unknown-id")
+            raise errors.UnknownIdError
         return {"write": bytes([id]).hex(), "read": i2c.read_length(known, known.telemetry[id], checked)}
     if kind != "telecommand":
         raise Refusal("request", detail="there is no such kind")
@@ -139,7 +133,7 @@ def i2c_request(known: Facts, request: Request) -> dict[str, Any]:
 def i2c_reply(known: Facts, request: Request) -> dict[str, Any]:
     id, data, checked = number(request, "id", 0, 255), octets(request), flag(request, "crc")
     if id not in known.telemetry:
-        raise Refusal("unknown-id")
+        raise errors.UnknownIdError
     return {"bytes": i2c.reply(known, id, data, checked).hex()}
 
 

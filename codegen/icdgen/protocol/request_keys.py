@@ -5,14 +5,17 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from icdgen.protocol.errors import Refused
+
 Request = dict[str, Any]
 
 
-class Refusal(Exception):
-    """An answer of ``"ok": false``."""
+class Refusal(Refused):
+    """Any refusal, by what answers call it."""
 
     def __init__(self, error: str, **more: object) -> None:
-        self.answer = {"ok": False, "error": error, **more}
+        self.error = error
+        super().__init__(**more)
 
 
 def number(request: Request, key: str, least: int = 0, most: int = (1 << 32) - 1, default: int | None = None) -> int:

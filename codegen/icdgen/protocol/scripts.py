@@ -2,31 +2,45 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from typing import Any, TypeVar
 
 from icdgen.protocol import can, programs, transfer
 from icdgen.protocol import stream_client as enveloped
-from icdgen.protocol.client import TELECOMMAND, TELEMETRY, Client, Request
-from icdgen.protocol.errors import BusyError, LengthError, UnknownIdError
+from icdgen.protocol.client import TELECOMMAND, TELEMETRY, Client, Event, Request
+from icdgen.protocol.errors import BusyError, LengthError, Refused, UnknownIdError
 from icdgen.protocol.facts import Facts, Unsupported
 from icdgen.protocol.request_keys import Refusal, flag, hex_bytes, mappings, number, octets, text
-from icdgen.protocol.sections import CAN, I2C, UART, Settings
+from icdgen.protocol.sections import BUSES, CAN, I2C, UART, Settings
 
-BUSES = (UART, I2C, CAN)
 MOST_REQUESTS = 3  # that are under way together
 LONGEST = 1 << 20  # how often the bytes of an upload are repeated at most
+
+Talking = TypeVar("Talking", Client, enveloped.Client)
 
 
 def client(known: Facts, request: dict[str, Any]) -> dict[str, Any]:
     """The op ``client``."""
+    bus, settings = _bus(request), _settings(known, request)
+    talking = Client(known, bus, flag(request, "crc"), number(request, "address", 0, 255, 0), settings)
+    refused = (BusyError, UnknownIdError, LengthError)
+    rows = mappings(request, "script")
+    return {"steps": [_step(talking, row, _client_events, _client_output, refused) for row in rows]}
+
+
+def stream_client(known: Facts, request: dict[str, Any]) -> dict[str, Any]:
+    """The op ``stream_client``."""
+    talking = enveloped.Client(known, number(request, "requests", 1, MOST_REQUESTS, 1), _settings(known, request))
+    refused = (BusyError, UnknownIdError, LengthError, Unsupported)
+    rows = mappings(request, "script")
+    return {"steps": [_step(talking, row, _stream_events, _stream_output, refused) for row in rows]}
+
+
+def _bus(request: dict[str, Any]) -> str:
     bus = text(request, "bus")
     if bus not in BUSES:
         raise Refusal("request", detail="there is no such bus")
-    talking = Client(known, bus, flag(request, "crc"), number(request, "address", 0, 255, 0), _settings(known, request))
-    steps = []
-    for row in mappings(request, "script"):
-        steps.append(_client_step(talking, row))
-    return {"steps": steps}
+    return bus
 
 
 def _settings(known: Facts, request: dict[str, Any]) -> Settings:
@@ -41,34 +55,43 @@ def _settings(known: Facts, request: dict[str, Any]) -> Settings:
     )
 
 
-def _client_step(talking: Client, row: dict[str, Any]) -> dict[str, Any]:
-    now = number(row, "at")
-    step: dict[str, object] = {}
-    events: list[dict[str, Any]] = []
+def _step(
+    talking: Talking,
+    row: dict[str, Any],
+    events_of: Callable[[Talking, int, dict[str, Any]], list[Event]],
+    output: Callable[[Talking, dict[str, Any]], list[object]],
+    refused: tuple[type[Refused], ...],
+) -> dict[str, Any]:
+    """What a client does at a time."""
+    refusal: dict[str, Any] = {}
+    events: list[Event] = []
     try:
-        if "telecommand" in row:
-            request = Request(TELECOMMAND, number(row, "telecommand", 0, 255), octets(row), flag(row, "repeat"))
-            events = talking.start(now, request)
-        elif "telemetry" in row:
-            events = talking.start(now, Request(TELEMETRY, number(row, "telemetry", 0, 255)))
-        elif "receive" in row:
-            events = _receive(talking, now, row)
-        elif flag(row, "cancel"):
-            talking.cancel()
-        else:
-            events = talking.tick(now)
-    except BusyError:
-        step = {"error": "busy"}
-    except UnknownIdError:
-        step = {"error": "unknown-id"}
-    except LengthError as error:
-        step = {"error": "length", "expected": error.expected, "actual": error.actual}
+        events = events_of(talking, number(row, "at"), row)
+    except refused as error:
+        refusal = error.told
+    return {**refusal, "out": output(talking, row), "events": events, "deadline": talking.deadline}
+
+
+def _client_events(talking: Client, now: int, row: dict[str, Any]) -> list[Event]:
+    if "telecommand" in row:
+        request = Request(TELECOMMAND, number(row, "telecommand", 0, 255), octets(row), flag(row, "repeat"))
+        return talking.start(now, request)
+    if "telemetry" in row:
+        return talking.start(now, Request(TELEMETRY, number(row, "telemetry", 0, 255)))
+    if "receive" in row:
+        return _receive(talking, now, row["receive"])
+    if flag(row, "cancel"):
+        talking.cancel()
+        return []
+    return talking.tick(now)
+
+
+def _client_output(talking: Client, row: dict[str, Any]) -> list[object]:
     out, talking.out = talking.out, []
-    return {**step, "out": [_sent(talking.bus, one) for one in out], "events": events, "deadline": talking.deadline}
+    return [_sent(talking.bus, one) for one in out]
 
 
-def _receive(talking: Client, now: int, row: dict[str, Any]) -> list[dict[str, Any]]:
-    given = row["receive"]
+def _receive(talking: Client, now: int, given: Any) -> list[Event]:
     if talking.bus == UART:
         return talking.received(now, hex_bytes(given))
     if talking.bus == I2C:
@@ -86,39 +109,21 @@ def _sent(bus: str, one: Any) -> object:
     return {"write": one[0].hex(), "read": one[1]}
 
 
-def stream_client(known: Facts, request: dict[str, Any]) -> dict[str, Any]:
-    """The op ``stream_client``."""
-    talking = enveloped.Client(known, number(request, "requests", 1, MOST_REQUESTS, 1), _settings(known, request))
-    return {"steps": [_stream_step(talking, row) for row in mappings(request, "script")]}
-
-
-def _stream_step(talking: enveloped.Client, row: dict[str, Any]) -> dict[str, Any]:
-    now = number(row, "at")
-    step: dict[str, object] = {}
-    events: list[dict[str, Any]] = []
+def _stream_events(talking: enveloped.Client, now: int, row: dict[str, Any]) -> list[Event]:
     kind = next((kind for kind in (TELECOMMAND, TELEMETRY) if kind in row), None)
     id = number(row, kind) if kind else None
-    try:
-        if flag(row, "cancel"):
-            talking.cancel(kind, id)
-        elif kind and id is not None:
-            data = octets(row) if kind == TELECOMMAND else b""
-            reply = number(row, "reply") if "reply" in row else None
-            events = talking.start(now, enveloped.Request(kind, id, data, flag(row, "repeat"), reply))
-        elif "receive" in row:
-            events = talking.received(now, hex_bytes(row["receive"]))
-        else:
-            events = talking.tick(now)
-    except BusyError:
-        step = {"error": "busy"}
-    except Unsupported:
-        step = {"error": "unsupported"}
-    except UnknownIdError:
-        step = {"error": "unknown-id"}
-    except LengthError as error:
-        step = {"error": "length", "expected": error.expected, "actual": error.actual}
-    out = [] if flag(row, "untaken") else [line.hex() for line in talking.output()]
-    return {**step, "out": out, "events": events, "deadline": talking.deadline}
+    if flag(row, "cancel"):
+        talking.cancel(kind, id)
+        return []
+    if kind and id is not None:
+        data = octets(row) if kind == TELECOMMAND else b""
+        reply = number(row, "reply") if "reply" in row else None
+        return talking.start(now, Request(kind, id, data, flag(row, "repeat"), reply))
+    return talking.received(now, hex_bytes(row["receive"])) if "receive" in row else talking.tick(now)
+
+
+def _stream_output(talking: enveloped.Client, row: dict[str, Any]) -> list[object]:
+    return [] if flag(row, "untaken") else [line.hex() for line in talking.output()]
 
 
 def file(known: Facts, request: dict[str, Any]) -> dict[str, Any]:
@@ -169,9 +174,7 @@ def procedure_of(known: Facts, request: dict[str, Any]) -> transfer.Procedure:
     if name == "list":
         return transfer.FileList(known)
     if name == "download":
-        bus = text(request, "bus")
-        if bus not in BUSES:
-            raise Refusal("request", detail="there is no such bus")
+        bus = _bus(request)
         size = number(request, "size") if "size" in request else None
         return transfer.Download(
             known, bus, number(request, "type", 0, 255), number(request, "counter", 0, 255), size, block

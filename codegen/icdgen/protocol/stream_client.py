@@ -7,38 +7,25 @@ are those of the decoder, as mappings, ``done`` and ``timeout``; a ``message`` i
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from icdgen.protocol import stream
-from icdgen.protocol.client import HOLD, IDLE, TELECOMMAND, TELEMETRY, WAIT, Event
+from icdgen.protocol.client import HOLD, IDLE, TELECOMMAND, TELEMETRY, WAIT, Event, Request
 from icdgen.protocol.envelope import Stream, StreamRow
 from icdgen.protocol.errors import BusyError, LengthError, UnknownIdError
 from icdgen.protocol.facts import Facts, Unsupported, need
 from icdgen.protocol.sections import Settings
 
 
-@dataclass(frozen=True, slots=True)
-class Request:
-    """``reply``: id of the telemetry that answers a telecommand, where the ICD does not say so."""
-
-    kind: str
-    id: int
-    data: bytes = b""
-    repeat: bool = False
-    reply: int | None = None
-
-
 @dataclass(slots=True, eq=False)
 class Slot:
     """Room for a request, and the memory of the one before that may still be answered."""
 
-    request: Request = Request(TELECOMMAND, 0)
+    request: Request = field(default_factory=lambda: Request(TELECOMMAND, 0))
     state: str = IDLE
     sent: int = 0  # id of the telecommand
-    data: bytes = b""
     reply: int | None = None
-    repeat: bool = False
     attempts: int = 0
     until: int = 0  # when the state ends by itself
     was_taken: bool = False  # by whoever sends
@@ -73,8 +60,8 @@ class Client:
         slot = self._free(reply)
         if not row.least <= len(request.data) <= row.most:
             raise LengthError(row.most if len(request.data) > row.most else row.least, len(request.data))
-        slot.request, slot.sent, slot.data, slot.reply = request, row.id, request.data, reply
-        slot.repeat = request.repeat or request.kind == TELEMETRY
+        slot.request = replace(request, repeat=request.repeat or request.kind == TELEMETRY)
+        slot.sent, slot.reply = row.id, reply
         slot.attempts, slot.was_taken = 0, False
         late = [one.late_until for one in self._slots if one.late is not None and one.late == reply]
         if now < max(late, default=now):
@@ -104,7 +91,7 @@ class Client:
         for slot in self._slots:
             if slot.state == IDLE or now < slot.until:
                 continue
-            if slot.state == HOLD or (slot.repeat and slot.attempts <= self.settings.retries):
+            if slot.state == HOLD or (slot.request.repeat and slot.attempts <= self.settings.retries):
                 events += self._transmit(now, slot)
             else:
                 events.append(self._end(now, slot, "timeout"))
@@ -166,13 +153,12 @@ class Client:
             self._untaken.remove(slot)
 
     def _line(self, slot: Slot) -> bytes:
-        field = self.form.of("sequence")
-        if field is None:
-            return stream.encode(self.form, TELECOMMAND, slot.sent, slot.data)
-        key = slot.sent if self.form.per_id else None
-        number = self._next.get(key, field.values[0])
-        self._next[key] = number + 1 & field.mask
-        return stream.encode(self.form, TELECOMMAND, slot.sent, slot.data, {"sequence": number})
+        place, values = self.form.of("sequence"), {}
+        if place:
+            key = slot.sent if self.form.per_id else None
+            values["sequence"] = number = self._next.get(key, place.values[0])
+            self._next[key] = number + 1 & place.mask
+        return stream.encode(self.form, TELECOMMAND, slot.sent, slot.request.data, values)
 
 
 def told(event: stream.Event) -> Event:
