@@ -37,7 +37,7 @@ class MessageVectors:
 
     message: Message
     default: (
-        Raw  # a fresh message: 0, empty, or what ``const`` says; of views, what they read; without what is not there
+        Raw  # a fresh message: 0, empty, or what ``const`` says; of views what they read; without what is not there
     )
     rows: tuple[Row, ...]
     lengths: tuple[int, ...]  # frames of these lengths are refused
@@ -144,12 +144,9 @@ def _is_frame(node: Node, message: Message, frame: bytes) -> bool:
 def frame_row(node: Node, message: Message, why: str, frame: bytes) -> Row:
     """What the reference codec makes of a frame."""
     raw: dict[str, Any] = codec.decode(node, message, frame)
-    physical = {}
     present = [field for field in message.fields if field.name in raw]
-    for field in present:
-        exact = codec.physical(field, raw[field.name])
-        if exact is not None:
-            physical[field.name] = exact
+    exact = ((field.name, codec.physical(field, raw[field.name])) for field in present)
+    physical = {name: value for name, value in exact if value is not None}
     scaled = (field for field in present if field.has_formula)
     doubles = {field.name: bits_of(codec.physical_double(field, raw[field.name]) or 0.0) for field in scaled}
     texts = {field.name: known_text(raw[field.name]) for field in present if field.type == "text"}

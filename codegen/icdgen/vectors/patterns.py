@@ -133,10 +133,8 @@ def values(field: Field) -> list[int | bytes]:
         size = field.bits // 8
         ascending = bytes(number & 0xFF for number in range(1, size + 1))
         if field.type == "text":
-            ended = ascending[: size // 2].ljust(size, b"\0")
-            return list(
-                dict.fromkeys((ascending, ended, bytes(size - 1) + b"x", bytes(size), b"\x7f" * size, b"\x80" * size))
-            )
+            ended, last = ascending[: size // 2].ljust(size, b"\0"), bytes(size - 1) + b"x"
+            return list(dict.fromkeys((ascending, ended, last, bytes(size), b"\x7f" * size, b"\x80" * size)))
         return [ascending, bytes(size), bytes(byte ^ 0xFF for byte in ascending)]
     if field.type == "float":
         named = (special.value for special in field.special)

@@ -37,15 +37,15 @@ Settings = list[tuple[str, "int | bytes | None"]]
 def settings(field: Field) -> Settings:
     """Doubles (as their bits) or texts, and the raw value that setting each must give; None where it must be refused."""
     if field.type == "text":
-        return [(text, _bytes(field, text)) for text in _texts(field.bits // 8)]
+        return [(text, _raw(field, text)) for text in _texts(field.bits // 8)]
     return list(_settings(field.type, field.bits, field.scale, field.curve).items())
 
 
 @lru_cache(maxsize=1 << 12)
-def _settings(type: str, bits: int, scale: Scale | None, curve: Curve | None) -> dict[str, int | None]:
+def _settings(type: str, bits: int, scale: Scale | None, curve: Curve | None) -> dict[str, int | bytes | None]:
     """Those of all fields of this type, width and formula: many have the same."""
     field = Field("", 0, bits, type, scale=scale, curve=curve)
-    found: dict[str, int | None] = {}
+    found: dict[str, int | bytes | None] = {}
     for value in _doubles(field) if curve is None else _on_curve(field, curve):
         if math.isfinite(value):
             found[bits_of(value)] = _raw(field, value)
@@ -62,16 +62,9 @@ def _texts(size: int) -> Iterator[str]:
     yield from ("\x80", "\u00e9", "\u4f4d", "\U0001f6f0")
 
 
-def _bytes(field: Field, text: str) -> bytes | None:
+def _raw(field: Field, given: str | float) -> int | bytes | None:
     try:
-        return codec.raw_from_text(field, text)
-    except codec.CodecError:
-        return None
-
-
-def _raw(field: Field, value: float) -> int | None:
-    try:
-        return codec.raw_from_physical(field, value)
+        return codec.raw_from_text(field, given) if isinstance(given, str) else codec.raw_from_physical(field, given)
     except codec.CodecError:
         return None
 

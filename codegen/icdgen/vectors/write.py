@@ -8,7 +8,7 @@ from fractions import Fraction
 from functools import lru_cache
 
 from icdgen import __version__
-from icdgen.icd.model import Field
+from icdgen.icd.model import Field, Tail
 from icdgen.vectors.make import FORMAT, MessageVectors, NodeVectors, Row
 from icdgen.vectors.settings import NEVER
 from icdgen.vectors.shared import SharedRow
@@ -24,10 +24,8 @@ def text(vectors: NodeVectors) -> str:
         "digest": node.digest[:16],
         "includes": list(node.includes),
     }
-    if node.node_type is not None:
-        head["node_type"] = node.node_type
-    if node.interface_version is not None:
-        head["interface_version"] = node.interface_version
+    told = {"node_type": node.node_type, "interface_version": node.interface_version}
+    head |= {key: value for key, value in told.items() if value is not None}
     parts = [f"{_json(key)}: {_json(value)}" for key, value in head.items()]
     parts.append(f'"never_set": {_json(list(NEVER))}')
     parts.append('"ids": {\n' + ",\n".join(_ids(vectors)) + "\n}")
@@ -94,20 +92,9 @@ def _message(vectors: MessageVectors) -> str:
     if message.may_end_early:
         head["may_end_early"] = message.may_end_early
     if message.tail is not None:
-        tail = message.tail
-        head["tail"] = {
-            "part": tail.name,
-            "counter": tail.counter,
-            "least": message.begin,
-            "step": tail.step,
-            "most": tail.most,
-        } | ({"plus": tail.plus} if tail.plus else {})
+        head["tail"] = _open_part(message.tail, {"least": message.begin})
     if message.inner:
-        head["inner"] = [
-            {"part": one.name, "counter": one.counter, "begin": one.begin, "step": one.step, "most": one.most}
-            | ({"plus": one.plus} if one.plus else {})
-            for one in message.inner
-        ]
+        head["inner"] = [_open_part(one, {"begin": one.begin}) for one in message.inner]
     parts = [_json(head)[1:-1]]
     parts.append(_array("fields", [_field(vectors, field) for field in message.fields]))
     parts.append(f'"refused_lengths": {_json(list(vectors.lengths))}')
@@ -115,6 +102,11 @@ def _message(vectors: MessageVectors) -> str:
         parts.append(f'"refused_frames": {_json([frame.hex() for frame in vectors.miscounted])}')
     parts.append(_array("vectors", [_row(message.fields, row) for row in vectors.rows]))
     return "{" + ",\n".join(parts) + "}"
+
+
+def _open_part(part: Tail, begin: dict[str, int]) -> dict[str, object]:
+    row = {"part": part.name, "counter": part.counter, **begin, "step": part.step, "most": part.most}
+    return row | ({"plus": part.plus} if part.plus else {})
 
 
 def _field(vectors: MessageVectors, field: Field) -> str:

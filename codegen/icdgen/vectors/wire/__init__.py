@@ -1,7 +1,20 @@
 """What the protocol layer is asked: requests made from the protocol facts of a node, a module a theme."""
 
 from collections.abc import Iterator
+from random import Random
 from typing import Any
 
 Requests = Iterator[tuple[str, dict[str, Any]]]
 """Requests of the testee protocol, each with why it is asked."""
+
+Script = list[dict[str, Any]]
+"""What happens to a client or a procedure, a row for each moment."""
+
+
+def pieces(why: str, stream: bytes, source: Random) -> Iterator[tuple[str, list[bytes]]]:
+    """The stream as a whole, and cut."""
+    yield why, [stream]
+    yield f"{why}, byte by byte", [bytes([byte]) for byte in stream]
+    cuts = sorted(source.sample(range(len(stream) + 1), min(5, len(stream))))
+    ends = zip([0, *cuts], [*cuts, len(stream)], strict=True)
+    yield f"{why}, cut at odd places", [stream[begin:end] for begin, end in ends]

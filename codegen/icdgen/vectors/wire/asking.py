@@ -9,10 +9,9 @@ from typing import Any
 from icdgen.protocol import stream
 from icdgen.protocol.envelope import Stream, StreamRow
 from icdgen.protocol.facts import Facts, need
-from icdgen.vectors.wire import Requests
+from icdgen.vectors.wire import Requests, Script
 
 SETTINGS = {"reply_timeout": 100, "retries": 2}
-Script = list[dict[str, Any]]
 
 
 class Sample:
@@ -100,11 +99,8 @@ def _asked(
         {"at": 210}, s.come(220, frame),
     ]  # fmt: skip
     yield "time stands still, then jumps", [
-        s.ask(0, row, repeat=True, **given),
-        {"at": 5000},
-        {"at": 5000},
-        s.come(5001, frame),
-    ]
+        s.ask(0, row, repeat=True, **given), {"at": 5000}, {"at": 5000}, s.come(5001, frame),
+    ]  # fmt: skip
     yield "what was not sent is not answered", [
         s.ask(0, row, **given, **untaken), s.come(5, frame) | untaken, {"at": 6}, s.come(7, frame),
     ]  # fmt: skip

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from random import Random
 
 from icdgen.protocol import stream
 from icdgen.protocol.envelope import DIRECTIONS, GIVEN, PACKET, Stream, StreamRow
 from icdgen.protocol.errors import RangeError
 from icdgen.protocol.facts import Facts, need
-from icdgen.vectors.wire import Requests
+from icdgen.vectors.wire import Requests, pieces
 
 _SPLITS = 40  # of a message, at most
 _MARKERS = bytes((0x00, 0x7D, 0x7E, 0xC0, 0xDB, 0xDC, 0xDD, 0xFF))  # which delimiters are made of
@@ -99,16 +100,13 @@ def _streams(form: Stream, direction: str, source: Random) -> Requests:
         ("a message that has only begun", good + good[: len(good) // 2]),
         *((why, damaged + good + good) for why, damaged in _damaged(good, source)),
         *_nested(form, direction, rows, good),
-        *_strangers(form, direction, short, source, good),
+        *_strangers(form, direction, short, good),
         *_gaps(form, direction, short, source),
         ("nothing", b""),
     ]
     for why, line in whole:
-        yield why, _events(direction, [line])
-        yield f"{why}, byte by byte", _events(direction, [bytes([byte]) for byte in line])
-        cuts = sorted(source.sample(range(len(line) + 1), min(5, len(line))))
-        pieces = [line[a:b] for a, b in zip([0, *cuts], [*cuts, len(line)], strict=True)]
-        yield f"{why}, cut at odd places", _events(direction, pieces)
+        for how, chunks in pieces(why, line, source):
+            yield how, _events(direction, chunks)
     both = b"\x01" + good + good
     for at in range(1, min(len(both), _SPLITS)):
         yield f"two messages after noise, cut behind byte {at}", _events(direction, [both[:at], both[at:]])
@@ -145,25 +143,22 @@ def _nested(form: Stream, direction: str, rows: tuple[StreamRow, ...], good: byt
     yield "messages within one that is cut off", line[:-3] + good + good
 
 
-def _strangers(
-    form: Stream, direction: str, row: StreamRow, source: Random, good: bytes
-) -> Iterator[tuple[str, bytes]]:
+def _strangers(form: Stream, direction: str, row: StreamRow, good: bytes) -> Iterator[tuple[str, bytes]]:
     """Messages of other lengths and ids, all else right: made by a form that has them."""
-    from dataclasses import replace
-
     place = form.of("id")
     id = next((one for one in range(1, 1000) if all(one != row.id for row in form.rows(direction))), 0)
-    others = (
-        [("of an unknown id", StreamRow(id, 0, row.most, False, 0, None, ""))] if place and id <= place.mask else []
-    )
+    others = []
+    if place and id <= place.mask:
+        others.append(("of an unknown id", id, row.most, 0))
     if form.longest_data > row.most:
-        others.append(("that is too long by one", StreamRow(row.id, 0, row.most + 1, False, row.seed, None, "")))
+        others.append(("that is too long by one", row.id, row.most + 1, row.seed))
     if row.most:
-        others.append(("that is too short by one", StreamRow(row.id, 0, row.most - 1, False, row.seed, None, "")))
-    for why, one in others:
+        others.append(("that is too short by one", row.id, row.most - 1, row.seed))
+    for why, id, size, seed in others:
+        one = StreamRow(id, 0, size, False, seed, None, "")
         strange = replace(form, telecommands=(one,), telemetry=(one,))
         try:
-            line = stream.encode(strange, direction, one.id, b"\x2a" * one.most)
+            line = stream.encode(strange, direction, id, b"\x2a" * size)
         except RangeError:  # no header says such a length
             continue
         yield f"a message {why}", good + line + good

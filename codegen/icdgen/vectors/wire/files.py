@@ -6,6 +6,7 @@ from random import Random
 from typing import Any
 
 from icdgen.protocol import files as reference
+from icdgen.protocol import times
 from icdgen.protocol.facts import Facts
 from icdgen.vectors.wire import Requests
 
@@ -13,13 +14,8 @@ from icdgen.vectors.wire import Requests
 def requests(known: Facts, source: Random) -> Requests:
     """Packed times, hole maps, the index file."""
     if known.time:
-        for value in (
-            0,
-            0xFFFFFFFF,
-            0x00210000,
-            *(1 << bit for bit in range(32)),
-            *(source.getrandbits(32) for _ in range(20)),
-        ):
+        bits, some = (1 << bit for bit in range(32)), (source.getrandbits(32) for _ in range(20))
+        for value in (0, 0xFFFFFFFF, 0x00210000, *bits, *some):
             yield f"{value:08x}", {"op": "dos_time", "value": value}
         dates = [
             (1980, 1, 1, 0, 0, 0), (2000, 2, 29, 12, 30, 31), (2020, 11, 3, 23, 59, 59), (2107, 12, 31, 23, 59, 58),
@@ -30,10 +26,7 @@ def requests(known: Facts, source: Random) -> Requests:
             (2108, 1, 1, 24, 60, 0), (1979, 13, 32, 0, 0, 0), (2021, 2, 30, 0, 0, 60), (2108, 1, 1, 23, 0, 0),
         ]  # fmt: skip
         for date in dates:
-            yield "a date", {
-                "op": "dos_time",
-                **dict(zip(("year", "month", "day", "hour", "minute", "second"), date, strict=True)),
-            }
+            yield "a date", {"op": "dos_time", **dict(zip(times.PARTS, date, strict=True))}
     if known.hole_map and known.files:
         most, first = known.hole_map.bytes * 8, known.files.first_packet
         for count in (0, 1, 3, 8, 9, most - 1, most):
@@ -47,12 +40,11 @@ def requests(known: Facts, source: Random) -> Requests:
         yield "a map that is too short", {"op": "hole_map", "packets": 1, "bytes": "00"}
     if known.index:
         index = known.index
-        entries: list[dict[str, Any]] = []
-        for _ in range(3):
-            sizes = {role: place.bytes for role, place in index.fields.items()}
-            entries.append(
-                {r: source.randbytes(n).hex() if r == "meta" else source.getrandbits(8 * n) for r, n in sizes.items()}
-            )
+        sizes = {role: place.bytes for role, place in index.fields.items()}
+        entries: list[dict[str, Any]] = [
+            {r: source.randbytes(n).hex() if r == "meta" else source.getrandbits(8 * n) for r, n in sizes.items()}
+            for _ in range(3)
+        ]
         made = [reference.IndexEntry(**{**e, "meta": bytes.fromhex(e["meta"])}) for e in entries]
         data = reference.write_index(known, made)
         yield "three entries", {"op": "index_encode", "entries": entries}

@@ -14,13 +14,8 @@ def requests(known: Facts, source: Random) -> Requests:
     for id, message in list(known.telecommands.items())[:5]:
         for checked in (False, True) if known.checksum else (False,):
             data = source.randbytes(message.length)
-            yield f"telecommand {id}", {
-                "op": "i2c_request",
-                "kind": "telecommand",
-                "id": id,
-                "bytes": data.hex(),
-                "crc": checked,
-            }
+            asked = {"op": "i2c_request", "kind": "telecommand", "id": id, "bytes": data.hex(), "crc": checked}
+            yield f"telecommand {id}", asked
     for id, message in list(known.telemetry.items())[:3]:
         frame = source.randbytes(message.length)
         for checked in (False, True) if known.checksum else (False,):

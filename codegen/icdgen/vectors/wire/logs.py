@@ -5,21 +5,18 @@ from __future__ import annotations
 from random import Random
 
 from icdgen.protocol import logs as log_files
-from icdgen.protocol.facts import Facts
+from icdgen.protocol.facts import Facts, need
 from icdgen.vectors.wire import Requests
 
 
 def masks(known: Facts) -> list[bytes]:
-    layout = known.mask
-    assert layout
-    none = bytes(layout.size)
-    masks = [none]
-    masks += [(1 << bit).to_bytes(layout.size, "little") for bit in sorted(layout.bits)[::7]]
+    """Masks of nothing, of one bit, of some and of all."""
+    layout = need(known.mask, "log_mask")
     short = [bit for bit, row in layout.bits.items() if row.length < layout.slot_bytes]
     free = [bit for bit in range(layout.size * 8) if bit not in layout.bits]
-    masks += [(1 << bit).to_bytes(layout.size, "little") for bit in (*short, *free[:1], *free[-1:])]
+    single = [1 << bit for bit in (*sorted(layout.bits)[::7], *short, *free[:1], *free[-1:])]
     some = sum(1 << bit for bit in (*sorted(layout.bits)[1:20:3], *short, *free[:1]))
-    return [*masks, some.to_bytes(layout.size, "little"), b"\xff" * layout.size]
+    return [number.to_bytes(layout.size, "little") for number in (0, *single, some, (1 << 8 * layout.size) - 1)]
 
 
 def requests(known: Facts, source: Random) -> Requests:
@@ -43,11 +40,8 @@ def requests(known: Facts, source: Random) -> Requests:
                 yield f"{size} of {len(file)} bytes", {"op": "log_decode", "bytes": file[:size].hex()}
         if known.log_message:
             message = log_files.encode_message(known, mask, data[0])
-            yield "an unsolicited log", {
-                "op": "log_message_encode",
-                "mask": mask.hex(),
-                "frames": [f.hex() for f in data[0]],
-            }
+            frames = [frame.hex() for frame in data[0]]
+            yield "an unsolicited log", {"op": "log_message_encode", "mask": mask.hex(), "frames": frames}
             for size in (len(message), len(message) - 1, 3):
                 yield f"{size} of {len(message)} bytes", {"op": "log_message_decode", "bytes": message[:size].hex()}
     one = (1 << min(layout.bits, default=0)).to_bytes(layout.size, "little").hex()

@@ -27,8 +27,7 @@ class FileNode:
         self.program = b""
         self.polls = 0  # until a flag says that it is done
         self.steps = {step.message.ids[0]: (name, step) for name, step in self.form.steps.items()}
-        self.holes = {m.telecommand_id: n for n, m in enumerate(known.hole_map.messages)}
-        self.holes |= {m.telemetry_id: n for n, m in enumerate(known.hole_map.messages)}
+        self.holes = {id: n for n, m in enumerate(known.hole_map.messages) for id in (m.telecommand_id, m.telemetry_id)}
 
     def lost(self) -> bool:
         return self.source.random() < self.loss
@@ -95,9 +94,8 @@ class FileNode:
     def _telemetry(self, id: int) -> bytes:
         if id in self.holes:
             size = self.known.telemetry[id].length
-            map_ = files.hole_map(
-                self.known, self.form.block_packets, [self.form.first_packet + n for n in self.uploaded]
-            )
+            received = [self.form.first_packet + n for n in self.uploaded]
+            map_ = files.hole_map(self.known, self.form.block_packets, received)
             return map_[self.holes[id] * size : (self.holes[id] + 1) * size]
         if id == self.form.packet_ids.get(self.bus):
             while self.queue and self.lost():
@@ -126,10 +124,5 @@ class FileNode:
         if self.pointer >= len(self.files):
             return {}
         (type_, counter), content = list(self.files.items())[self.pointer]
-        return {
-            "type": type_,
-            "counter": counter,
-            "size": len(content),
-            "time": 0x51634000,
-            "checksum": self._sum(content),
-        }
+        about = {"size": len(content), "time": 0x51634000, "checksum": self._sum(content)}
+        return {"type": type_, "counter": counter, **about}

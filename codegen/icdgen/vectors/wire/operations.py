@@ -6,7 +6,7 @@ from typing import Any
 
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Operation
-from icdgen.vectors.wire import Requests
+from icdgen.vectors.wire import Requests, Script
 
 ACKNOWLEDGED = {"event": "done", "bytes": ""}
 LARGEST = 255  # id of a program
@@ -23,7 +23,7 @@ def scripts(known: Facts) -> Requests:
             yield "there is no such operation", _asked(name, 1, [{"at": 0}])
 
 
-def _asked(name: str, program: int, script: list[dict[str, Any]]) -> dict[str, Any]:
+def _asked(name: str, program: int, script: Script) -> dict[str, Any]:
     return {"op": "file", "do": name, "program": program, "script": script}
 
 
@@ -58,7 +58,7 @@ class _Frames:
 
 def _ends(known: Facts, name: str, form: Operation) -> Requests:
     frames, pause = _Frames(known, form), form.poll_interval
-    begin: list[dict[str, Any]] = [{"at": 0}, {"at": 1, "event": ACKNOWLEDGED}]
+    begin: Script = [{"at": 0}, {"at": 1, "event": ACKNOWLEDGED}]
     found = {"size": 0x12345678, "checksum": 0x9ABCDEF0}
     program, end = frames.program, 1 + form.timeout
 

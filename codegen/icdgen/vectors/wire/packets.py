@@ -43,9 +43,7 @@ def requests(known: Facts, source: Random) -> Requests:
 
 
 def _row(packet: can.Packet, at: int = 0) -> dict[str, Any]:
-    return (
-        {"at": at, "id": packet.id, "bytes": packet.data.hex()} if at else {"id": packet.id, "bytes": packet.data.hex()}
-    )
+    return {**({"at": at} if at else {}), "id": packet.id, "bytes": packet.data.hex()}
 
 
 def _joins(known: Facts, source: Random, other: int, third: int) -> Requests:
@@ -89,20 +87,14 @@ def _joins(known: Facts, source: Random, other: int, third: int) -> Requests:
     for why, row in rows:
         yield why, {"op": "can_join", "packets": [_row(packet) for packet in row], "end": late}
     yield "nobody is there for them", {"op": "can_join", "address": node ^ 1, "packets": [_row(p) for p in one]}
-    paused = [_row(packet, at) for packet, at in zip(one, [late - 1] * len(one), strict=True)]
-    yield "a pause just short enough", {"op": "can_join", "packets": [_row(one[0]), *paused[1:]]}
+    paused = [_row(packet, late - 1) for packet in one[1:]]
+    yield "a pause just short enough", {"op": "can_join", "packets": [_row(one[0]), *paused]}
     paused = [_row(packet, late) for packet in one]
     yield "a pause that is too long", {"op": "can_join", "packets": [_row(one[0]), *paused]}
     crowd = [sent(sender, str(sender)) for sender in range(5)]
     turns = [packet for turn in zip(*crowd, strict=True) for packet in turn]
     for senders in (4, 5):
-        yield f"five senders, room for {senders}", {
-            "op": "can_join",
-            "senders": senders,
-            "packets": [_row(p) for p in turns],
-        }
-    yield "one after the other, room for one", {
-        "op": "can_join",
-        "senders": 1,
-        "packets": [_row(p) for p in (*one, *foreign)],
-    }
+        asked = {"op": "can_join", "senders": senders, "packets": [_row(p) for p in turns]}
+        yield f"five senders, room for {senders}", asked
+    asked = {"op": "can_join", "senders": 1, "packets": [_row(p) for p in (*one, *foreign)]}
+    yield "one after the other, room for one", asked

@@ -9,19 +9,17 @@ from icdgen.protocol import transfer
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.scripts import LONGEST, procedure_of
 from icdgen.protocol.sections import UART, Upload
-from icdgen.vectors.wire import Requests
+from icdgen.vectors.wire import Requests, Script
 from icdgen.vectors.wire.node import FileNode
 from icdgen.vectors.wire.operations import neighbours
 
 STEPS = 100_000  # more than any procedure takes
 
 
-def record(
-    known: Facts, request: dict[str, Any], node: FileNode, again: int = 8
-) -> tuple[list[dict[str, Any]], transfer.Procedure]:
+def record(known: Facts, request: dict[str, Any], node: FileNode, again: int = 8) -> tuple[Script, transfer.Procedure]:
     """The script of a procedure against the node; a client would send what may be repeated again."""
     procedure, now = procedure_of(known, request), 0
-    script: list[dict[str, Any]] = [{"at": 0}]
+    script: Script = [{"at": 0}]
     asked = procedure.next(now)
     while procedure.result is None and len(script) < STEPS:
         if asked is None:

@@ -8,7 +8,8 @@ from random import Random
 from icdgen.protocol import logs as log_files
 from icdgen.protocol import uart
 from icdgen.protocol.facts import Facts, need
-from icdgen.vectors.wire import Requests
+from icdgen.protocol.sections import UART
+from icdgen.vectors.wire import Requests, pieces
 from icdgen.vectors.wire.logs import masks
 
 CHECKED = b"123456789"  # what check values of CRCs are computed over
@@ -32,8 +33,7 @@ def checksums(known: Facts, source: Random) -> Requests:
 
 def _messages(known: Facts, source: Random) -> Iterator[tuple[str, bytes]]:
     """Messages as they are framed: id and data."""
-    framing = known.framing
-    assert framing
+    framing = need(known.framing, "uart")
     escape, end, start = framing.escape, framing.end, framing.start
     yield "an id alone", b"\x80"
     yield "an id that is the escape byte", bytes([escape, 0])
@@ -44,9 +44,8 @@ def _messages(known: Facts, source: Random) -> Iterator[tuple[str, bytes]]:
     yield "every byte", bytes([0x90, *range(256)])[: known.longest]
     for id in sorted({min(known.telecommands), max(known.telecommands)} if known.telecommands else ()):
         yield f"telecommand {id}", bytes([id]) + source.randbytes(known.telecommands[id].length)
-    longest = known.longest
-    yield "the longest message", bytes([0x80]) + source.randbytes(longest - 1)
-    yield "the longest message, all escaped", bytes([escape] * longest)
+    yield "the longest message", bytes([0x80]) + source.randbytes(known.longest - 1)
+    yield "the longest message, all escaped", bytes([escape] * known.longest)
 
 
 def encoded(known: Facts, source: Random) -> Requests:
@@ -59,8 +58,7 @@ def encoded(known: Facts, source: Random) -> Requests:
 
 def streams(known: Facts, source: Random) -> Requests:
     """Streams that are cut, noisy, broken off."""
-    framing = known.framing
-    assert framing
+    framing = need(known.framing, "uart")
     escape, start, end = framing.escape, framing.start, framing.end
     begin, finish = bytes([escape, start]), bytes([escape, end])
 
@@ -87,18 +85,12 @@ def streams(known: Facts, source: Random) -> Requests:
     ]
     for why, stream in whole:
         yield why, {"op": "uart_decode", "bytes": stream.hex()}
-        yield why, {"op": "uart_events", "chunks": [stream.hex()]}
-        yield f"{why}, byte by byte", {"op": "uart_events", "chunks": [f"{byte:02x}" for byte in stream]}
-        cuts = sorted(source.sample(range(len(stream) + 1), min(5, len(stream))))
-        pieces = [stream[a:b].hex() for a, b in zip([0, *cuts], [*cuts, len(stream)], strict=True)]
-        yield f"{why}, cut at odd places", {"op": "uart_events", "chunks": pieces}
+        for how, chunks in pieces(why, stream, source):
+            yield how, {"op": "uart_events", "chunks": [chunk.hex() for chunk in chunks]}
     long = line(0x90, *range(1, 9), escape)
     for limit in (9, 10) if known.longest >= 10 else ():  # no buffer is longer than the longest message
-        yield f"ten bytes in a buffer of {limit}", {
-            "op": "uart_events",
-            "limit": limit,
-            "chunks": [(long + good[:-2]).hex(), finish.hex()],
-        }
+        cut = [(long + good[:-2]).hex(), finish.hex()]
+        yield f"ten bytes in a buffer of {limit}", {"op": "uart_events", "limit": limit, "chunks": cut}
     too_long = uart.encode(framing, bytes([0x90]) * (known.longest + 1))
     yield "a message that is too long by one", {"op": "uart_events", "chunks": [(too_long + good).hex()]}
     for why, message in _kinds(known, source):
@@ -113,12 +105,11 @@ def _kinds(known: Facts, source: Random) -> Iterator[tuple[str, bytes]]:
             yield f"the acknowledge of telecommand {id}", bytes([id, *bytes(known.acknowledge.length - 1)])
         yield "an acknowledge that is too long", bytes([ids[0], *bytes(known.acknowledge.length)])
     files = known.files
-    if files and "uart" in files.packet_ids:
+    if files and UART in files.packet_ids:
         size = files.counter_bytes + files.packet_bytes
         for more in (-1, 0, 1):
-            yield f"a download packet{('', ' too long', ' too short')[more]}", bytes(
-                [files.packet_ids["uart"]]
-            ) + source.randbytes(size + more)
+            why = f"a download packet{('', ' too long', ' too short')[more]}"
+            yield why, bytes([files.packet_ids[UART]]) + source.randbytes(size + more)
     for id, message in list(known.telemetry.items())[:3]:
         yield f"telemetry {id}", bytes([id]) + source.randbytes(message.length)
     first, last = known.telemetry_ids.first, known.telemetry_ids.last

@@ -12,10 +12,9 @@ from icdgen.protocol.client import TELEMETRY
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.scripts import procedure_of
 from icdgen.protocol.sections import CAN, I2C, UART, Step
-from icdgen.vectors.wire import Requests
+from icdgen.vectors.wire import Requests, Script
 from icdgen.vectors.wire.node import FileNode
 
-Script = list[dict[str, Any]]
 Values = dict[str, Any]  # what the frame of a step says, by role
 
 # Where a procedure waits: its request, what its frame says meanwhile, and how the time is called.
