@@ -189,6 +189,14 @@ def which(icd: Icd, known: Sequence[Message], frame: bytes) -> Message | None:
     return None
 
 
+def which_if_any(icd: Icd, known: Sequence[Message], frame: bytes) -> Message | None:
+    """`which`, and None also if no message has that length."""
+    try:
+        return which(icd, known, frame)
+    except LengthError:
+        return None
+
+
 def _in_every_frame(message: Message) -> list[Field]:
     """The constants of a message, without those of elements and fields that not every frame has."""
     fixed = [one for one in message.owners if one.const is not None and not one.when and one.at < 8 * message.fixed]

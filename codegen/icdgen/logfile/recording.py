@@ -62,14 +62,13 @@ class Tally:
         if event.event == "gap":
             self.missing += event.missing
             self.repeated += event.missing == 0
-        elif event.event == "unknown_id" and event.id is not None and (event.id in self.unknown or self._has_room):
+        elif event.event == "unknown_id" and event.id is not None and self._is_told_apart(event.id):
             self.unknown[event.id] += 1
         else:
             self.faults[FAULTS.get(event.event, event.event)] += 1
 
-    @property
-    def _has_room(self) -> bool:
-        return len(self.unknown) < _MOST_IDS
+    def _is_told_apart(self, id: int) -> bool:
+        return id in self.unknown or len(self.unknown) < _MOST_IDS
 
     def notes(self) -> list[str]:
         """What was wrong, for people."""
@@ -79,15 +78,13 @@ class Tally:
             said = [f"{id} ({times:,})" for id, times in self.unknown.most_common(_MOST_SAID)]
             rest = len(self.unknown) - len(said)
             notes.append(f"ids that the ICD does not have: {', '.join(said)}{f' and {rest} others' if rest else ''}")
-        if self.missing:
-            notes.append(f"messages missing, by their sequence numbers: {self.missing:,}")
-        if self.repeated:
-            notes.append(f"messages that came again, by their sequence numbers: {self.repeated:,}")
-        if self.lost:
-            notes.append(f"bytes that belong to no message: {self.lost:,}")
-        if self.cut:
-            notes.append(f"bytes at the end that belong to no whole message: {self.cut:,}")
-        return notes
+        counts = {
+            "messages missing, by their sequence numbers": self.missing,
+            "messages that came again, by their sequence numbers": self.repeated,
+            "bytes that belong to no message": self.lost,
+            "bytes at the end that belong to no whole message": self.cut,
+        }
+        return notes + [f"{what}: {count:,}" for what, count in counts.items() if count]
 
 
 class Recording:
@@ -106,9 +103,8 @@ class Recording:
         self.chosen = {key(one) for one in chosen} or set(self.messages)
         if strange := self.chosen - set(self.messages):
             names = ", ".join(sorted(name for _, name in strange))
-            raise UserError(
-                f"{names} is no {direction} of {node.name}", "`--direction` says who sent what was recorded"
-            )
+            help = "`--direction` says who sent what was recorded"
+            raise UserError(f"{names} is no {direction} of {node.name}", help)
         if self.form.delimited_by == PACKET:
             raise UserError(
                 f"a message of {node.name} ends with the packet that carries it, which a file does not tell",
@@ -158,7 +154,8 @@ class Recording:
         if event.event != "message" or event.id is None:
             tally.fault(event)
             return None
-        message = self._message(event)
+        known = self._known[event.id]
+        message = known[0] if len(known) == 1 else codec.which_if_any(self.icd, known, event.data)
         opened: Opened = (event.data, None, {})
         try:
             if message is not None and key(message) not in self._alike:
@@ -174,15 +171,6 @@ class Recording:
             return None
         data, there, ends = opened
         return Came(message, data.ljust(message.length, b"\0"), event.values, there, ends)
-
-    def _message(self, event: StreamEvent) -> Message | None:
-        known = self._known[event.id] if event.id is not None else []
-        if len(known) == 1:
-            return known[0]
-        try:
-            return codec.which(self.icd, known, event.data)
-        except codec.LengthError:
-            return None
 
     def _pieces(self) -> Iterator[bytes]:
         try:

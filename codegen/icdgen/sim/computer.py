@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from icdgen.icd.model import Icd, Message, Node
-from icdgen.protocol import facts
 from icdgen.sim.program import Outcome, Program
 from icdgen.sim.settings import Settings
 from icdgen.sim.storage import Storage
@@ -48,7 +45,7 @@ class Computer:
 
     def frame(self, now: int, id: int) -> bytes | None:
         """The frame with that id; None if the program has none."""
-        stop = self._protocol(self.program.node).get("boot", {}).get("stop_request")
+        stop = self.icd.protocol_of(self.program.node).get("boot", {}).get("stop_request")
         message = self.program.known.telemetry.get(id)
         if message and message.name == stop:
             self.boot_at = None
@@ -62,7 +59,7 @@ class Computer:
 
     def _reset(self, now: int, message: Message) -> None:
         application = self._application(self.program.node)
-        start = self._protocol(self.program.node).get("program_start", {})
+        start = self.icd.protocol_of(self.program.node).get("program_start", {})
         if application and start.get("message") == message.name:
             self.start(now, application)
         else:
@@ -72,12 +69,3 @@ class Computer:
         """The program that this one starts."""
         name = node.protocol.get("program_start", {}).get("application")
         return next((n for n in self.icd.nodes if n.name == name), None)
-
-    def _protocol(self, node: Node) -> dict[str, Any]:
-        return self.icd.protocol_of(node)
-
-
-def has_protocol(icd: Icd, node: Node) -> bool:
-    """Whether the ICD says how the node is talked to over a stream of bytes."""
-    known = facts.of(icd, node)
-    return known.framing is not None or known.stream is not None

@@ -15,8 +15,7 @@ from icdgen import codec
 from icdgen.errors import UserError
 from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.sim import faults
-from icdgen.sim.envelopes import EnvelopeLine
-from icdgen.sim.line import Line
+from icdgen.sim.device_line import DeviceLine
 from icdgen.sim.values import raw_of
 from icdgen.values.encode import listed
 from icdgen.values.entry import typed
@@ -42,7 +41,7 @@ class Step:
 class Control:
     """Carries out a user's orders on a line."""
 
-    def __init__(self, icd: Icd, node: Node, line: Line | EnvelopeLine, steps: list[Step]) -> None:
+    def __init__(self, icd: Icd, node: Node, line: DeviceLine, steps: list[Step]) -> None:
         self.icd, self.node, self.line = icd, node, line
         self.steps = sorted(steps, key=lambda step: step.at)
         self.moving: list[tuple[Message, Field, Wave]] = []
@@ -95,9 +94,8 @@ class Control:
         """``FIELD=VALUE`` of a frame. Raises `icdgen.errors.UserError`."""
         key, equals, value = text.partition("=")
         if not equals:
-            raise BadValue(
-                f"`{text}` is not of the form field=value", "for instance --set 'Message' speed=100 mode=Run"
-            )
+            help = "for instance --set 'Message' speed=100 mode=Run"
+            raise BadValue(f"`{text}` is not of the form field=value", help)
         self.set(name, key, value)
 
     def say(self, now: int, text: str) -> str:
@@ -119,10 +117,8 @@ class Control:
         elif order == "restart" and not rest:
             self.line.computer.restart(now)
         else:
-            raise UserError(
-                f"`{text}` is no order",
-                "set MESSAGE FIELD=VALUE ..., fault KIND=SHARE[@WHAT] ..., log, restart",
-            )
+            help = "set MESSAGE FIELD=VALUE ..., fault KIND=SHARE[@WHAT] ..., log, restart"
+            raise UserError(f"`{text}` is no order", help)
         return "ok"
 
 
@@ -153,17 +149,13 @@ def of_fields(icd: Icd, node: Node, name: str, key: str, value: object) -> list[
 
 def locate_message(icd: Icd, node: Node, name: str) -> Message:
     """The frame of the node, or of a program that it starts. Raises `icdgen.errors.UserError`."""
-    message, wrong = None, None
+    wrong = []
     for one in (node, *(n for n in icd.nodes if n is not node)):
         try:
-            message = find_message(icd, one.name, name, "telemetry")
-            break
+            return find_message(icd, one.name, name, "telemetry")
         except NotFound as error:
-            wrong = wrong or error
-    if message is None:
-        assert wrong
-        raise wrong
-    return message
+            wrong.append(error)
+    raise wrong[0]
 
 
 def fitting(message: Message, one: Field, value: object) -> int | bytes:

@@ -7,7 +7,7 @@ from icdgen_runtime.wire.uart import UartDecoder, uart_encode
 
 from icdgen.protocol.sections import UART
 from icdgen.sim.computer import Computer
-from icdgen.sim.due import Due
+from icdgen.sim.device_line import DeviceLine
 from icdgen.sim.faults import Faults
 from icdgen.sim.program import Outcome
 
@@ -18,18 +18,16 @@ FLAGS: dict[str, str] = {  # event of the decoder -> what the statistics call it
 }
 
 
-class Line:
-    """Every call is given the time in milliseconds; `take` gives the bytes that are due."""
+class Line(DeviceLine):
+    """The line; its bytes may be cut anywhere."""
 
     def __init__(self, computer: Computer, faults: Faults) -> None:
-        self.computer, self.faults = computer, faults
+        super().__init__(computer, faults)
         # Programs of a device share its line, and its framing.
         self.link = computer.program.link
         self.decoder = UartDecoder(self.link, computer.program.known.longest_telecommand)
-        self._due = Due()
 
     def received(self, now: int, data: bytes) -> None:
-        """The next bytes from the client."""
         self.tick(now)
         for event in self.decoder.feed(data):
             if event.event == "message":
@@ -38,35 +36,22 @@ class Line:
                 self.computer.program.count(FLAGS[event.event])
 
     def tick(self, now: int) -> None:
-        """Lets time pass."""
-        self.computer.tick(now)
+        super().tick(now)
         log = self.computer.program.log_due(now)
         if log is not None:
             self._send(now, "log", log)
 
     def log(self, now: int) -> None:
-        """Sends an unsolicited log message at once."""
         message = self.computer.program.log_message(now)
         if message is not None:
             self._send(now, "log", message)
 
-    keeps_packets = False  # its bytes may be cut anywhere
-
     def pieces(self, now: int) -> list[bytes]:
-        """The bytes that are due, as they go to the port."""
         return [self.take(now)]
 
     def take(self, now: int) -> bytes:
         """The bytes that are due."""
-        return b"".join(self._due.pop(now))
-
-    @property
-    def deadline(self) -> int | None:
-        """When `tick` and `take` want to be called at the latest."""
-        times = self._due.times
-        if self.computer.deadline is not None:
-            times.append(self.computer.deadline)
-        return min(times, default=None)
+        return b"".join(super().pieces(now))
 
     def _message(self, now: int, message: bytes) -> None:
         known = self.computer.program.known
@@ -120,5 +105,4 @@ class Line:
             self._send(now, "packet", head + number + packet.data)
 
     def _send(self, now: int, on: str, message: bytes) -> None:
-        for delay, data in self.faults.spoil(on, uart_encode(self.link, message)):
-            self._due.push(now + delay, data)
+        self.leave(now, on, uart_encode(self.link, message))

@@ -41,7 +41,10 @@ class Program:
         self.values = Values(icd, node)
         form = self.known.files
         self.transfers = Transfers(self.known, self.link, form, storage, settings.busy_ms) if form else None
-        self.programs = self._programs(storage)
+        protocol = icd.protocol_of(node)
+        copy_to = protocol.get("program_copy", {}).get("destination")
+        room = protocol.get("boot", {}).get("internal_flash", {}).get("application_bytes")
+        self.programs = Programs(self.known, self.link, storage, settings.busy_ms, copy_to, room)
         self.unsupported = self._unsupported()
         self.counts: dict[str, int] = {}  # statistics by role
         self.last = (0, True, 0, 0)  # id, processed, code and parameter of the last telecommand
@@ -148,7 +151,7 @@ class Program:
             self.values.put(known, data)
         try:
             if self.transfers:
-                self.transfers.telecommand(now, known, raw, data)
+                self.transfers.telecommand(now, known, raw)
             self.programs.telecommand(now, known, raw)
         except Refused as refused:
             return self._refusal("parameter", refused.index)
@@ -157,12 +160,6 @@ class Program:
         if known.expects_reset:
             return Outcome(self.known.errors.get("none", 0), 0, False, known)
         return Outcome(self.known.errors.get("none", 0), 0, known.acknowledge)
-
-    def _programs(self, storage: Storage) -> Programs:
-        protocol = self.icd.protocol_of(self.node)
-        copy_to = protocol.get("program_copy", {}).get("destination")
-        room = protocol.get("boot", {}).get("internal_flash", {}).get("application_bytes")
-        return Programs(self.known, self.link, storage, self.settings.busy_ms, copy_to, room)
 
     def _unsupported(self) -> set[str]:
         """Telecommands of a procedure that the ICD gives to other nodes only."""
@@ -196,12 +193,8 @@ class Program:
         if polled is None or polled.message.name != message.name:
             return {}
         id, _, code, parameter = self.last
-        return {
-            polled.id: id,
-            polled.processed: int(now >= self.free_at),
-            polled.error: code,
-            polled.parameter: parameter,
-        }
+        processed = int(now >= self.free_at)
+        return {polled.id: id, polled.processed: processed, polled.error: code, polled.parameter: parameter}
 
     def _fetched(self, message: Message) -> bytes:
         assert self.transfers

@@ -19,7 +19,8 @@ from icdgen.errors import UserError
 from icdgen.icd.model import Icd, Node
 from icdgen.protocol import facts
 from icdgen.sim import control, faults, serve
-from icdgen.sim.computer import Computer, has_protocol
+from icdgen.sim.computer import Computer
+from icdgen.sim.device_line import DeviceLine
 from icdgen.sim.envelopes import EnvelopeLine
 from icdgen.sim.line import Line
 from icdgen.sim.settings import Settings
@@ -70,7 +71,13 @@ def node_of(icd: Icd, name: str | None) -> Node:
     return node
 
 
-def build(icd: Icd, name: str | None, options: Options) -> tuple[Line | EnvelopeLine, control.Control]:
+def has_protocol(icd: Icd, node: Node) -> bool:
+    """Whether the ICD says how the node is talked to over a stream of bytes."""
+    known = facts.of(icd, node)
+    return known.framing is not None or known.stream is not None
+
+
+def build(icd: Icd, name: str | None, options: Options) -> tuple[DeviceLine, control.Control]:
     """The device on its line, and who gives it orders. Raises `icdgen.errors.UserError`."""
     node = node_of(icd, name)
     storage = Storage(on_upload=_saver(options.uploads))
@@ -79,7 +86,7 @@ def build(icd: Icd, name: str | None, options: Options) -> tuple[Line | Envelope
     spoil = faults.Faults(Random(options.seed), [faults.parse(one) for one in options.faults], options.late)
     chosen = values_of(facts.of(icd, node), options.chosen)
     computer = Computer(icd, node, settings, storage)
-    line = EnvelopeLine(computer, spoil, chosen) if computer.program.known.stream else Line(computer, spoil)
+    line: DeviceLine = EnvelopeLine(computer, spoil, chosen) if computer.program.known.stream else Line(computer, spoil)
     steps = control.read(options.script, icd, node) if options.script else []
     controlled = control.Control(icd, node, line, steps)
     for message, text in options.values:
@@ -96,7 +103,7 @@ def run(icd: Icd, name: str | None, ways: list[Way], options: Options, tell: Cal
 
 
 async def _run(
-    line: Line | EnvelopeLine, controlled: control.Control, ways: list[Way], listens: bool, tell: Callable[[str], None]
+    line: DeviceLine, controlled: control.Control, ways: list[Way], listens: bool, tell: Callable[[str], None]
 ) -> None:
     server, kept = serve.Server(line, controlled), []
     for way, *where in ways:

@@ -12,8 +12,7 @@ from typing import Any, cast
 
 from icdgen.errors import UserError
 from icdgen.sim.control import Control
-from icdgen.sim.envelopes import EnvelopeLine
-from icdgen.sim.line import Line
+from icdgen.sim.device_line import DeviceLine
 
 Send = Callable[[bytes], None]
 PIECE = 1400  # bytes of a stream in one datagram
@@ -24,7 +23,7 @@ IDLE = 0.5  # s; the longest sleep, in which an interrupt is noticed everywhere
 class Server:
     """Gives the line what comes, and sends what is due to everybody who is connected."""
 
-    def __init__(self, line: Line | EnvelopeLine, control: Control) -> None:
+    def __init__(self, line: DeviceLine, control: Control) -> None:
         self.line, self.control = line, control
         self.begin = time.monotonic()
         self.clients: list[Send] = []

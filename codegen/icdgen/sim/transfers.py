@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import NamedTuple
 
 from icdgen_runtime.wire.files import HoleMap
@@ -46,61 +46,56 @@ class Transfers:
         self.fetched = Packet(0, bytes([form.fill]) * form.packet_bytes)  # by the last request
         self.burst: list[int] = []  # positions still to be fetched, where packets are requested one by one
         self.pushed: list[Packet] = []  # packets to be sent of the device's own accord
-        self.maps = {m.name: at for at, m in enumerate(known.hole_map.messages)} if known.hole_map else {}
-        self.telecommands: dict[str, tuple[str, Callable[[int, Raw], None]]] = {}
-        self.frames: dict[str, list[tuple[str, Callable[[int], Raw]]]] = {}
+        self.maps: dict[str, tuple[str, slice]] = {}  # message -> its field, and its part of the map
+        if holes := known.hole_map:
+            for at, one in enumerate(holes.messages):
+                self.maps[one.name] = holes.field, slice(at * holes.message_bytes, (at + 1) * holes.message_bytes)
         self.steps = form.steps
-        for step, take in self._telecommand_handlers():
-            if step in self.steps:
-                self.telecommands[self.steps[step].message.name] = step, take
-        for step, give in self._frame_values():
-            if step in self.steps:
-                self.frames.setdefault(self.steps[step].message.name, []).append((step, give))
-
-    def _telecommand_handlers(self) -> Iterator[tuple[str, Callable[[int, Raw], None]]]:
-        yield "list.reset", self._reset_list
-        yield "list.advance", self._advance
-        yield "download.load", self._load
-        yield "download.burst", self._burst
-        yield "upload.initiate", self._initiate
-        yield "upload.begin", self._begin
-        yield "upload.packet", self._packet
-        yield "upload.finalize", self._finalize
-        yield "erase.request", self._erase
-        yield "format.request", self._format
-
-    def _frame_values(self) -> Iterator[tuple[str, Callable[[int], Raw]]]:
-        yield "list.information", self._information
-        yield "download.ready", self._ready
-        yield "upload.initiated", lambda now: {"busy": self._is_busy("upload.initiate", now)}
-        yield "upload.checksum", self._checksum
-        yield "upload.finalized", lambda now: {
-            "busy": self._is_busy("upload.finalize", now),
-            "error": int(self.failed),
+        takers: dict[str, Callable[[int, Raw], None]] = {
+            "list.reset": self._reset_list,
+            "list.advance": self._advance,
+            "download.load": self._load,
+            "download.burst": self._burst,
+            "upload.initiate": self._initiate,
+            "upload.begin": self._begin,
+            "upload.packet": self._packet,
+            "upload.finalize": self._finalize,
+            "erase.request": self._erase,
+            "format.request": self._format,
         }
-        yield "erase.progress", lambda now: {"busy": self._is_busy("erase.request", now)}
-        yield "format.progress", lambda now: {"busy": self._is_busy("format.request", now)}
+        givers: dict[str, Callable[[int], Raw]] = {
+            "list.information": self._information,
+            "download.ready": self._ready,
+            "upload.initiated": lambda now: {"busy": self._is_busy("upload.initiate", now)},
+            "upload.checksum": self._checksum,
+            "upload.finalized": lambda now: {"busy": self._is_busy("upload.finalize", now), "error": int(self.failed)},
+            "erase.progress": lambda now: {"busy": self._is_busy("erase.request", now)},
+            "format.progress": lambda now: {"busy": self._is_busy("format.request", now)},
+        }
+        self.telecommands = {
+            one.message.name: (one, takers[name]) for name, one in self.steps.items() if name in takers
+        }
+        self.frames = [(one, givers[name]) for name, one in self.steps.items() if name in givers]
 
-    def telecommand(self, now: int, message: Message, raw: Raw, data: bytes) -> None:
+    def telecommand(self, now: int, message: Message, raw: Raw) -> None:
         """Does what a telecommand of the transfers says; nothing for any other. Raises `Refused`."""
-        if message.name in self.maps and self.known.hole_map:
-            size = self.known.hole_map.message_bytes
-            at = self.maps[message.name] * size
-            self.map[at : at + size] = raw[self.known.hole_map.field]  # type: ignore[assignment]
+        if message.name in self.maps:
+            field, part = self.maps[message.name]
+            self.map[part] = raw[field]  # type: ignore[assignment]
         if message.name in self.telecommands:
-            step, handler = self.telecommands[message.name]
-            handler(now, {role: raw[name] for role, name in self.steps[step].fields.items()})
+            step, take = self.telecommands[message.name]
+            take(now, {role: raw[name] for role, name in step.fields.items()})
 
-    def answer(self, now: int, message: Message) -> dict[str, int | bytes]:
+    def answer(self, now: int, message: Message) -> Raw:
         """Values of the fields that play a part in a transfer."""
-        found: dict[str, int | bytes] = {}
-        if message.name in self.maps and self.known.hole_map:
-            size = self.known.hole_map.message_bytes
-            at = self.maps[message.name] * size
-            found[self.known.hole_map.field] = bytes(self.map[at : at + size])
-        for step, handler in self.frames.get(message.name, ()):
-            values = handler(now)
-            found |= {name: values[role] for role, name in self.steps[step].fields.items() if role in values}
+        found: Raw = {}
+        if message.name in self.maps:
+            field, part = self.maps[message.name]
+            found[field] = bytes(self.map[part])
+        for step, give in self.frames:
+            if step.message.name == message.name:
+                values = give(now)
+                found |= {name: values[role] for role, name in step.fields.items() if role in values}
         return found
 
     def fetch(self) -> Packet:
@@ -124,22 +119,12 @@ class Transfers:
         self._work("list.reset", now)
 
     def _information(self, now: int) -> Raw:
-        keys = list(self.storage.files)
-        if self._is_busy("list.reset", now):
-            return {"busy": 1, "type": 0, "counter": 0, "size": 0, "time": 0, "checksum": 0}
-        if self.pointer >= len(keys):
-            return {"busy": 0, "type": 0, "counter": 0, "size": 0, "time": 0, "checksum": 0}
-        key = keys[self.pointer]
-        file = self.storage.files[key]
-        checksum = checksum_of(self.link, file.data)
-        return {
-            "busy": 0,
-            "type": key[0],
-            "counter": key[1],
-            "size": len(file.data),
-            "time": file.time,
-            "checksum": checksum,
-        }
+        files, busy = list(self.storage.files.items()), self._is_busy("list.reset", now)
+        if busy or self.pointer >= len(files):
+            return {"busy": busy, "type": 0, "counter": 0, "size": 0, "time": 0, "checksum": 0}
+        (type_, counter), file = files[self.pointer]
+        about = {"size": len(file.data), "time": file.time, "checksum": checksum_of(self.link, file.data)}
+        return {"busy": 0, "type": type_, "counter": counter, **about}
 
     def _load(self, now: int, values: Raw) -> None:
         self.block, self.loaded, self.bad, self.burst = b"", True, False, []
@@ -165,14 +150,11 @@ class Transfers:
             self.bad = True
             raise Refused(0)
         count = self.known.packets_of(len(self.block))
-        wanted = list(range(count))
+        self.burst = list(range(count))
         if not values.get("ignore_hole_map") and self.known.hole_map:
-            wanted = [
-                number - self.form.first_packet
-                for number in HoleMap.from_bytes(self.link, count, bytes(self.map)).missing()
-            ]
-        self.burst = wanted
-        self.pushed = [self._packet_at(at) for at in wanted]
+            missing = HoleMap.from_bytes(self.link, count, bytes(self.map)).missing()
+            self.burst = [number - self.form.first_packet for number in missing]
+        self.pushed = [self._packet_at(at) for at in self.burst]
 
     def _packet_at(self, position: int) -> Packet:
         size = self.form.packet_bytes
