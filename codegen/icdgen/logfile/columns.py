@@ -95,8 +95,8 @@ def _columns(icd: Icd, known: Facts, slot: LogBit, start: int) -> Iterator[Colum
     message = known.telemetry.get(slot.id) if slot.id is not None else None
     if message is None:
         yield Column(f"bit_{slot.bit}", slot.name or f"bit {slot.bit}", None, None, start, slot.length, "", ())
-        return
-    yield from columns_of(icd, message, start, slot.length)
+    else:
+        yield from columns_of(icd, message, start, slot.length)
 
 
 def columns_of(icd: Icd, message: Message, start: int = 0, length: int | None = None) -> Iterator[Column]:

@@ -8,21 +8,9 @@ from icdgen.logfile.rows import time_text
 from icdgen.logfile.source import Source
 from icdgen.tables import Column, clean, render
 
-_COLUMNS = [
-    Column("bit", right=True),
-    Column("id", right=True),
-    Column("frame"),
-    Column("bytes", right=True),
-    Column("fields", right=True),
-]
-
-_MESSAGES = [
-    Column("id", right=True),
-    Column("message"),
-    Column("times", right=True),
-    Column("bytes", right=True),
-    Column("fields", right=True),
-]
+_NAMES = ("frame", "message")
+_COLUMNS = [Column(title, right=title not in _NAMES) for title in ("bit", "id", "frame", "bytes", "fields")]
+_MESSAGES = [Column(title, right=title not in _NAMES) for title in ("id", "message", "times", "bytes", "fields")]
 
 
 def recording_text(recording: Recording, tally: Tally, width: int | None) -> str:
@@ -56,7 +44,4 @@ def to_text(source: Source, width: int | None) -> str:
         rows.append((str(slot.bit), id, slot.name or "(not assigned)", str(slot.length), str(fields)))
     text = "".join(clean(line) + "\n" for line in lines)
     text += "\n" + render(_COLUMNS, rows, width) if rows else "\nThe mask selects no frame.\n"
-    notes = source.doubts()
-    if source.truncated:
-        notes.append(f"the last {source.truncated} bytes belong to no whole entry")
-    return text + "".join(f"\nnote: {note}\n" for note in notes)
+    return text + "".join(f"\nnote: {note}\n" for note in source.notes())

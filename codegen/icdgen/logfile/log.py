@@ -77,8 +77,7 @@ class _Entries:
         return entries * self.source.plan.entry_bytes
 
     def prepare(self, head: int | None, done: Done) -> list[str]:
-        rest = self.source.truncated
-        return self.source.doubts() + ([f"the last {rest} bytes belong to no whole entry"] if rest else [])
+        return self.source.notes()
 
     def rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
         return rows(self.source, head, done)

@@ -13,7 +13,7 @@ from icdgen_runtime._derived import column as derived_column
 
 from icdgen import codec
 from icdgen.errors import UserError
-from icdgen.icd.model import Enum
+from icdgen.icd.model import Enum, Node
 from icdgen.logfile.columns import TIME, Column, Plan
 from icdgen.logfile.source import Source
 
@@ -28,13 +28,24 @@ GROUP = 24 << 20  # bytes of the log that become a row group, about
 def to_parquet(source: Source, path: Path, head: int | None, done: Callable[[int], None]) -> None:
     """Writes the file; units and names stand in the metadata of each column. Raises `icdgen.errors.UserError`."""
     check_installed()
+    decoder = Decoder(source.plan)
+    write(path, decoder.schema, _ahead(_groups(source, decoder, head, done)))
+
+
+def write(path: Path, schema: pa.Schema, tables: Iterable[pa.Table]) -> None:
+    """Writes a file of these row groups."""
     import pyarrow.parquet as pq
 
-    decoder = Decoder(source.plan)
-    tables = _ahead(_groups(source, decoder, head, done))
-    with pq.ParquetWriter(path, decoder.schema, compression="lz4", write_page_index=True) as writer:
+    with pq.ParquetWriter(path, schema, compression="lz4", write_page_index=True) as writer:
         for table in tables:
             writer.write_table(table, row_group_size=table.num_rows)
+
+
+def schema_of(fields: Iterable[pa.Field], node: Node) -> pa.Schema:
+    """The columns, and of which node they are."""
+    import pyarrow as pa
+
+    return pa.schema(fields, {"icdgen.node": node.name, "icdgen.icd_sha256": node.digest})
 
 
 def check_installed() -> None:
@@ -79,8 +90,7 @@ class Decoder:
         self.plan = plan
         self.columns = [ColumnReader(column, plan.entry_bytes) for column in plan.columns]
         time = pa.field(TIME, pa.timestamp("ms", tz="UTC"), nullable=False)
-        metadata = {"icdgen.node": plan.node.name, "icdgen.icd_sha256": plan.node.digest}
-        self.schema = pa.schema([time, *(reader.field for reader in self.columns)], metadata)
+        self.schema = schema_of([time, *(reader.field for reader in self.columns)], plan.node)
 
     def batch(self, data: bytes) -> pa.RecordBatch:
         """The entries in ``data``."""
@@ -88,8 +98,8 @@ class Decoder:
         import pyarrow as pa
 
         plan, count = self.plan, len(data) // self.plan.entry_bytes
-        seconds = _whole(data, plan.entry_bytes, plan.seconds[0], plan.seconds[1], plan.order == "little")
-        rest = _whole(data, plan.entry_bytes, plan.milliseconds[0], plan.milliseconds[1], plan.order == "little")
+        seconds = _whole(data, plan.entry_bytes, *plan.seconds, plan.order == "little")
+        rest = _whole(data, plan.entry_bytes, *plan.milliseconds, plan.order == "little")
         time = pa.array(seconds.astype(np.int64) * 1000 + rest, pa.int64()).cast(self.schema.field(0).type)
         arrays = [time, *(reader.read(data, count) for reader in self.columns)]
         return pa.RecordBatch.from_arrays(arrays, schema=self.schema)

@@ -113,14 +113,12 @@ def _float(column: Column) -> Callable[[bytes], Value]:
     return read
 
 
-def _bytes(column: Column) -> Callable[[bytes], Value]:
+def _octets(column: Column, shown: Callable[[bytes], str]) -> Callable[[bytes], Value]:
     first, last = column.at, column.at + column.size
-    return lambda entry: entry[first:last].hex()
+    return lambda entry: shown(entry[first:last])
 
 
-def _text(column: Column) -> Callable[[bytes], Value]:
-    first, last = column.at, column.at + column.size
-    return lambda entry: codec.text(entry[first:last])
-
-
-_READERS = {"text": _text, "bool": _bool, "enum": _enum, "float": _float, "bytes": _bytes}
+_READERS: dict[str, Callable[[Column], Callable[[bytes], Value]]] = {
+    "text": lambda column: _octets(column, codec.text), "bool": _bool, "enum": _enum, "float": _float,
+    "bytes": lambda column: _octets(column, bytes.hex),
+}  # fmt: skip

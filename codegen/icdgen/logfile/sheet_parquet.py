@@ -7,7 +7,7 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from icdgen.logfile.parquet import ColumnReader, check_installed
+from icdgen.logfile.parquet import ColumnReader, check_installed, schema_of, write
 from icdgen.logfile.recording import Came, Key, Tally, key
 from icdgen.logfile.rows import Done
 from icdgen.logfile.sheet import MESSAGE, Entry, Sheet, end_of, is_there
@@ -21,13 +21,9 @@ _CELLS = 4_000_000  # of a row group, about: sparse tables are wide
 def to_parquet(sheet: Sheet, path: Path, head: int | None, done: Done) -> None:
     """Writes the file; what is not there is null. Raises `icdgen.errors.UserError`."""
     check_installed()
-    import pyarrow.parquet as pq
-
     maker = _Maker(sheet)
-    messages = sheet.recording.read(Tally(), head, done)
-    with pq.ParquetWriter(path, maker.schema, compression="lz4", write_page_index=True) as writer:
-        for batch in _batches(messages, max(256, _CELLS // len(sheet.names))):
-            writer.write_table(maker.table(batch), row_group_size=len(batch))
+    batches = _batches(sheet.recording.read(Tally(), head, done), max(256, _CELLS // len(sheet.names)))
+    write(path, maker.schema, map(maker.table, batches))
 
 
 def _batches(messages: Iterator[Came], size: int) -> Iterator[list[Came]]:
@@ -51,8 +47,7 @@ class _Maker:
         for entry, reader in (both for those in self.readers.values() for both in those):
             field = reader.field.with_nullable(True)
             fields.append(field.with_type(pa.binary()) if entry.is_cut else field)
-        node = sheet.recording.node
-        self.schema = pa.schema(fields, {"icdgen.node": node.name, "icdgen.icd_sha256": node.digest})
+        self.schema = schema_of(fields, sheet.recording.node)
 
     def table(self, batch: list[Came]) -> pa.Table:
         """A row for each message of the batch."""
@@ -80,9 +75,8 @@ class _Maker:
             found: list[bytes | None] = [None] * len(batch)
             for place in here:
                 one = batch[place]
-                found[place] = (
-                    one.data[entry.column.at : end_of(one, entry.column)] if is_there(one, entry.column) else None
-                )
+                if is_there(one, entry.column):
+                    found[place] = one.data[entry.column.at : end_of(one, entry.column)]
             return pa.array(found, pa.binary())
         which, is_null = np.zeros(len(batch), np.int64), np.ones(len(batch), bool)
         which[here] = np.arange(len(here))

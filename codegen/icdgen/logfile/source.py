@@ -66,8 +66,13 @@ class Source:
         except OSError as error:
             raise unreadable(self.path, error) from None
 
-    def doubts(self) -> list[str]:
-        """What a log of this node would not have: any file of some length can be read as one. Raises `icdgen.errors.UserError`."""
+    def notes(self) -> list[str]:
+        """What is wrong with it. Raises `icdgen.errors.UserError`."""
+        rest = [f"the last {self.truncated} bytes belong to no whole entry"] if self.truncated else []
+        return self._doubts() + rest
+
+    def _doubts(self) -> list[str]:
+        """What a log of this node would not have: any file of some length can be read as one."""
         found = []
         unknown = sum(slot.id is None for slot in self.plan.slots)
         if unknown:
@@ -86,15 +91,11 @@ def node_of(icd: Icd, name: str | None) -> Node:
     able = [node for node in icd.nodes if (known := facts.of(icd, node)).log_file or known.stream]
     if len(able) == 1:
         return able[0]
+    if not able:
+        help = "`protocol.telemetry_log` describes files, and `protocol.stream` what can be recorded of a link"
+        raise UserError("the ICDs describe no logs", help)
     names = ", ".join(node.name for node in able)
-    raise UserError(
-        "it is not said whose log it is" if able else "the ICDs describe no logs",
-        (
-            f"name the node; nodes: {names}"
-            if able
-            else "`protocol.telemetry_log` describes files, and `protocol.stream` what can be recorded of a link"
-        ),
-    )
+    raise UserError("it is not said whose log it is", f"name the node; nodes: {names}")
 
 
 def open_source(icd: Icd, node: Node, path: Path) -> Source:
