@@ -8,12 +8,12 @@ from pathlib import Path
 import click
 
 from icdgen import backends, reports
-from icdgen.commands.common import chosen, icd_arguments, print_findings
+from icdgen.commands.common import chosen, format_option, icd_arguments, print_findings
 
 
 @click.command()
 @icd_arguments
-@click.option("--format", "form", type=click.Choice(reports.FORMATS), default="text", show_default=True)
+@format_option(*reports.FORMATS)
 def check(icds: tuple[Path, ...], form: str) -> None:
     """Check ICDs and report every finding. Exit status: 0 clean, 1 findings."""
     from icdgen.loading import load

@@ -6,7 +6,7 @@ import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TextIO, TypeVar
+from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
 import click
 
@@ -15,6 +15,9 @@ from icdgen.diagnostics import Finding
 from icdgen.errors import UserError
 from icdgen.icd.loaded import Loaded
 from icdgen.reports.excerpt import printable
+
+if TYPE_CHECKING:
+    from icdgen.values.frame import Frame
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -73,6 +76,25 @@ def icd_option(command: Command) -> Command:
     """``--icd FILE`` (repeatable), for commands whose arguments are something else."""
     text = "ICD file or folder (default: those of icdgen.toml, else those shipped)."
     return click.option("--icd", "icds", multiple=True, type=PATH, help=text)(command)
+
+
+def kind_option(command: Command) -> Command:
+    """``--kind``, for commands that take the id of a message."""
+    kinds = click.Choice(["telecommand", "telemetry", "configuration"])
+    return click.option("--kind", type=kinds, help="Where an id alone is ambiguous.")(command)
+
+
+def format_option(*forms: str) -> Callable[[Command], Command]:
+    """``--format``, the first unless another is asked for."""
+    return click.option("--format", "form", type=click.Choice(forms), default=forms[0], show_default=True)
+
+
+def print_frame(frame: Frame) -> None:
+    """Prints it as a table."""
+    from icdgen import tables
+    from icdgen.values.text import to_text
+
+    click.echo(to_text(frame, tables.width_of(sys.stdout)), nl=False)
 
 
 def chosen(icds: tuple[Path, ...]) -> tuple[list[Path], config.Config]:

@@ -12,14 +12,13 @@ from typing import TYPE_CHECKING, BinaryIO
 
 import click
 
-from icdgen.commands.common import icd_option, load_or_exit, say
+from icdgen.commands.common import format_option, icd_option, kind_option, load_or_exit, print_frame, say
 from icdgen.errors import UserError
 
 if TYPE_CHECKING:
     from icdgen.icd.model import Icd, Message
     from icdgen.recognize import Reading
 
-_KINDS = click.Choice(["telecommand", "telemetry", "configuration"])
 _LONGEST_ID, _OF_BYTE = 10, (1, 2, 3)  # digits: of an id of 32 bits; of a byte, in decimals or not
 _MOST = 1_000_000  # bytes that are read for frames
 _CSV = ("frame", "node", "message", "direction", "id", "field", "raw", "value", "unit", "remarks")
@@ -28,8 +27,8 @@ _CSV = ("frame", "node", "message", "direction", "id", "field", "raw", "value", 
 @click.command()
 @click.argument("arguments", nargs=-1, required=True, metavar="[NODE [MESSAGE]] FRAME...")
 @icd_option
-@click.option("--kind", type=_KINDS, help="Where an id alone is ambiguous.")
-@click.option("--format", "form", type=click.Choice(["text", "json", "csv"]), default="text", show_default=True)
+@kind_option
+@format_option("text", "json", "csv")
 def decode(arguments: tuple[str, ...], icds: tuple[Path, ...], kind: str | None, form: str) -> None:
     """Decode frames: hex in any spelling, base64, C arrays, dumps, candump and slcan lines.
 
@@ -115,11 +114,8 @@ def _refuse_lack(icd: Icd, node: str, words: list[str], kind: str | None) -> Non
 def _is_id(words: list[str]) -> bool:
     """Whether the first word is a number as ids are, and no part of the frame, for the others are no single bytes."""
     first, *others = words
-    return (
-        first.isdecimal()
-        and len(first) <= _LONGEST_ID
-        and any(len(one) not in (len(first), *_OF_BYTE) for one in others)
-    )
+    may_be_one = first.isdecimal() and len(first) <= _LONGEST_ID
+    return may_be_one and any(len(one) not in (len(first), *_OF_BYTE) for one in others)
 
 
 def _is_frame(words: list[str]) -> bool:
@@ -173,23 +169,19 @@ def _frames_in(file: BinaryIO, name: str) -> str | bytes:
     """Text if it is that; a file that is no text holds the bytes themselves."""
     data = file.read(_MOST + 1)
     if len(data) > _MOST:
-        raise UserError(
-            f"{name} holds more than {_MOST:,} bytes", "give fewer frames; `icdgen log` takes recordings of any size"
-        )
+        help = "give fewer frames; `icdgen log` takes recordings of any size"
+        raise UserError(f"{name} holds more than {_MOST:,} bytes", help)
     if all(byte in b"\t\n\r" or 32 <= byte < 127 for byte in data):
         return data.decode("ascii")
     return data
 
 
 def _print_text(found: Sequence[Reading]) -> None:
-    from icdgen import tables
-    from icdgen.values.text import to_text
-
     for number, one in enumerate(found):
         if number:
             click.echo("")
         if one.frame is not None:
-            click.echo(to_text(one.frame, tables.width_of(sys.stdout)), nl=False)
+            print_frame(one.frame)
         else:
             say("\n\nnote: ".join((one.title, *one.remarks)))
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from icdgen.commands.common import PATH, chosen, in_colour, print_findings, write_file
+from icdgen.commands.common import PATH, chosen, format_option, in_colour, print_findings, write_file
 from icdgen.diagnostics import Findings
 from icdgen.diff import reports
 from icdgen.errors import UserError
@@ -31,7 +31,7 @@ def _asked(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) -
 
 @click.command()
 @click.argument("sides", nargs=-1, required=True, metavar="OLD [NEW]")
-@click.option("--format", "form", type=click.Choice(reports.FORMATS), default="text", show_default=True)
+@format_option(*reports.FORMATS)
 @click.option("--out", "-o", type=PATH, help="File to write the report to (default: standard output).")
 @click.option(
     "--fail-on",

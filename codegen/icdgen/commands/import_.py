@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from icdgen.commands.common import PATH, in_colour, print_findings, say, write_file
+from icdgen.commands.common import PATH, format_option, in_colour, print_findings, say, write_file
 from icdgen.diagnostics import Findings
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ ABOUT_FILES = frozenset({"IMP002", "IMP003", "IMP005"})
     "--explore", is_flag=True, help="Say what kinds of tables there are, and propose a profile; import nothing."
 )
 @click.option("--pages", type=PAGES, help="Read these pages of a PDF only: 12 or 20-35.")
-@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@format_option("text", "json")
 @click.option("--jobs", type=click.IntRange(1, 64), help="Processes that read pages (default: one a core).")
 def import_(
     manual: Path,

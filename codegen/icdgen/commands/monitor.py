@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from icdgen.commands.common import SECONDS, icd_option, load_or_exit, say
+from icdgen.commands.common import SECONDS, format_option, icd_option, load_or_exit, say
 from icdgen.link.options import session_options
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ _SHORTEST_PAUSE = 0.1  # s between two attempts to reach a line that is gone
 @click.option("--every", type=SECONDS, default=1.0, show_default=True, help="Seconds between two rounds.")
 @click.option("--count", type=click.IntRange(1), metavar="N", help="End after N rounds.")
 @click.option("--once", is_flag=True, help="Short for --count 1.")
-@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@format_option("text", "json")
 def monitor(
     words: tuple[str, ...],
     icds: tuple[Path, ...],

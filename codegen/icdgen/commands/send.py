@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from icdgen.commands.common import icd_option, load_or_exit, say
+from icdgen.commands.common import format_option, icd_option, load_or_exit, say
 from icdgen.errors import UserError
 from icdgen.link.options import session_options
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 @icd_option
 @click.option("--raw", is_flag=True, help="Values are raw values, and are not held against limits.")
 @click.option("--yes", "-y", is_flag=True, help="Send also what is dangerous, without asking.")
-@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@format_option("text", "json")
 def send(words: tuple[str, ...], icds: tuple[Path, ...], raw: bool, yes: bool, form: str, **options: Any) -> None:
     """Send one telecommand and wait for its acknowledge, or for what the ICD says that it is answered with.
 

@@ -8,17 +8,15 @@ from pathlib import Path
 
 import click
 
-from icdgen.commands.common import icd_option, load_or_exit
+from icdgen.commands.common import format_option, icd_option, kind_option, load_or_exit
 
 
 @click.command()
 @click.argument("node", required=False)
 @click.argument("item", required=False)
 @icd_option
-@click.option(
-    "--kind", type=click.Choice(["telecommand", "telemetry", "configuration"]), help="Where an id alone is ambiguous."
-)
-@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@kind_option
+@format_option("text", "json")
 def show(node: str | None, item: str | None, icds: tuple[Path, ...], kind: str | None, form: str) -> None:
     """Show the nodes, the messages of NODE, or one ITEM of it: a message by id or name, an enumeration, a struct, an erratum.
 
