@@ -6,6 +6,7 @@ import io
 import os
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from importlib import import_module
 from keyword import iskeyword
 
@@ -120,28 +121,23 @@ def main(arguments: list[str], run: str = "") -> None:
         _show_anything()
         status = _run(arguments, run)
     except UserError as error:
-        _complain(str(error), error.help)
-        status = 2
+        status = _complain(str(error), error.help)
     except click.ClickException as error:
         context = getattr(error, "ctx", None)
-        _complain(error.format_message(), f"`{context.command_path} --help` says what there is" if context else "")
-        status = 2
+        help = f"`{context.command_path} --help` says what there is" if context else ""
+        status = _complain(error.format_message(), help)
     except (click.Abort, KeyboardInterrupt):
         _complain("interrupted")
         status = 130
     except BrokenPipeError:
         status = 141
     except OSError as error:
-        _complain(
-            f"{error.filename or 'the output cannot be written'}: {error.strerror}", "check the path, or the disk"
-        )
-        status = 2
+        place = error.filename or "the output cannot be written"
+        status = _complain(f"{place}: {error.strerror}", "check the path, or the disk")
     except RecursionError:
-        _complain("the input is nested too deeply", "an ICD needs five levels, icdgen.toml two")
-        status = 2
+        status = _complain("the input is nested too deeply", "an ICD needs five levels, icdgen.toml two")
     except MemoryError:
-        _complain("out of memory")
-        status = 2
+        status = _complain("out of memory")
     if status != 0:
         _drop_unwritten_output()
     sys.exit(status)
@@ -173,10 +169,10 @@ def _drop_unwritten_output() -> None:
         sys.stdout = None
 
 
-def _complain(message: str, help: str = "") -> None:
+def _complain(message: str, help: str = "") -> int:
+    """Says what is wrong, if there is anybody left to tell; the status of misuse."""
     lines = [f"icdgen: error: {line}" for line in message.split("\n")]
     lines += [f"  help: {line}" for line in help.split("\n") if line]
-    try:
+    with suppress(OSError):
         click.echo("\n".join(map(shown, lines)), err=True)
-    except OSError:
-        return  # there is nobody left to tell
+    return 2

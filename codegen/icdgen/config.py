@@ -74,17 +74,13 @@ def _read(path: Path) -> Config:
     for key, value in data.items():
         if key not in _KEYS:
             raise UserError(f"{path}: unknown key `{key}`", f"known keys: {', '.join(_KEYS)}")
-        if not isinstance(value, _KEYS[key]) or (
-            isinstance(value, list) and not all(isinstance(v, str) for v in value)
-        ):
-            kind = "a list of texts" if _KEYS[key] is list else "a text"
-            raise UserError(
-                f"{path}: `{key}` must be {kind}", f'for instance {key} = {["..."] if _KEYS[key] is list else "..."}'
-            )
-        if any(not text or "\0" in text for text in (value if isinstance(value, list) else [value])):
-            raise UserError(
-                f"{path}: `{key}` holds an empty text, or a NUL character", "write a path or a name, or take it out"
-            )
+        texts = value if isinstance(value, list) else [value]
+        if not isinstance(value, _KEYS[key]) or not all(isinstance(one, str) for one in texts):
+            kind, example = ("a list of texts", ["..."]) if _KEYS[key] is list else ("a text", "...")
+            raise UserError(f"{path}: `{key}` must be {kind}", f"for instance {key} = {example}")
+        if any(not one or "\0" in one for one in texts):
+            help = "write a path or a name, or take it out"
+            raise UserError(f"{path}: `{key}` holds an empty text, or a NUL character", help)
     base = path.parent
     return Config(
         path,
