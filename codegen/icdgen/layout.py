@@ -5,7 +5,7 @@ A field is a row of pieces, each a run of bits of one byte. See 'Bits' in ``docs
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -95,29 +95,12 @@ class Gap(NamedTuple):
 
 def gaps(message: Message | Struct, node: Node) -> tuple[Gap, ...]:
     """Bits of the frame that no field covers, in order."""
-    if any(field.bit_order not in ("", node.bit_order) for field in message.owners):
-        return tuple(_gaps_among(message, node))
-    found, reached = [], 0
-    for field in sorted(message.owners, key=lambda f: f.at):
-        if field.at > reached:
-            found.append(Gap(reached, field.at - reached))
-        reached = max(reached, field.at + field.bits)
-    if reached < message.length * 8:
-        found.append(Gap(reached, message.length * 8 - reached))
-    return tuple(found)
-
-
-def _gaps_among(message: Message | Struct, node: Node) -> Iterator[Gap]:
-    """`gaps` where fields count bits in different ways."""
-    covered = 0
+    free = bytearray(b"\1" * (message.length * 8))  # a byte for each bit, in the order in which the node counts them
     for field in message.owners:
-        covered |= mask(field, node)
-    start = None
-    for at in range(message.length * 8 + 1):
-        weight = at if node.bit_order == "lsb0" else at // 8 * 8 + 7 - at % 8
-        is_free = at < message.length * 8 and not covered >> weight & 1
-        if is_free and start is None:
-            start = at
-        elif not is_free and start is not None:
-            yield Gap(start, at - start)
-            start = None
+        if field.bit_order in ("", node.bit_order):
+            free[field.at : field.at + field.bits] = bytes(field.bits)
+            continue
+        for piece in pieces(field, node):
+            first = 8 * piece.byte + (piece.shift if node.bit_order == "lsb0" else 8 - piece.shift - piece.bits)
+            free[first : first + piece.bits] = bytes(piece.bits)
+    return tuple(Gap(run.start(), len(run.group())) for run in re.finditer(b"\1+", free))
