@@ -16,13 +16,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from icdgen import codec
-from icdgen.icd.model import CONFIGURATION, Message
+from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Message
 from icdgen.protocol import can, i2c, uart
 from icdgen.protocol.errors import BusyError, ChecksumError, LengthError, UnknownIdError
 from icdgen.protocol.facts import Facts, need
 from icdgen.protocol.sections import CAN, I2C, UART, Settings
 
-TELECOMMAND, TELEMETRY = "telecommand", "telemetry"
 IDLE, HOLD, WAIT, PAUSE, POLL = "idle", "hold", "wait", "pause", "poll"
 
 Event = dict[str, Any]

@@ -32,11 +32,12 @@ def field_of(node: Node, row: Section, in_trailer: bool) -> EnvelopeField:
 def values_of(row: Section, little: bool) -> tuple[int, int]:
     """The values that a row holds in each direction; bytes stand in the order in which they are sent."""
     value = row.get("value", 0)
-    both = [value.get(direction, 0) for direction in DIRECTIONS] if isinstance(value, Mapping) else [value, value]
-    first, second = (
-        int.from_bytes(bytes(one), "little" if little else "big") if isinstance(one, list) else one for one in both
-    )
-    return first, second
+    sent, came = (value.get(direction, 0) if isinstance(value, Mapping) else value for direction in DIRECTIONS)
+    return _number(sent, little), _number(came, little)
+
+
+def _number(value: Any, little: bool) -> int:
+    return int.from_bytes(bytes(value), "little" if little else "big") if isinstance(value, list) else value
 
 
 def rows_of(

@@ -139,10 +139,7 @@ def i2c_reply(known: Facts, request: Request) -> dict[str, Any]:
 
 def log_decode(known: Facts, request: Request) -> dict[str, Any]:
     log = logs.decode(known, octets(request))
-    entries = [
-        {"seconds": e.seconds, "milliseconds": e.milliseconds, "frames": [_frame(f) for f in e.frames]}
-        for e in log.entries
-    ]
+    entries = [{**e._asdict(), "frames": [_frame(f) for f in e.frames]} for e in log.entries]
     return {"mask": None if log.mask is None else log.mask.hex(), "entries": entries, "truncated": log.truncated}
 
 

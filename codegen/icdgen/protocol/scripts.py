@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar
 
+from icdgen.icd.model import TELECOMMAND, TELEMETRY
 from icdgen.protocol import can, programs, transfer
 from icdgen.protocol import stream_client as enveloped
-from icdgen.protocol.client import TELECOMMAND, TELEMETRY, Client, Event, Request
+from icdgen.protocol.client import Client, Event, Request
 from icdgen.protocol.errors import BusyError, LengthError, Refused, UnknownIdError
 from icdgen.protocol.facts import Facts, Unsupported
 from icdgen.protocol.request_keys import Refusal, flag, hex_bytes, mappings, number, octets, text
@@ -167,6 +168,11 @@ def _asked(asked: Request | None) -> dict[str, Any] | None:
     return {"telecommand": asked.id, "bytes": asked.data.hex(), "repeat": asked.repeat}
 
 
+def _file(request: dict[str, Any]) -> tuple[int, int]:
+    """Type and counter."""
+    return number(request, "type", 0, 255), number(request, "counter", 0, 255)
+
+
 def procedure_of(known: Facts, request: dict[str, Any]) -> transfer.Procedure:
     """The procedure that a request of the op ``file`` means."""
     name = text(request, "do")
@@ -176,16 +182,12 @@ def procedure_of(known: Facts, request: dict[str, Any]) -> transfer.Procedure:
     if name == "download":
         bus = _bus(request)
         size = number(request, "size") if "size" in request else None
-        return transfer.Download(
-            known, bus, number(request, "type", 0, 255), number(request, "counter", 0, 255), size, block
-        )
+        return transfer.Download(known, bus, *_file(request), size, block)
     if name == "upload":
         times = number(request, "times", 1, LONGEST, 1)
         return transfer.Upload(known, number(request, "destination", 0, 255), octets(request) * times, block)
     if name == "erase":
-        return transfer.Erase(
-            known, number(request, "type", 0, 255), number(request, "counter", 0, 255), flag(request, "all")
-        )
+        return transfer.Erase(known, *_file(request), flag(request, "all"))
     if name == "format":
         return transfer.Format(known)
     if name == "program_copy":

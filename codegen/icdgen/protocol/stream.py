@@ -123,14 +123,13 @@ class Decoder:
     def _front(self) -> Generator[Event, None, int | None]:
         """What the buffer begins with: bytes to take away, None while that is not decided."""
         form, buffer = self.form, bytes(self.buffer)
-        header = [field for field in form.fields if not field.in_trailer]
         if not buffer:
             return None
-        for field in header:
-            if field.role == "constant" and field.at + field.size <= len(buffer):
-                if _get(form, field, buffer) != field.values[self.direction == "telemetry"]:
-                    self.discarded += 1
-                    return 1
+        for field in form.fields:
+            is_there = not field.in_trailer and field.at + field.size <= len(buffer)
+            if is_there and self._is_wrong(field, buffer):
+                self.discarded += 1
+                return 1
         if len(buffer) < form.header_bytes:
             return None
         place = form.of("length")
@@ -162,21 +161,24 @@ class Decoder:
         yield event
         return event.event == MESSAGE
 
+    def _is_wrong(self, field: EnvelopeField, frame: bytes) -> bool:
+        """Whether it is a constant that has another value."""
+        expected = field.values[self.direction == "telemetry"]
+        return field.role == "constant" and _get(self.form, field, frame) != expected
+
     def _judged(self, frame: bytes) -> Verdict:
         form = self.form
         size = len(frame) - form.header_bytes - form.trailer_bytes
         if size < 0:
             return Verdict(Event(BAD_LENGTH), False)
-        for field in form.fields:
-            if field.role == "constant" and _get(form, field, frame) != field.values[self.direction == "telemetry"]:
-                return Verdict(Event(FRAMING), False)
+        if any(self._is_wrong(field, frame) for field in form.fields):
+            return Verdict(Event(FRAMING), False)
         place = form.of("length")
         if place and _get(form, place, frame) - form.length_plus != size:
             return Verdict(Event(BAD_LENGTH), False)
         place = form.of("id")
         id = _get(form, place, frame) if place else self.rows[0].id if self.rows else 0
-        number = next((number for number, row in enumerate(self.rows) if row.id == id), None)
-        row = None if number is None else self.rows[number]
+        number, row = next(((number, row) for number, row in enumerate(self.rows) if row.id == id), (0, None))
         place = form.of("checksum")
         if place and form.check:
             if form.check.is_seeded and row is None:
@@ -190,4 +192,4 @@ class Decoder:
         data = frame[form.header_bytes : form.header_bytes + size]
         fields = {field.role: field for field in form.fields}
         values = tuple((role, _get(form, fields[role], frame)) for role in GIVEN if role in fields)
-        return Verdict(Event(MESSAGE, id, data, values), True, number or 0)
+        return Verdict(Event(MESSAGE, id, data, values), True, number)

@@ -10,8 +10,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from icdgen.icd.model import TELECOMMAND, TELEMETRY
 from icdgen.protocol import stream
-from icdgen.protocol.client import HOLD, IDLE, TELECOMMAND, TELEMETRY, WAIT, Event, Request
+from icdgen.protocol.client import HOLD, IDLE, WAIT, Event, Request
 from icdgen.protocol.envelope import Stream, StreamRow
 from icdgen.protocol.errors import BusyError, LengthError, UnknownIdError
 from icdgen.protocol.facts import Facts, Unsupported, need

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from icdgen import codec
+from icdgen.icd.model import TELECOMMAND, TELEMETRY
 from icdgen.protocol import crc, files
-from icdgen.protocol.client import TELECOMMAND, TELEMETRY, Request
+from icdgen.protocol.client import Request
 from icdgen.protocol.errors import RangeError, TooLongError
 from icdgen.protocol.facts import Facts, need
 from icdgen.protocol.sections import UART, Step
@@ -145,11 +146,12 @@ class Procedure:
 
 
 class Transfer(Procedure):
-    """A procedure of file transfer."""
+    """A procedure of file transfer. ``block``: bytes that are transferred together, no more than the ICD says."""
 
-    def __init__(self, known: Facts) -> None:
+    def __init__(self, known: Facts, block: int | None = None) -> None:
         super().__init__(known)
         self.files = need(known.files, "file_transfer")
+        self.block = min(block or self.files.block_bytes, self.files.block_bytes)
 
     def hole_maps(self, count: int) -> list[Step]:
         """The messages that carry the map of a block of so many packets, each with its field for the role ``map``."""
@@ -189,10 +191,9 @@ class Download(Transfer):
     def __init__(
         self, known: Facts, bus: str, type: int, counter: int, size: int | None, block: int | None = None
     ) -> None:
-        super().__init__(known)
+        super().__init__(known, block)
         self.form = need(self.files.download, "file_transfer.download")
         self.bus, self.type, self.counter, self.size = bus, type, counter, size
-        self.block = min(block or self.files.block_bytes, self.files.block_bytes)
         self.blocks: list[tuple[int, bytes]] = []
         self.offset = 0
         self.got: dict[int, bytes] = {}  # packets of this block by position
@@ -279,7 +280,7 @@ class Upload(Transfer):
     """
 
     def __init__(self, known: Facts, destination: int, data: bytes, block: int | None = None) -> None:
-        super().__init__(known)
+        super().__init__(known, block)
         form = self.form = need(self.files.upload, "file_transfer.upload")
         if form.destinations and destination not in form.destinations:
             raise RangeError("destination")
@@ -287,7 +288,6 @@ class Upload(Transfer):
         if most is not None and len(data) > most:
             raise TooLongError(most, len(data))
         self.destination, self.data = destination, data
-        self.block = min(block or self.files.block_bytes, self.files.block_bytes)
         self.sent = 0
 
     def _run(self) -> Steps:
@@ -318,12 +318,10 @@ class Upload(Transfer):
                 missing = yield from self._missing(count)
             checksum, _ = yield from self.telemetry(form.checksum)
             if checksum["checksum"] == crc.compute(need(self.known.crc16, "crc16"), covered):
-                yield from self.telecommand(
-                    form.finalize, destination=self.destination, offset=self.sent, length=len(data)
-                )
-                finalized, _ = yield from self.poll(
-                    form.finalized, "busy", 0, form.poll_interval, form.finalize_timeout
-                )
+                what = {"destination": self.destination, "offset": self.sent, "length": len(data)}
+                yield from self.telecommand(form.finalize, True, **what)
+                poll = self.poll(form.finalized, "busy", 0, form.poll_interval, form.finalize_timeout)
+                finalized, _ = yield from poll
                 if not finalized["error"]:
                     return
             if rounds == form.rounds:

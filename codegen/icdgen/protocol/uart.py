@@ -47,21 +47,16 @@ class Decoder:
         self.buffer = bytearray()
         self.inside = False
         self.escaped = False
-        self.run = 0  # bytes of the stream since the last decision
+        self.pending = 0  # bytes of the stream about which nothing is decided yet
         self.discarded = 0  # bytes of the stream that became part of no message
 
     def feed(self, data: bytes) -> list[Event]:
         """Takes the next bytes of the stream."""
         return [event for byte in data for event in self._byte(byte)]
 
-    @property
-    def pending(self) -> int:
-        """Bytes of the stream about which nothing is decided yet."""
-        return self.run
-
     def _byte(self, byte: int) -> Iterator[Event]:
         framing = self.framing
-        self.run += 1
+        self.pending += 1
         if not self.inside:
             if self.escaped and byte == framing.start:
                 self._start()
@@ -85,14 +80,14 @@ class Decoder:
             yield from self._data(byte)
 
     def _start(self) -> None:
-        self.discarded += self.run - 2  # all but the two bytes of the start itself
-        self.run, self.inside, self.escaped = 2, True, False
+        self.discarded += self.pending - 2  # all but the two bytes of the start itself
+        self.pending, self.inside, self.escaped = 2, True, False
         self.buffer.clear()
 
     def _outside(self, escaped: bool) -> None:
         """Drops what was decided to be no message; an escape byte may still begin one."""
-        self.discarded += self.run - escaped
-        self.run, self.inside, self.escaped = int(escaped), False, escaped
+        self.discarded += self.pending - escaped
+        self.pending, self.inside, self.escaped = int(escaped), False, escaped
         self.buffer.clear()
 
     def _data(self, byte: int) -> Iterator[Event]:
@@ -105,7 +100,7 @@ class Decoder:
     def _end(self) -> Iterator[Event]:
         if self.buffer:
             yield Event(MESSAGE, bytes(self.buffer))
-            self.run = 0
+            self.pending = 0
         else:
             yield Event(EMPTY)
         self._outside(False)

@@ -36,9 +36,8 @@ class MessageVectors:
     """All that is demanded of the code of one message."""
 
     message: Message
-    default: (
-        Raw  # a fresh message: 0, empty, or what ``const`` says; of views what they read; without what is not there
-    )
+    # of a fresh message: 0, empty, or what ``const`` says; of views, what they read; without what is not there
+    default: Raw
     rows: tuple[Row, ...]
     lengths: tuple[int, ...]  # frames of these lengths are refused
     miscounted: tuple[bytes, ...]  # and these, which do not have as many elements as they say

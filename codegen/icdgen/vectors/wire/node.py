@@ -6,8 +6,9 @@ from random import Random
 from typing import Any
 
 from icdgen import codec
+from icdgen.icd.model import TELECOMMAND
 from icdgen.protocol import crc, files
-from icdgen.protocol.client import TELECOMMAND, Request
+from icdgen.protocol.client import Request
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import UART, Step
 

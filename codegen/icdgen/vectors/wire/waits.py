@@ -6,9 +6,8 @@ from collections.abc import Iterator
 from random import Random
 from typing import Any
 
-from icdgen.icd.model import Message
+from icdgen.icd.model import TELEMETRY, Message
 from icdgen.protocol import i2c
-from icdgen.protocol.client import TELEMETRY
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.scripts import procedure_of
 from icdgen.protocol.sections import CAN, I2C, UART, Step
