@@ -74,10 +74,10 @@ class Program:
     def refuse(self, message: bytes) -> Outcome:
         """Refuses a telecommand without looking at it."""
         self.count("telecommands")
-        outcome = self._refusal("parameter")
-        self.last = (message[0], True, outcome.code, outcome.parameter)
         known = self.known.telecommands.get(message[0])
-        return Outcome(outcome.code, 0, known is None or known.acknowledge)
+        outcome = self._refusal("parameter", acknowledge=known is None or known.acknowledge)
+        self.last = (message[0], True, outcome.code, outcome.parameter)
+        return outcome
 
     def frame(self, now: int, id: int) -> bytes | None:
         """The frame with that id; None if there is none."""
@@ -134,7 +134,7 @@ class Program:
     def _take(self, now: int, message: bytes, bus: str) -> Outcome:
         known = self.known.telecommands.get(message[0])
         if known is None or known.name in self.unsupported:
-            return Outcome(self._refusal("unknown_id").code, 0, known is None or known.acknowledge)
+            return self._refusal("unknown_id", acknowledge=known is None or known.acknowledge)
         data, form = message[1:], self.known.checksum
         if form and bus in form.telecommand_buses and len(data) == known.length + form.bytes:
             data = data[: known.length]
@@ -157,9 +157,8 @@ class Program:
             return self._refusal("parameter", refused.index)
         if known.name == self._log_role().get("message"):
             self._plan_log(now)
-        if known.expects_reset:
-            return Outcome(self.known.errors.get("none", 0), 0, False, known)
-        return Outcome(self.known.errors.get("none", 0), 0, known.acknowledge)
+        code, reset = self.known.errors.get("none", 0), known if known.expects_reset else None
+        return Outcome(code, acknowledge=known.acknowledge and not reset, reset=reset)
 
     def _unsupported(self) -> set[str]:
         """Telecommands of a procedure that the ICD gives to other nodes only."""
@@ -168,8 +167,8 @@ class Program:
             return set()
         return {step["message"] for step in given.values() if isinstance(step, dict) and "message" in step}
 
-    def _refusal(self, reason: str, parameter: int = 0) -> Outcome:
-        return Outcome(self.known.errors.get(reason, 1), parameter)
+    def _refusal(self, reason: str, parameter: int = 0, acknowledge: bool = True) -> Outcome:
+        return Outcome(self.known.errors.get(reason, 1), parameter, acknowledge)
 
     def _identify(self) -> None:
         step = self.known.identification

@@ -74,12 +74,9 @@ async def tcp(server: Server, host: str, port: int) -> tuple[str, object]:
     """Listens; where."""
 
     async def serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        try:
+        # The client is gone, or the simulator ends: asyncio would print the cancellation of what it started itself.
+        with suppress(OSError, asyncio.CancelledError):
             await _served(server, reader, writer)
-        except OSError:
-            return  # the client is gone
-        except asyncio.CancelledError:
-            return  # the simulator ends; asyncio would print the cancellation of what it started itself
 
     try:
         listening = await asyncio.start_server(serve, host, port)
@@ -164,7 +161,7 @@ async def pty(server: Server) -> tuple[str, object]:
     def read() -> None:
         try:
             data = os.read(master, 65536)
-        except (BlockingIOError, OSError):
+        except OSError:
             return
         server.received(data)
 
