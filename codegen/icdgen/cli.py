@@ -23,10 +23,7 @@ _COMMANDS = (
     "monitor", "send",
 )  # fmt: skip
 _DEFAULT = "generate"
-_FOLDERS = {  # option -> what lies there, and the function of `icdgen.shipped` that says where
-    "--cmake-dir": ("the CMake module, for CMAKE_MODULE_PATH", "cmake"),
-    "--examples-dir": ("the example programs and ICDs", "examples"),
-}
+_FOLDERS = ("--cmake-dir", "--examples-dir")
 _WHOLE = 10_000  # characters of a sentence
 
 
@@ -83,19 +80,18 @@ def _refuse_mistyped(word: str) -> None:
     raise UserError(f"there is no command `{word}`, and no file of that name", meant or "`icdgen --help` lists them")
 
 
-def _show_folder(ctx: click.Context, option: click.Parameter, wanted: bool) -> None:
-    if wanted:
-        from icdgen import shipped
+def _folder(name: str, what: str, place: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """The option that says where what is shipped lies, as the function ``place`` of `icdgen.shipped` knows."""
 
-        _, place = _FOLDERS[option.opts[0]]
-        click.echo(getattr(shipped, place)().as_posix())  # as CMake takes paths everywhere
-        ctx.exit()
+    def show(ctx: click.Context, option: click.Parameter, wanted: bool) -> None:
+        if wanted:
+            from icdgen import shipped
 
+            click.echo(getattr(shipped, place)().as_posix())  # as CMake takes paths everywhere
+            ctx.exit()
 
-def _folder(name: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """The option that says where what is shipped lies."""
-    help = f"Show the folder of {_FOLDERS[name][0]}, and exit."
-    return click.option(name, is_flag=True, expose_value=False, is_eager=True, callback=_show_folder, help=help)
+    help = f"Show the folder of {what}, and exit."
+    return click.option(name, is_flag=True, expose_value=False, is_eager=True, callback=show, help=help)
 
 
 @click.group(
@@ -105,8 +101,8 @@ def _folder(name: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
     epilog="`icdgen --lang c` is short for `icdgen generate --lang c`. Exit status: 0 clean, 1 findings, 2 misuse.",
 )
 @click.version_option(__version__, prog_name="icdgen")
-@_folder("--cmake-dir")
-@_folder("--examples-dir")
+@_folder("--cmake-dir", "the CMake module, for CMAKE_MODULE_PATH", "cmake")
+@_folder("--examples-dir", "the example programs and ICDs", "examples")
 @click.pass_context
 def icdgen(ctx: click.Context) -> None:
     """Code, golden vectors and documentation from validated device ICDs."""

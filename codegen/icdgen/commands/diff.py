@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -98,10 +99,9 @@ def _acceptances(path: Path | None) -> list[Acceptance]:
     try:
         return accepted.read(found, name)[0]
     except Findings as error:
-        try:
-            texts = {name: found.read_text(encoding="utf-8", errors="replace")}
-        except OSError:
-            texts = {}
+        texts = {}
+        with suppress(OSError):
+            texts[name] = found.read_text(encoding="utf-8", errors="replace")
         print_findings(error.findings, texts, "text", err=True)
         sys.exit(2)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -103,18 +103,18 @@ def import_(
         sys.exit(1)
     if explore:
         _explore(result, vocabulary, form)
-        if page is not None:
-            _write_page(page, result)
-        return
-    if not dry_run:
-        targets.write(result.targets)
-    if form == "json":
-        click.echo(console.as_json(result))
     else:
-        _say(result, dry_run)
+        if not dry_run:
+            targets.write(result.targets)
+        if form == "json":
+            click.echo(console.as_json(result))
+        else:
+            _say(result, dry_run)
     if page is not None:
-        _write_page(page, result)
-    sys.exit(1 if result.failed else 0)
+        from icdgen.importer import html
+
+        write_file(page, html.report(result), "choose another place with --report")
+    sys.exit(1 if result.failed and not explore else 0)
 
 
 def _define(file: Path, reader: Reader, out: Path, update: bool, dry_run: bool, form: str) -> None:
@@ -163,8 +163,8 @@ def _say_files(targets: list[Target], dry_run: bool) -> None:
 
     if targets:
         say("\n".join(console.files(targets, dry_run)))
-    if targets and not dry_run:
-        _next_step(targets)
+        if not dry_run:
+            _next_step(targets)
 
 
 def _refuse(error: Findings, manual: Path, form: str) -> None:
@@ -183,17 +183,9 @@ def _refuse(error: Findings, manual: Path, form: str) -> None:
     if about_lines:
         texts = {}
         for name in {finding.place.file for finding in about_lines}:
-            try:
+            with suppress(OSError, UnicodeDecodeError):
                 texts[name] = Path(name).read_text(encoding="utf-8")
-            except (OSError, UnicodeDecodeError):
-                continue
         print_findings(about_lines, texts, "text", err=True)
-
-
-def _write_page(page: Path, result: Result) -> None:
-    from icdgen.importer import html
-
-    write_file(page, html.report(result), "choose another place with --report")
 
 
 def _next_step(targets: list[Target]) -> None:
@@ -201,10 +193,8 @@ def _next_step(targets: list[Target]) -> None:
     from icdgen.loading import load
 
     paths = [target.path for target in targets]
-    loaded = load(paths)
-    names = " ".join(str(path) for path in paths)
-    if loaded.findings:
-        count = len(loaded.findings)
+    loaded, names = load(paths), " ".join(map(str, paths))
+    if count := len(loaded.findings):
         say(f"next: `icdgen check {names}` has {count} finding{'s' if count != 1 else ''}")
     else:
         say(f"`icdgen check {names}`: no findings")

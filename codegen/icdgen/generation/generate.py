@@ -48,9 +48,8 @@ def run(job: Job) -> Outcome:
     if job.templates is not None and not os.path.isdir(job.templates):
         raise UserError(f"there is no folder {job.templates}", "--templates names a folder of templates")
     if job.measured is not None and not any(hasattr(backend, "measured") for backend in chosen):
-        raise UserError(
-            "measurements go into the assurance pack only", "add `--lang assurance`, or leave --measured out"
-        )
+        help = "add `--lang assurance`, or leave --measured out"
+        raise UserError("measurements go into the assurance pack only", help)
     plug_ins = [backend for backend in chosen if backend.name not in backends.names()]
     lined = any(getattr(backend, "needs_lines", False) for backend in chosen)
     outcome = Outcome(load_checked(job.icds, plug_ins, lined), may_be_remembered=not plug_ins and not lined)

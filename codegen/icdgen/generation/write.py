@@ -85,9 +85,8 @@ def apply(made: Plan) -> None:
             (made.out / name).unlink(missing_ok=True)
             _remove_empty(made.out, (made.out / name).parent)
     except OSError as error:
-        raise UserError(
-            f"cannot write {error.filename}: {error.strerror}", "choose another folder with --out"
-        ) from None
+        what = f"cannot write {error.filename}: {error.strerror}"
+        raise UserError(what, "choose another folder with --out") from None
 
 
 def replace(target: str | Path, data: bytes) -> None:

@@ -72,13 +72,13 @@ class Socket:
 
     def read(self, timeout: float) -> bytes:
         try:
-            with _failures(self.name, ConnectionRefusedError, help="is it running?"):
-                self.socket.settimeout(max(timeout, 1e-6))
-                data = self.socket.recv(65536)
+            self.socket.settimeout(max(timeout, 1e-6))
+            data = self.socket.recv(65536)
         except (TimeoutError, BlockingIOError):
             return b""
         except OSError as error:
-            raise PortError(f"{self.name}: {error.strerror or error}") from None
+            help = "is it running?" if isinstance(error, ConnectionRefusedError) else ""
+            raise PortError(f"{self.name}: {error.strerror or error}", help) from None
         if not data and self.stream:
             raise PortError(f"{self.name}: the other end closed the connection")
         return data

@@ -13,7 +13,7 @@ from icdgen_runtime._derived import column as derived_column
 
 from icdgen import codec
 from icdgen.errors import UserError
-from icdgen.icd.model import Enum, Node
+from icdgen.icd.model import Node
 from icdgen.logfile.columns import TIME, Column, Plan
 from icdgen.logfile.source import Source
 
@@ -113,7 +113,6 @@ class ColumnReader:
 
         self.column, self.stride = column, entry_bytes
         self.operands = [ColumnReader(one, entry_bytes) for one in column.operands]
-        self.enum: Enum | None = None
         self.names: pa.Array | None = None  # of all values, where there are few
         metadata = {"frame": column.frame, "field": column.field.name if column.field else "", "unit": column.unit}
         if column.field and column.field.enum:
@@ -135,7 +134,6 @@ class ColumnReader:
         if column.kind == "float":
             return pa.float32() if column.field.bits == 32 else pa.float64()
         if column.kind == "enum":
-            self.enum = column.field.enum
             if column.field.bits > 8 or column.field.signed:
                 return pa.dictionary(pa.int32(), pa.string())
             self.names = pa.array(self._named(range(1 << column.field.bits)))
@@ -189,7 +187,8 @@ class ColumnReader:
         return columns_on_curve(np, column.curve.pieces, raw) if column.curve else raw
 
     def _named(self, values: Iterable[int]) -> list[str]:
-        members = ((value, self.enum.member_of(value) if self.enum else None) for value in values)
+        enum = self.column.field.enum if self.column.field else None
+        members = ((value, enum.member_of(value) if enum else None) for value in values)
         return [one.name if one else f"unknown {value}" for value, one in members]
 
     def _raw(self, data: bytes) -> np.ndarray:

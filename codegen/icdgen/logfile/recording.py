@@ -106,10 +106,8 @@ class Recording:
             help = "`--direction` says who sent what was recorded"
             raise UserError(f"{names} is no {direction} of {node.name}", help)
         if self.form.delimited_by == PACKET:
-            raise UserError(
-                f"a message of {node.name} ends with the packet that carries it, which a file does not tell",
-                "`icdgen decode` takes packets, one by one",
-            )
+            what = f"a message of {node.name} ends with the packet that carries it, which a file does not tell"
+            raise UserError(what, "`icdgen decode` takes packets, one by one")
         try:
             self.size = path.stat().st_size
             if path.is_dir():
