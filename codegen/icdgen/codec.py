@@ -279,9 +279,8 @@ def value_double(field: Field, raw: int) -> float:
 
 def raw_from_physical(field: Field, value: Fraction | int | float) -> int:
     """Nearest raw value, ties to even. Raises `CodecError` if it is not finite or does not fit."""
-    if isinstance(value, float):
-        if value != value or value in (float("inf"), float("-inf")):
-            raise CodecError(f"{field.name!r} takes a finite number, not {value}")
+    if isinstance(value, float) and not math.isfinite(value):
+        raise CodecError(f"{field.name!r} takes a finite number, not {value}")
     if field.curve is not None:
         return _raw_on_curve(field, field.curve, value if isinstance(value, float) else to_double(Fraction(value)))
     exact = Fraction(value)

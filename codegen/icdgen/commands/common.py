@@ -140,7 +140,11 @@ def load_or_exit(icds: tuple[Path, ...]) -> Loaded:
     """The checked ICDs; prints what is wrong and exits with 1 if anything is."""
     from icdgen.model_cache import load_checked
 
-    loaded = load_checked(chosen(icds)[0])
+    return right_or_exit(load_checked(chosen(icds)[0]))
+
+
+def right_or_exit(loaded: Loaded) -> Loaded:
+    """What was loaded; prints what is wrong and exits with 1 if anything is."""
     if not loaded.ok:
         print_findings(loaded.findings, loaded.texts, "text", err=True)
         sys.exit(1)

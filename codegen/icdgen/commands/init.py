@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from icdgen.commands.common import chosen, icd_option, print_findings, say
+from icdgen.commands.common import chosen, icd_option, right_or_exit, say
 
 if TYPE_CHECKING:
     from icdgen.starter.style import Style
@@ -45,10 +44,7 @@ def _style(origin: str, icds: tuple[Path, ...]) -> Style:
     paths = chosen(icds)[0]
     if not icds and not all(path.exists() for path in paths):
         paths = [shipped.icds()]  # icdgen.toml was written before its ICDs
-    loaded = load(paths)
-    if not loaded.ok:
-        print_findings(loaded.findings, loaded.texts, "text", err=True)
-        sys.exit(1)
+    loaded = right_or_exit(load(paths))
     try:
         node = find_node(loaded.icd, origin)
     except NotFound:

@@ -40,48 +40,37 @@ def _allowed(name: str, form: Operation) -> Requests:
         yield "a program that it may not be asked for", _asked(name, program, [{"at": 0}])
 
 
-class _Frames:
-    """Frames of the progress, by role."""
-
-    def __init__(self, known: Facts, form: Operation) -> None:
-        self.known, self.form = known, form
-        self.program = form.programs[0] if form.programs else 1
-
-    def row(self, at: int, done: bool, **values: int) -> dict[str, Any]:
-        step = self.form.progress
-        bits = {field.name: field.bits for field in step.message.fields}
-        told = {"busy": int(not done), "ready": int(done), "program": self.program, **values}
-        given = {role: told.get(role, 0) & (1 << bits[name]) - 1 for role, name in step.fields.items()}
-        frame = step.frame(self.known.node, given)
-        return {"at": at, "event": {"event": "done", "bytes": frame.hex()}}
-
-
 def _ends(known: Facts, name: str, form: Operation) -> Requests:
-    frames, pause = _Frames(known, form), form.poll_interval
+    step, pause, end = form.progress, form.poll_interval, 1 + form.timeout
+    program = form.programs[0] if form.programs else 1
+    bits = {field.name: field.bits for field in step.message.fields}
     begin: Script = [{"at": 0}, {"at": 1, "event": ACKNOWLEDGED}]
     found = {"size": 0x12345678, "checksum": 0x9ABCDEF0}
-    program, end = frames.program, 1 + form.timeout
+
+    def row(at: int, done: bool, **values: int) -> dict[str, Any]:
+        """A frame of the progress comes, with these values by role."""
+        told = {"busy": int(not done), "ready": int(done), "program": program, **values}
+        given = {role: told.get(role, 0) & (1 << bits[name]) - 1 for role, name in step.fields.items()}
+        return {"at": at, "event": {"event": "done", "bytes": step.frame(known.node, given).hex()}}
 
     def case(why: str, *rows: dict[str, Any]) -> tuple[str, dict[str, Any]]:
         return why, _asked(name, program, [*begin, *rows])
 
-    yield case("done at once", frames.row(2, True, **found))
+    yield case("done at once", row(2, True, **found))
     yield case(
         "done after two polls",
-        frames.row(2, False), {"at": 1 + pause}, {"at": 2 + pause},
-        frames.row(3 + pause, False), {"at": 3 + 2 * pause}, frames.row(4 + 2 * pause, True, **found),
+        row(2, False), {"at": 1 + pause}, {"at": 2 + pause},
+        row(3 + pause, False), {"at": 3 + 2 * pause}, row(4 + 2 * pause, True, **found),
     )  # fmt: skip
-    yield case("it fails", frames.row(2, False), {"at": 2 + pause}, frames.row(3 + pause, True, error=1))
-    yield case("it fails, and is busy all the same", frames.row(2, False, error=1))
+    yield case("it fails", row(2, False), {"at": 2 + pause}, row(3 + pause, True, error=1))
+    yield case("it fails, and is busy all the same", row(2, False, error=1))
     yield case(
         "a frame about another program",
-        frames.row(2, True, program=program + 1, **found), {"at": 2 + pause}, frames.row(3 + pause, True, **found),
+        row(2, True, program=program + 1, **found), {"at": 2 + pause}, row(3 + pause, True, **found),
     )  # fmt: skip
-    yield case("busy for ever", frames.row(end - 1, False), {"at": end - 1 + pause}, frames.row(end + pause, False))
-    yield case(
-        "done at the last moment", frames.row(end - 1, False), {"at": end - 1 + pause}, frames.row(end + pause, True)
-    )
-    yield case("given up", frames.row(end, False))
+    yield case("busy for ever", row(end - 1, False), {"at": end - 1 + pause}, row(end + pause, False))
+    yield case("done at the last moment", row(end - 1, False), {"at": end - 1 + pause}, row(end + pause, True))
+    yield case("given up", row(end, False))
     yield case("a poll without a reply", {"at": 2, "event": {"event": "timeout"}})
     yield "refused", _asked(name, program, [{"at": 0}, {"at": 1, "event": {"event": "refused", "code": 3}}])
     yield "no reply", _asked(name, program, [{"at": 0}, {"at": 1, "event": {"event": "timeout"}}])
