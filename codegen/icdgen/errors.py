@@ -9,3 +9,8 @@ class UserError(Exception):
     def __init__(self, message: str, help: str = "") -> None:
         super().__init__(message)
         self.help = help
+
+
+def unreadable(path: object, error: OSError, help: str = "check the path") -> UserError:
+    """What is said of a file that cannot be read."""
+    return UserError(f"cannot read {path}: {error.strerror}", help)

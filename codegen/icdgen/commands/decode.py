@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, BinaryIO
 import click
 
 from icdgen.commands.common import format_option, icd_option, kind_option, load_or_exit, print_frame, say
-from icdgen.errors import UserError
+from icdgen.errors import UserError, unreadable
 
 if TYPE_CHECKING:
     from icdgen.icd.model import Icd, Message
@@ -145,7 +145,7 @@ def _content(words: list[str]) -> str | bytes:
         with open(path, "rb") as file:
             return _frames_in(file, path)
     except OSError as error:
-        raise UserError(f"cannot read {path}: {error.strerror}", "check the path after the @") from None
+        raise unreadable(path, error, "check the path after the @") from None
 
 
 def _is_bytes(text: str) -> bool:

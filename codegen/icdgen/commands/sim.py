@@ -87,7 +87,7 @@ def sim(
     loss = options.pop("loss")
     if loss is not None:
         options["faults"] = (*options["faults"], f"drop={loss}@packet,upload")
-    run.run(load_or_exit(icds).icd, name, ways, run.Options(**options), lambda text: _print(text))
+    run.run(load_or_exit(icds).icd, name, ways, run.Options(**options), _print)
 
 
 def _place(text: str) -> tuple[str, str, int]:

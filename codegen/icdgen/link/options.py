@@ -70,11 +70,8 @@ def open_session(
     if known.can and not 0 <= address < 1 << known.can.parts["source"].bits:
         raise UserError(f"--address {address} does not fit", f"{known.can.parts['source'].bits} bits hold it")
     link = link_of(icd, known)
-    settings = link.settings
-    if timeout is not None:
-        settings = settings._replace(reply_timeout=timeout)
-    if retries is not None:
-        settings = settings._replace(retries=retries)
+    given = {"reply_timeout": timeout, "retries": retries}
+    settings = link.settings._replace(**{key: value for key, value in given.items() if value is not None})
     values = values_of(known, chosen)
     with session(link, open_port(port, icd.protocol_of(node)), crc, address, settings, on_event, values) as opened:
         yield opened

@@ -13,12 +13,11 @@ from icdgen_runtime.wire.stream import StreamDecoder, StreamEvent
 
 from icdgen import codec
 from icdgen.backends.python.objects.links import link_of
-from icdgen.errors import UserError
+from icdgen.errors import UserError, unreadable
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.variants import ids_of
 from icdgen.link.heard import FAULTS
 from icdgen.logfile.rows import Done
-from icdgen.logfile.source import unreadable
 from icdgen.protocol import facts
 from icdgen.protocol.envelope import PACKET
 

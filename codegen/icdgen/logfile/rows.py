@@ -20,7 +20,7 @@ _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 def rows(source: Source, head: int | None, done: Done) -> Iterator[list[Value]]:
     """Time and values of each entry."""
     readers, size = [reader(column) for column in source.plan.columns], source.plan.entry_bytes
-    for piece in source.pieces(head, 1 << 18):
+    for piece in source.pieces(head):
         for at in range(0, len(piece), size):
             entry = piece[at : at + size]
             yield [time_text(source.time(entry)), *(read(entry) for read in readers)]

@@ -6,14 +6,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from icdgen.errors import UserError
+from icdgen.errors import UserError, unreadable
 from icdgen.icd.model import Icd, Node
 from icdgen.logfile.columns import Plan, plan
 from icdgen.protocol import facts
 from icdgen.values.find import find_node
 
 _SAMPLE = 64  # entries by which it is judged whether this is a log
-PIECE = 4 << 20  # bytes that are read at once, about
+_PIECE = 1 << 18  # bytes of them that are read at once, about
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,8 +34,8 @@ class Source:
     def truncated(self) -> int:
         return (self.size - self.header_bytes) % self.plan.entry_bytes
 
-    def pieces(self, head: int | None = None, size: int = PIECE) -> Iterator[bytes]:
-        """The entries, many at once; ``head``: only so many. Raises `icdgen.errors.UserError`."""
+    def pieces(self, head: int | None, size: int = _PIECE) -> Iterator[bytes]:
+        """The entries, about ``size`` bytes at once; ``head``: only so many. Raises `icdgen.errors.UserError`."""
         left = self.entries if head is None else min(head, self.entries)
         some, one = max(1, size // self.plan.entry_bytes), self.plan.entry_bytes
         try:
@@ -128,8 +128,3 @@ def _impossible(source: Source) -> str:
     entries = range(0, len(some), source.plan.entry_bytes)
     wrong = sum(int.from_bytes(some[one + at : one + at + size], order) >= 1000 for one in entries)
     return "its entries have no times, their milliseconds are above 999" if wrong * 2 > len(entries) else ""
-
-
-def unreadable(path: Path, error: OSError) -> UserError:
-    """What is said of a file that cannot be read."""
-    return UserError(f"cannot read {path}: {error.strerror}", "check the path")

@@ -11,10 +11,10 @@ from icdgen.sim.storage import Storage
 class Computer:
     """The device. ``node`` is the program that runs first; every call is given the time in milliseconds."""
 
-    def __init__(self, icd: Icd, node: Node, settings: Settings, storage: Storage, now: int = 0) -> None:
+    def __init__(self, icd: Icd, node: Node, settings: Settings, storage: Storage) -> None:
         self.icd, self.settings, self.storage = icd, settings, storage
         self.boot_at: int | None = None
-        self.start(now, node)
+        self.start(0, node)
 
     def start(self, now: int, node: Node) -> None:
         """Starts a program; one that starts another does so after the boot time."""

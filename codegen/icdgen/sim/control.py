@@ -12,7 +12,7 @@ from typing import Any
 import yaml
 
 from icdgen import codec
-from icdgen.errors import UserError
+from icdgen.errors import UserError, unreadable
 from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.sim import faults
 from icdgen.sim.device_line import DeviceLine
@@ -20,7 +20,7 @@ from icdgen.sim.values import raw_of
 from icdgen.values.encode import listed
 from icdgen.values.entry import typed
 from icdgen.values.errors import BadValue, NotFound
-from icdgen.values.find import by_name, find_array, find_field, find_message, find_node, open_part
+from icdgen.values.find import by_name, find_array, find_field, find_message, open_part
 
 Wave = Mapping[str, Any]  # as a script has it
 WAVES = ("sine", "ramp", "steps", "noise")
@@ -128,7 +128,7 @@ def of_fields(icd: Icd, node: Node, name: str, key: str, value: object) -> list[
     Of an open part it may be a shorter list, and what counts its elements comes first. Raises `icdgen.errors.UserError`.
     """
     message = locate_message(icd, node, name)
-    vocabulary = find_node(icd, message.node).vocabulary
+    vocabulary = icd.node(message.node).vocabulary
     elements = find_array(message, key, vocabulary)
     parts = by_name([one for one in message.members if open_part(message, one.name)], key, vocabulary)
     part = open_part(message, parts[0].name) if parts else None
@@ -189,7 +189,7 @@ def read(path: Path, icd: Icd, node: Node) -> list[Step]:
     try:
         data = yaml.safe_load(path.read_text(encoding="utf-8"))
     except OSError as error:
-        raise UserError(f"cannot read {path}: {error.strerror}", "check the path") from None
+        raise unreadable(path, error) from None
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         place = getattr(error, "problem_mark", None)
         where = f":{place.line + 1}:{place.column + 1}" if place else ""

@@ -18,7 +18,7 @@ from icdgen.sim.faults import Faults
 
 
 class EnvelopeLine(DeviceLine):
-    """The line. ``chosen``: values of the envelope's fields."""
+    """A line whose messages travel in envelopes. ``chosen``: values of the fields that the sender chooses."""
 
     def __init__(self, computer: Computer, faults: Faults, chosen: Mapping[str, int]) -> None:
         super().__init__(computer, faults)

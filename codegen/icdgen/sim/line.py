@@ -19,7 +19,7 @@ FLAGS: dict[str, str] = {  # event of the decoder -> what the statistics call it
 
 
 class Line(DeviceLine):
-    """The line; its bytes may be cut anywhere."""
+    """A UART, whose bytes may be cut anywhere."""
 
     def __init__(self, computer: Computer, faults: Faults) -> None:
         super().__init__(computer, faults)

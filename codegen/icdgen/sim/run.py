@@ -15,7 +15,7 @@ from icdgen_runtime._errors import IcdError
 from icdgen_runtime.wire.times import dos_time_pack
 
 from icdgen.backends.python.objects.links import link_of
-from icdgen.errors import UserError
+from icdgen.errors import UserError, unreadable
 from icdgen.icd.model import Icd, Node
 from icdgen.protocol import facts
 from icdgen.sim import control, faults, serve
@@ -158,7 +158,7 @@ def _file(icd: Icd, node: Node, text: str) -> tuple[tuple[int, int], File]:
         data = Path(path).read_bytes()
         changed = datetime.fromtimestamp(Path(path).stat().st_mtime, UTC)
     except OSError as error:
-        raise UserError(f"cannot read {path}: {error.strerror}", "check the path after the =") from None
+        raise unreadable(path, error, "check the path after the =") from None
     try:
         packed = dos_time_pack(link_of(icd, known), changed)
     except IcdError:

@@ -14,9 +14,10 @@ from icdgen.vectors.wire.node import FileNode
 from icdgen.vectors.wire.operations import neighbours
 
 STEPS = 100_000  # more than any procedure takes
+AGAIN = 8  # attempts that a client makes
 
 
-def record(known: Facts, request: dict[str, Any], node: FileNode, again: int = 8) -> tuple[Script, transfer.Procedure]:
+def record(known: Facts, request: dict[str, Any], node: FileNode) -> tuple[Script, transfer.Procedure]:
     """The script of a procedure against the node; a client would send what may be repeated again."""
     procedure, now = procedure_of(known, request), 0
     script: Script = [{"at": 0}]
@@ -28,7 +29,7 @@ def record(known: Facts, request: dict[str, Any], node: FileNode, again: int = 8
             asked = procedure.next(now)
             continue
         events, tries = node.answer(asked), 1
-        while asked.repeat and events[-1]["event"] == "timeout" and tries < again:
+        while asked.repeat and events[-1]["event"] == "timeout" and tries < AGAIN:
             events, tries = events[:-1] + node.answer(asked), tries + 1
         for event in events:
             now += 1
