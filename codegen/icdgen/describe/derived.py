@@ -26,10 +26,6 @@ class Derived(NamedTuple):
     statements: tuple[Statement, ...]
     result: str  # the local that holds it
 
-    @property
-    def has_powers(self) -> bool:
-        return any(one.operator == "^" for one in self.statements)
-
 
 def derived(field: FieldDescription, taken: Collection[str] = ()) -> Derived:
     """Of a field that is derived; no local is called as one of ``taken`` is."""

@@ -11,7 +11,7 @@ from icdgen.backends import Identifier
 from icdgen.backends.origin import origin
 from icdgen.backends.rust import names
 from icdgen.backends.rust.declared_names import declared_names
-from icdgen.describe import Description, describe
+from icdgen.describe import describe
 from icdgen.icd.model import Icd
 
 if TYPE_CHECKING:
@@ -36,6 +36,7 @@ class RustBackend:
         """The crate."""
         from icdgen.backends.rust import messages, nodes  # the rules about names need none of them
         from icdgen.backends.rust.examples import client_example
+        from icdgen.describe.links import links_of
 
         description = describe(icd)
         common = {
@@ -45,39 +46,34 @@ class RustBackend:
             "id_bits": description.id_bits,
             **_functions(),
         }
-        wired = any(node.is_linked for node in description.nodes)
-        found = _links(description) if wired else {}
+        has_tails = any(message.tail for node in icd.nodes for message in node.messages)
+        links = links_of(description)
         yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **common)
-        yield PurePosixPath("src/lib.rs"), render(
-            "lib.rs.j2", has_tails=_has_tails(icd), nodes=icd.nodes, summary=nodes.summary, wired=wired, **common
-        )
+        of_crate = {"has_tails": has_tails, "nodes": icd.nodes, "summary": nodes.summary, "wired": bool(links)}
+        yield PurePosixPath("src/lib.rs"), render("lib.rs.j2", **of_crate, **common)
         yield from _runtime("src/support", render, self.crate)
         for node in description.nodes:
             folder = PurePosixPath("src") / node.name
             digested = {**common, "origin": origin(node.model, with_digest=True)}
-            link = found.get(node.name)
+            link = links.get(node.name)
             about = nodes.about(node, client_example(node, link, self.crate) if link else [])
             functions = {"about": about, "typed": nodes.typed, "guarded": nodes.guarded}
             yield folder / "mod.rs", render("node.rs.j2", node=node, **functions, **digested)
-            shared = {**common, "origin": origin(node.model), "wired": wired}
+            shared = {**common, "origin": origin(node.model)}
             if node.enums:
                 yield folder / "enums.rs", render("enums.rs.j2", enums=node.enums, **shared)
             for struct in node.structs:
-                text = render("struct.rs.j2", m=struct, **messages.of_struct(struct), **shared)
+                text = render("struct.rs.j2", m=struct, **messages.of_composite(struct), **shared)
                 yield folder / f"{struct.name}.rs", text
             for message in node.messages:
                 text = render("message.rs.j2", m=message, **messages.values(message), **shared)
                 yield folder / f"{message.name}.rs", text
-        if wired:
-            yield from _wire(found, render, common)
+        if links:
+            yield from _wire(links, render, common)
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """Every name that the crate declares, by scope."""
         return declared_names(describe(icd))
-
-
-def _has_tails(icd: Icd) -> bool:
-    return any(message.tail is not None for node in icd.nodes for message in node.messages)
 
 
 def _functions() -> dict[str, object]:
@@ -86,24 +82,18 @@ def _functions() -> dict[str, object]:
     from icdgen.backends.rust.accessors import accessors, curve_of, field_row, scale_of
     from icdgen.backends.rust.derived import derived_statements
     from icdgen.backends.rust.examples import direction_example, enum_example, message_example
+    from icdgen.backends.rust.messages import imports
     from icdgen.backends.rust.physical import big_parts
     from icdgen.describe.comments import sentence, text_comment, words
     from icdgen.describe.numbers import byte_count, count_text
 
     found = (
         accessors, big_parts, byte_count, count_text, curve_of, derived_statements, direction_example, enum_example, field_row,
-        message_example, names.catch_all, names.field_name, names.message_path, names.open_type, names.raw_type, names.type_name,
-        scale_of, sentence, text.arm,
-        text.assigned, text.code, text.described, text.doc, text.integer, text.prose, text.signature, text.string,
-        text_comment, words,
+        imports, message_example, names.catch_all, names.field_name, names.message_path, names.open_type, names.raw_type,
+        names.type_name, scale_of, sentence, text.arm, text.assigned, text.code, text.described, text.doc, text.integer,
+        text.prose, text.signature, text.string, text_comment, words,
     )  # fmt: skip
     return {function.__name__: function for function in found}
-
-
-def _links(description: Description) -> dict[str, LinkDescription]:
-    from icdgen.describe.links import links_of
-
-    return links_of(description)
 
 
 def _wire(

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from icdgen.backends.lines import STEP
 from icdgen.backends.rust.names import RESERVED
 from icdgen.backends.rust.physical import raw_value
 from icdgen.backends.rust.text import assigned, double
 from icdgen.describe import FieldDescription
-from icdgen.describe.derived import Derived, derived
+from icdgen.describe.derived import derived
 
 _TAKEN = RESERVED | {"power", "quiet", "whole"}
 
 
 def derived_statements(field: FieldDescription) -> Iterator[str]:
     """The body of the method of a derived value."""
-    found = _derived(field)
+    found = derived(field, _TAKEN)
     for name, one in found.fields:
         yield assigned(f"let {name} =", _as_double(one), ";", STEP * 2)
     for name, operator, *both in found.statements:
@@ -24,20 +24,6 @@ def derived_statements(field: FieldDescription) -> Iterator[str]:
         value = f"power({left}, {right})" if operator == "^" else f"{left} {operator} {right}"
         yield assigned(f"let {name} =", value, ";", STEP * 2)
     yield f"{STEP * 2}quiet({found.result})"
-
-
-def imported(fields: Iterable[FieldDescription]) -> dict[str, bool]:
-    """What the methods of derived values call."""
-    found = [_derived(field) for field in fields]
-    return {
-        "power": any(one.has_powers for one in found),
-        "quiet": bool(found),
-        "whole": any(_is_long(held) for one in found for _, held in one.fields),
-    }
-
-
-def _derived(field: FieldDescription) -> Derived:
-    return derived(field, _TAKEN)
 
 
 def _is_long(field: FieldDescription) -> bool:
