@@ -6,9 +6,9 @@ from dataclasses import fields
 from typing import Any
 
 from icdgen.backends.python.literals import Call, Noted, Verbatim, expression
-from icdgen.backends.python.streams import stream_call
 from icdgen.describe.links import Assumptions, LinkDescription, SentMessage
 from icdgen.protocol.declared import facts_of
+from icdgen.protocol.envelope import Check, Stream, StreamRow
 from icdgen.protocol.sections import (
     Crc,
     Download,
@@ -97,7 +97,7 @@ class _Maker:
             "identification": facts.identification and self.step(facts.identification),
             "statistics": facts.statistics and self.step(facts.statistics),
             "boot_time": facts.boot_ms,
-            "stream": self.noted_rest(stream_call(facts.stream), "stream") if facts.stream else None,
+            "stream": self.noted_rest(facts.stream and _stream(facts.stream), "stream"),
             "assumptions": self.assumptions() or None,
         }
         return _call("Link", **parts, **{key: part for key, part in optional.items() if part is not None})
@@ -210,9 +210,32 @@ class _Maker:
         )
 
 
+def _stream(form: Stream) -> Call:
+    """The envelope."""
+    parts = _members(form)
+    parts["fields"] = tuple(_row("EnvelopeField", *_members(one).values()) for one in form.fields)
+    parts["telecommands"], parts["telemetry"] = map(_stream_rows, (form.telecommands, form.telemetry))
+    check = parts.pop("check")
+    if isinstance(check, Check):
+        crc = {fact.name: getattr(check.crc, fact.name) for fact in facts_of(check.crc)}
+        known = _row("CrcForm", **{key: value for key, value in crc.items() if value is not None})
+        parts["check"] = _row("CheckForm", *{**_members(check), "crc": known}.values())
+    return _call("Stream", **parts)
+
+
+def _stream_rows(rows: tuple[StreamRow, ...]) -> tuple[Call, ...]:
+    found = ((row.id, row.least, row.most, row.cuts_zeros, row.seed, row.reply) for row in rows)
+    return tuple(_row("StreamRow", *(one if one[-1] is not None else one[:-1])) for one in found)
+
+
 def _flat(name: str, part: Any) -> Call:
     """A small part with all its members."""
-    return _row(name, **{one.name: getattr(part, one.name) for one in fields(part)})
+    return _row(name, **_members(part))
+
+
+def _members(part: Any) -> dict[str, object]:
+    """All that an object of a dataclass holds."""
+    return {one.name: getattr(part, one.name) for one in fields(part)}
 
 
 def _plain(value: object) -> object:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from icdgen.backends.literals import Brackets, Item, written
 from icdgen.backends.rust.facts import member_name, type_name, value_of
-from icdgen.backends.rust.literals import Expression, flat, flat_rows, part, rows, some, spelled, struct
+from icdgen.backends.rust.literals import Expression, flat, flat_rows, members, part, rows, some, spelled, struct
 from icdgen.backends.rust.streams import stream_of, tabulated
 from icdgen.backends.rust.text import doc, integer, prose, string
 from icdgen.describe import FieldDescription
@@ -22,7 +22,7 @@ from icdgen.describe.links import (
 )
 from icdgen.naming import camel
 from icdgen.protocol.declared import facts_of
-from icdgen.protocol.sections import BUSES, CAN_KINDS, PROCEDURES, Direction, Step
+from icdgen.protocol.sections import BUSES, CAN_KINDS, PROCEDURES, Step
 
 _REASONS = {
     "none": "NoError",
@@ -106,7 +106,7 @@ class _Literal:
             part("longest", integer(known.longest)),
             part("longest_data", integer(known.longest_data)),
             part("little", spelled(known.little)),
-            part("telemetry_ids", _ids(known.telemetry_ids)),
+            part("telemetry_ids", flat("Ids", **members(known.telemetry_ids))),
             part("telecommands", rows(map(_form, link.telecommands))),
             part("telemetry", rows(map(_form, link.telemetry))),
             part("client", self.struct(known.client, "client") or ""),
@@ -155,10 +155,7 @@ class _Literal:
         can = self.description.can
         if can is None:
             return None
-        parts = (
-            part(_RENAMED.get(role, role), flat("CanPart", bits=can.parts[role].bits, shift=can.parts[role].shift))
-            for role in CAN_PARTS
-        )
+        parts = (part(_RENAMED.get(role, role), flat("CanPart", **members(can.parts[role]))) for role in CAN_PARTS)
         extended = self.struct(can.extended, "can.extended", part("types", _can_types(can.extended_types)))
         return self.struct(can, "can", *parts, part("types", _can_types(can.types)), part("extended", some(extended)))
 
@@ -171,23 +168,20 @@ class _Literal:
         if mask is None:
             return None
         bits = (
-            flat("LogBit", bit=bit, id=one.id, length=one.length, name=string(one.name or ""))
-            for bit, one in sorted(mask.bits.items())
+            flat("LogBit", **{**members(one), "name": string(one.name or "")})
+            for _, one in sorted(mask.bits.items())
             if one.id is not None
         )
         return self.struct(mask, "log_mask", part("bits", rows(bits), self.assumed.why("log_mask", "unassigned_bits")))
 
     def time(self) -> Brackets | None:
-        parts = [
-            part(name, flat("TimePart", at=one.at, bits=one.bits, factor=one.factor, offset=one.offset))
-            for name, one in self.description.time
-        ]
+        parts = [part(name, flat("TimePart", **members(one))) for name, one in self.description.time]
         return struct("TimeForm", *parts) if parts else None
 
     def index(self) -> Brackets | None:
         form = self.description.index
         fields = [(name, form.fields[name]) for name in INDEX_PARTS] if form else []
-        spans = (part(_RENAMED.get(name, name), flat("Span", at=one.at, bytes=one.bytes)) for name, one in fields)
+        spans = (part(_RENAMED.get(name, name), flat("Span", **members(one))) for name, one in fields)
         return self.struct(form, "index_file", *spans)
 
     def files(self) -> Brackets | None:
@@ -215,10 +209,6 @@ class _Literal:
             ids = {"set_id": one.telecommand_id, "get_id": one.telemetry_id}
             messages.append(flat("MapMessage", **ids, length=one.length, piece=_span(field)))
         return self.struct(self.facts.hole_map, "file_transfer.hole_map", part("messages", rows(messages)))
-
-
-def _ids(ids: Direction) -> Brackets:
-    return flat("Ids", first=ids.first, last=ids.last)
 
 
 def _form(one: SentMessage) -> Brackets:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import fields
+from typing import Any
 
 from icdgen.backends.literals import Brackets, Item
 
@@ -14,10 +16,15 @@ def struct(name: str, *items: Item) -> Brackets:
     return Brackets(f"link::{name} {{ ", items, " }")
 
 
-def flat(name: str, /, **fields: Expression | int) -> Brackets:
+def flat(name: str, /, **parts: Expression | int) -> Brackets:
     """A struct of the wire layer on one line."""
-    items = (part(key, value if isinstance(value, Brackets) else spelled(value)) for key, value in fields.items())
+    items = (part(key, value if isinstance(value, Brackets) else spelled(value)) for key, value in parts.items())
     return Brackets(f"link::{name} {{ ", tuple(items), " }", True)
+
+
+def members(one: Any) -> dict[str, Any]:
+    """All that an object of a dataclass holds."""
+    return {field.name: getattr(one, field.name) for field in fields(one)}
 
 
 def part(name: str, value: Expression, why: str = "") -> Item:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 from icdgen.backends.literals import Brackets, Item
 from icdgen.backends.rust.facts import member_name, value_of
-from icdgen.backends.rust.literals import flat, part, rows, some, spelled, struct
-from icdgen.backends.rust.text import integer, mask
+from icdgen.backends.rust.literals import flat, members, part, rows, some, spelled, struct
+from icdgen.backends.rust.text import mask
 from icdgen.naming import camel
 from icdgen.protocol.declared import facts_of
 from icdgen.protocol.envelope import CRC, WORD, Check, EnvelopeField, Stream, StreamRow
@@ -17,29 +15,29 @@ _DELIMITERS = {"none": "Packet"}
 
 def stream_of(form: Stream) -> Brackets:
     """The expression of an envelope."""
-    check = None
-    if form.check:
-        given = form.check
-        check = struct(
-            "CheckForm",
-            part("kind", f"link::CheckKind::{_camel(given.kind)}"),
-            part("crc", _crc(given)),
-            part("table", some("&TABLE" if given.kind == CRC else None)),
-            part("covered_from", integer(given.covered_from)),
-            part("covered_trailer", integer(given.covered_trailer)),
-            part("is_seeded", spelled(given.is_seeded)),
-        )
     return struct(
         "Stream",
         part("delimited_by", f"link::Delimiter::{_DELIMITERS.get(form.delimited_by) or _camel(form.delimited_by)}"),
-        part("header_bytes", integer(form.header_bytes)),
-        part("trailer_bytes", integer(form.trailer_bytes)),
-        part("length_plus", integer(form.length_plus)),
+        part("header_bytes", spelled(form.header_bytes)),
+        part("trailer_bytes", spelled(form.trailer_bytes)),
+        part("length_plus", spelled(form.length_plus)),
         part("per_id", spelled(form.per_id)),
         part("fields", rows(map(_field, form.fields))),
-        part("check", some(check)),
-        part("telecommands", _rows(form.telecommands)),
-        part("telemetry", _rows(form.telemetry)),
+        part("check", some(_check(form.check) if form.check else None)),
+        part("telecommands", rows(map(_row, form.telecommands))),
+        part("telemetry", rows(map(_row, form.telemetry))),
+    )
+
+
+def _check(check: Check) -> Brackets:
+    return struct(
+        "CheckForm",
+        part("kind", f"link::CheckKind::{_camel(check.kind)}"),
+        part("crc", _crc(check)),
+        part("table", some("&TABLE" if check.kind == CRC else None)),
+        part("covered_from", spelled(check.covered_from)),
+        part("covered_trailer", spelled(check.covered_trailer)),
+        part("is_seeded", spelled(check.is_seeded)),
     )
 
 
@@ -58,24 +56,12 @@ def _camel(word: str) -> str:
 
 
 def _field(one: EnvelopeField) -> Brackets:
+    values = Brackets("[", tuple(Item(mask(value, WORD)) for value in one.values), "]", True)
     return flat(
-        "EnvelopeField",
-        role=f"link::EnvelopeRole::{_camel(one.role)}",
-        in_trailer=one.in_trailer,
-        at=one.at,
-        size=one.size,
-        shift=one.shift,
-        bits=one.bits,
-        little=one.little,
-        values=Brackets("[", tuple(Item(mask(value, WORD)) for value in one.values), "]", True),
+        "EnvelopeField", **{**members(one), "role": f"link::EnvelopeRole::{_camel(one.role)}", "values": values}
     )
 
 
-def _rows(found: Iterable[StreamRow]) -> Brackets:
-    return rows(map(_row, found))
-
-
 def _row(row: StreamRow) -> Brackets:
-    sizes = {"least": row.least, "most": row.most, "cuts_zeros": row.cuts_zeros}
-    reply = None if row.reply is None else integer(row.reply)
-    return flat("StreamRow", id=row.id, **sizes, seed=row.seed, reply=some(reply))
+    known = {key: value for key, value in members(row).items() if key != "name"}
+    return flat("StreamRow", **{**known, "reply": some(row.reply)})
