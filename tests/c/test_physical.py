@@ -80,8 +80,8 @@ def row(field: FieldDescription) -> dict[str, object]:
         "get_whole": None,
     }
     if whole:
-        found["get_whole"] = f"{name}_{field.whole_name(whole.per)}"
-        found["set_whole"] = f"{name}_set_{field.whole_name(whole.per)}"
+        found["get_whole"] = f"{name}_{field.whole_name(whole.exact.per)}"
+        found["set_whole"] = f"{name}_set_{field.whole_name(whole.exact.per)}"
         found["whole"] = whole.type
     return found
 

@@ -14,7 +14,7 @@ from icdgen.describe.enums import EnumDescription
 from icdgen.describe.errata import Thing, tellers, told_elsewhere
 from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, storage_of
-from icdgen.describe.wholes import part_of_unit
+from icdgen.describe.wholes import Whole, part_of_unit
 from icdgen.icd.curve import Curve
 from icdgen.icd.model import Enum, Field, Message, Node, Struct, Tail
 from icdgen.icd.paths import Step, in_orders, placed
@@ -191,6 +191,10 @@ class FieldDescription(Named[Field]):
     def whole_title(self, per: int) -> str:
         """``Estimated Roll Angle in thousandths of deg``"""
         return f"{words(self.model.name)} in {words(part_of_unit(self.model, per)[1])}"
+
+    def whole_comment(self, whole: Whole) -> str:
+        """What it is, and its range."""
+        return f"{self.whole_title(whole.per)}, exact: {whole.low} to {whole.high}."
 
     @property
     def size(self) -> int:

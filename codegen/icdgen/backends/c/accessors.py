@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from icdgen.backends.c import decoding, physical
 from icdgen.backends.c.names import stem
 from icdgen.backends.c.reserved_words import RESERVED
-from icdgen.backends.c.statement import call
+from icdgen.backends.c.statement import call, either
 from icdgen.backends.c.text import WIDTH, described
 from icdgen.backends.c.types import type_of
 from icdgen.backends.lines import STEP
@@ -115,16 +115,13 @@ def whole_accessors(message: Composite[Any]) -> list[Accessor]:
 
 
 def _whole(field: FieldDescription, whole: physical.Whole) -> Accessor:
-    what = field.whole_title(whole.per)
-    tests = [f"value < {whole.least}"] if whole.least is not None else []
-    tests += [f"value > {whole.most}"] if whole.most is not None else []
     return Accessor(
-        end=field.whole_name(whole.per),
+        end=field.whole_name(whole.exact.per),
         type=whole.type,
-        about=f"{what}, exact: {whole.low} to {whole.high}.",
-        what=what,
+        about=field.whole_comment(whole.exact),
+        what=field.whole_title(whole.exact.per),
         expression=whole.getter.format(raw=_raw(field)),
         assignment="" if field.model.view else f"{_member(field)} = {whole.setter};",
-        test=" || ".join(f"({test})" for test in tests) if len(tests) > 1 else "".join(tests),
+        test=either(whole.refused) if whole.refused else "",
         elements=field.count,
     )

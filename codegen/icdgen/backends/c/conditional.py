@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from icdgen.backends.c import bits, constants, decoding
 from icdgen.backends.c.names import enumerator, has
-from icdgen.backends.c.statement import assigned_byte
+from icdgen.backends.c.statement import assigned_byte, either
 from icdgen.backends.c.types import mask
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.comments import presence_comment
@@ -30,11 +30,7 @@ def conditional(message: MessageDescription) -> list[Conditional]:
         Conditional(
             has(field),
             presence_comment(field.model, message.model),
-            (
-                " && ".join(_grouped(_test(need)) for need in field.needs)
-                if len(field.needs) > 1
-                else _test(field.needs[0])
-            ),
+            either(list(map(_test, field.needs)), " && "),
             f"message->{field.name} = {_absent(field)};",
             decoding.number(field),
             tuple(_written(field)),
@@ -50,10 +46,6 @@ def _absent(field: FieldDescription) -> str:
     return {"bool": "false", "float": "0"}.get(field.model.type, "0" if field.storage.signed else "0u")
 
 
-def _grouped(test: str) -> str:
-    return f"({test})"
-
-
 def _test(need: Need) -> str:
     """Whether a member has one of the values."""
     field, member = need.field, f"message->{need.field.name}"
@@ -61,7 +53,7 @@ def _test(need: Need) -> str:
         tests = [member if value else f"!{member}" for value in need.values]
     else:
         tests = [f"{member} == {_literal(field, value)}" for value in need.values]
-    return " || ".join(map(_grouped, tests)) if len(tests) > 1 else tests[0]
+    return either(tests)
 
 
 def _literal(field: FieldDescription, value: int) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 from icdgen.backends.c import bits
 from icdgen.backends.c.member_groups import Array, Flags, Groups, Row, Structs
 from icdgen.backends.c.names import stem
-from icdgen.backends.c.statement import call, loop
+from icdgen.backends.c.statement import call, either, loop
 from icdgen.backends.c.text import WIDTH
 from icdgen.backends.c.types import cast, type_of
 from icdgen.backends.lines import STEP
@@ -47,7 +47,7 @@ def misfit_length(tail: TailDescription, longest: str, known: int = 0) -> str:
     tests.append(f"length > {longest}")
     if tail.step > 1:
         tests.append(f"({_rest(tail)} % {tail.step}u) != 0u")
-    return " || ".join(f"({test})" for test in tests) if len(tests) > 1 else tests[0]
+    return either(tests)
 
 
 def _rest(tail: TailDescription) -> str:
@@ -134,7 +134,7 @@ def miscount(tail: TailDescription, counter: str = "") -> str:
     count = counter or f"message->{tail.counter.name}"
     tests = [f"{count} < {tail.low}u"] if tail.low else []
     tests += [f"{count} > {tail.high}u"] if tail.counter.storage.max > tail.high else []
-    return " || ".join(f"({test})" for test in tests) if len(tests) > 1 else tests[0]
+    return either(tests)
 
 
 def in_rounds(rounds: Rounds, const: str, lines: Iterable[str]) -> str:

@@ -18,15 +18,12 @@ INT32, INT64 = (1 << 31) - 1, (1 << 63) - 1
 
 
 class Whole(NamedTuple):
-    """Integer accessors: ``getter`` over ``{raw}``; ``setter``, the raw value of a ``value`` from ``least`` to ``most``."""
+    """Integer accessors: ``getter`` over ``{raw}``; ``setter``, the raw value of a ``value`` unless a test of ``refused`` holds."""
 
-    per: int  # of the unit: 1000 | 1_000_000
+    exact: wholes.Whole
     type: str  # "int32_t" | "int64_t"
-    low: int  # of the getter, over all raw values that fit
-    high: int
     getter: str
-    least: str | None  # None: every value of the type is in range
-    most: str | None
+    refused: tuple[str, ...]
     setter: str
 
 
@@ -42,21 +39,24 @@ def in_doubles(field: FieldDescription) -> tuple[str, tuple[str, ...], tuple[str
     """Getter and setter, as those of `Scaled`, and the lines that declare what both use."""
     if field.curve is not None:
         return _on_curve(field, field.curve)
-    assert field.steps is not None
     found = scaled(field)
-    return found.getter, found.setter, tuple(wide_scale(field.steps)) if field.steps.is_wide else ()
+    return found.getter, found.setter, tuple(wide_scale(field.steps)) if field.steps and field.steps.is_wide else ()
 
 
 def _on_curve(field: FieldDescription, curve: Curve) -> tuple[str, tuple[str, ...], tuple[str, ...]]:
-    count = f"{len(curve.pieces)}u"
+    count, storage = f"{len(curve.pieces)}u", field.storage
     getter = f"icdgen_curve(ICDGEN_CAST(double, {RAW}), curve, {count})"
-    declared = tuple(_declared(curve))
     if field.model.type == "float":
-        return getter, (f"icdgen_set_curve_f{field.model.bits}", "value", "curve"), declared
-    one, storage = field.model, field.storage
-    limits = [_limit(end, storage) for end in one.ends]
-    kind = f"{'i' if storage.signed else 'u'}{storage.bits}"
-    return getter, (f"icdgen_set_curve_{kind}", "value", "curve", count, *limits), declared
+        setter: tuple[str, ...] = f"icdgen_set_curve_f{field.model.bits}", "value", "curve"
+    else:
+        limits = (_limit(end, storage) for end in field.model.ends)
+        setter = f"icdgen_set_curve_{_kind(storage)}", "value", "curve", count, *limits
+    return getter, setter, tuple(_declared(curve))
+
+
+def _kind(storage: Storage, bits: int = 0) -> str:
+    """``u16``: the end of a function's name; with ``bits``, of one for integers of so many."""
+    return f"{'i' if storage.signed else 'u'}{bits or storage.bits}"
 
 
 def _declared(curve: Curve) -> Iterator[str]:
@@ -104,11 +104,11 @@ def _plus(value: str, offset: int, bits: int) -> str:
 
 def _double_getter(steps: Steps, storage: Storage) -> str:
     factor, offset, divisor = steps.terms
+    kind = _kind(storage, 64)
     if steps.is_wide:
-        return f"icdgen_wide_physical_{'i' if storage.signed else 'u'}64({RAW}, &scale)"
+        return f"icdgen_wide_physical_{kind}({RAW}, &scale)"
     if steps.exact_in_doubles and wholes.computable(storage, factor, offset, 64):
         return f"icdgen_quotient({_whole_getter(factor, offset, 64, storage)}, {int64(divisor)})"
-    kind = f"{'i' if storage.signed else 'u'}64"
     if offset > INT64:  # has no literal, but its negative has
         return f"0.0 - icdgen_physical_{kind}({RAW}, {int64(-factor)}, {int64(-offset)}, {int64(divisor)})"
     return f"icdgen_physical_{kind}({RAW}, {int64(factor)}, {int64(offset)}, {int64(divisor)})"
@@ -117,24 +117,19 @@ def _double_getter(steps: Steps, storage: Storage) -> str:
 def _double_setter(steps: Steps, storage: Storage) -> tuple[str, ...]:
     factor, offset, divisor = steps.terms
     ends = (steps.raw_min, steps.raw_max) if storage.signed else (steps.raw_max,)
-    limits = [_limit(end, storage) for end in ends]
-    kind = f"{'i' if storage.signed else 'u'}{storage.bits}"
+    limits = (_limit(end, storage) for end in ends)
     if steps.is_wide:
-        return f"icdgen_wide_set_{kind}", "value", "&scale", *limits
+        return f"icdgen_wide_set_{_kind(storage)}", "value", "&scale", *limits
     value = "value"
     if offset > INT64:
         value, factor, offset = "-value", -factor, -offset
-    return f"icdgen_set_{kind}", value, int64(factor), int64(offset), int64(divisor), *limits
+    return f"icdgen_set_{_kind(storage)}", value, int64(factor), int64(offset), int64(divisor), *limits
 
 
 def wide_scale(steps: Steps) -> list[str]:
     """The lines that declare the numbers of a wide scale."""
-    lines = [f"{{{{{', '.join(_parts(term))}}}}}" for term in steps.terms]
-    return ["static const icdgen_scale_t scale = {", *(f"    {line}," for line in lines), "};"]
-
-
-def _parts(value: int) -> list[str]:
-    return [f"0x{part:X}u" if part > 9 else f"{part}u" for part in wide_parts(value, 32)]
+    rows = ((f"0x{part:X}u" if part > 9 else f"{part}u" for part in wide_parts(term, 32)) for term in steps.terms)
+    return ["static const icdgen_scale_t scale = {", *(f"    {{{{{', '.join(row)}}}}}," for row in rows), "};"]
 
 
 def _limit(value: int, storage: Storage) -> str:
@@ -150,25 +145,17 @@ def _limit(value: int, storage: Storage) -> str:
 def _whole(steps: Steps, storage: Storage) -> Whole | None:
     """None where there are no whole numbers, or some step would overflow."""
     found = wholes.whole(steps)
-    if found is None:
+    bits = wholes.whole_bits(found, storage) if found is not None else None
+    if found is None or bits is None:
         return None
     factor, offset = found.factor, found.offset
-    bits = wholes.whole_bits(found, storage)
-    if bits is None:
-        return None
     most_of_type = INT32 if bits == 32 else INT64
     least, most = max(found.least, -most_of_type - 1), min(found.most, most_of_type)
     wide = 32 if bits == 32 and wholes.within(32, least - offset, most - offset) else 64
-    return Whole(
-        per=found.per,
-        type=f"int{bits}_t",
-        low=found.low,
-        high=found.high,
-        getter=_whole_getter(factor, offset, bits, storage),
-        least=None if least == -most_of_type - 1 else int64(least),
-        most=None if most == most_of_type else int64(most),
-        setter=_whole_setter(factor, offset, wide, storage),
-    )
+    refused = [f"value < {int64(least)}"] if least > -most_of_type - 1 else []
+    refused += [f"value > {int64(most)}"] if most < most_of_type else []
+    getter, setter = _whole_getter(factor, offset, bits, storage), _whole_setter(factor, offset, wide, storage)
+    return Whole(found, f"int{bits}_t", getter, tuple(refused), setter)
 
 
 def _whole_getter(factor: int, offset: int, bits: int, storage: Storage) -> str:

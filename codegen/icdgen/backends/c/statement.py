@@ -23,6 +23,11 @@ def joined(terms: Sequence[str]) -> str:
     return " | ".join(map(grouped, terms)) if len(terms) > 1 else terms[0]
 
 
+def either(tests: Sequence[str], operator: str = " || ") -> str:
+    """A test that holds if one of them does; with another ``operator``, if all do."""
+    return operator.join(f"({test})" for test in tests) if len(tests) > 1 else tests[0]
+
+
 def call(function: str, arguments: Sequence[str], depth: int = 1) -> str:
     """A call as a statement; ``depth`` is that of the line it begins in."""
     return bracketed(f"{function}(", arguments, ");", WIDTH, STEP * depth, last="")
@@ -59,9 +64,7 @@ def like(candidate: Candidate, depth: int = 3) -> str:
             byte = f"((length > {sign.byte}u) ? {byte} : 0u)"
         masked = byte if sign.mask == 0xFF else f"({byte} & 0x{sign.mask:02X}u)"
         terms.append(f"{masked} == 0x{sign.value:02X}u")
-    if len(terms) == 1:
-        return terms[0]
-    return f" &&\n{STEP * depth}".join(f"({term})" for term in terms)
+    return either(terms, f" &&\n{STEP * depth}")
 
 
 def _lengths(lengths: range, longest: str) -> list[str]:

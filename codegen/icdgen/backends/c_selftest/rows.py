@@ -296,10 +296,10 @@ def _whole(field: FieldDescription) -> Accessors | None:
     lines = []
     for raw in values(field.model):
         assert isinstance(raw, int)
-        exact = field.steps.physical(raw) * whole.per
+        exact = field.steps.physical(raw) * whole.exact.per
         assert exact.denominator == 1
         lines.append(f"{{{_unsigned(raw)}, {physical.int64(int(exact))}}},")
-    return _accessors(field, field.whole_name(whole.per), whole.type, lines)
+    return _accessors(field, field.whole_name(whole.exact.per), whole.type, lines)
 
 
 def _unsigned(value: int) -> str:

@@ -86,7 +86,7 @@ def _functions() -> dict[str, object]:
         fields.annotation, fields.declaration, fields.exact, fields.inner, fields.physical, fields.scaled, fields.tail, fields.text,
         fields.getter,
         fields.view_info,
-        fields.whole, fields.whole_comment, names.class_name, physical_comment, nodes.listing, nodes.literals, nodes.mapping,
+        fields.whole, names.class_name, physical_comment, nodes.listing, nodes.literals, nodes.mapping,
         text.docstring,
         text.documented, text.literal, text.prose, text_comment,
     )  # fmt: skip

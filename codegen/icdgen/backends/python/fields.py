@@ -212,11 +212,6 @@ def exact(field: FieldDescription, found: Whole) -> str:
     return _statement(field.whole_name(found.per), note, "whole", [str(found.factor), str(found.offset)])
 
 
-def whole_comment(field: FieldDescription, found: Whole) -> str:
-    """What it is, and its range."""
-    return f"{field.whole_title(found.per)}, exact: {found.low} to {found.high}."
-
-
 def _statement(name: str, note: str, call: str, items: list[str]) -> str:
     """``name: note = _base.call(items)`` on a line; what is too long for that goes on lines of its own."""
     head, inner = f"{name}: {note} = _base.{call}(", ", ".join(items)

@@ -27,54 +27,27 @@ class Accessor(NamedTuple):
 
 def accessors(field: FieldDescription) -> list[Accessor]:
     """Those of a field with a formula."""
-    name, scale = field.physical_name, field.declared.upper()
+    name, about, what = field.physical_name, physical_comment(field.model), physical_name(field.model)
     sets = f"Sets {'an element of ' if field.count else ''}{{}}, to the nearest raw value, ties to even"
     end = ", or if there is no such element." if field.count else "."
     if field.curve is not None:
         kind = {32: "single", 64: "number"}[field.model.bits] if field.model.type == "float" else "raw"
-        return [
-            Accessor(
-                name,
-                "f64",
-                physical_comment(field.model),
-                curve_value(field),
-                sets.format(physical_name(field.model)),
-                f"if it is beyond the values of the field, or not finite{end}",
-                f"{curve_name(field)}.{kind}(value)" if field.is_set else "",
-            )
-        ]
-    assert field.steps is not None
+        raw = f"{curve_name(field)}.{kind}(value)" if field.is_set else ""
+        refused = f"if it is beyond the values of the field, or not finite{end}"
+        return [Accessor(name, "f64", about, curve_value(field), sets.format(what), refused, raw)]
+    scale, refused = field.declared.upper(), f"if it does not fit or is not finite{end}"
     found = [
-        Accessor(
-            name,
-            "f64",
-            physical_comment(field.model),
-            physical(field),
-            sets.format(physical_name(field.model)),
-            f"if it does not fit or is not finite{end}",
-            f"{scale}.raw(value)",
-        ),
-        Accessor(
-            single_name(field), "f32", f"{physical_name(field.model)}, the nearest float of 32 bits.", single(field)
-        ),
+        Accessor(name, "f64", about, physical(field), sets.format(what), refused, f"{scale}.raw(value)"),
+        Accessor(single_name(field), "f32", f"{what}, the nearest float of 32 bits.", single(field)),
     ]
     known = whole_of(field)
-    if known is None:
-        return found
-    exact, bits = known
-    what = field.whole_title(exact.per)
-    value = "value" if bits == 64 else "value.into()"
-    found.append(
-        Accessor(
-            field.whole_name(exact.per),
-            f"i{bits}",
-            f"{what}, exact: {exact.low} to {exact.high}.",
-            _whole_value(field, exact, bits),
-            sets.format(what),
-            f"if it does not fit{end}",
-            f"{scale}.whole({value}, {integer(exact.factor)}, {integer(exact.offset)})",
-        )
-    )
+    if known is not None:
+        exact, bits = known
+        value = "value" if bits == 64 else "value.into()"
+        raw = f"{scale}.whole({value}, {integer(exact.factor)}, {integer(exact.offset)})"
+        name, about, what = field.whole_name(exact.per), field.whole_comment(exact), field.whole_title(exact.per)
+        read = _whole_value(field, exact, bits)
+        found.append(Accessor(name, f"i{bits}", about, read, sets.format(what), f"if it does not fit{end}", raw))
     return found
 
 
