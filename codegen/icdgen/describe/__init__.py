@@ -8,9 +8,7 @@ from __future__ import annotations
 
 from icdgen.describe.description import FieldDescription, StructDescription
 from icdgen.describe.enums import EnumDescription
-from icdgen.describe.messages import MessageDescription
-from icdgen.describe.nodes import NodeDescription
-from icdgen.describe.whole import Description, describe
+from icdgen.describe.whole import Description, MessageDescription, NodeDescription, describe
 
 __all__ = [
     "Description",

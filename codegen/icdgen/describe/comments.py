@@ -151,9 +151,13 @@ def _used(users: Mapping[str, Sequence[str]]) -> str:
 
 
 def _listed(names: Sequence[str]) -> str:
-    """``Status, Set Mode and Limits``; of many the first, and how many others there are."""
-    if len(names) > _LISTED:
-        return f"{', '.join(names[: _LISTED - 1])} and {len(names) - _LISTED + 1} others"
+    """`listed`; of many the first, and how many others there are."""
+    few = names if len(names) <= _LISTED else [*names[: _LISTED - 1], f"{len(names) - _LISTED + 1} others"]
+    return listed(few)
+
+
+def listed(names: Sequence[str]) -> str:
+    """``Status, Set Mode and Limits``"""
     return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
 
 

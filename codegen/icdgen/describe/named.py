@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Generic, NamedTuple, TypeVar
+from typing import Generic, TypeVar
 
 from icdgen import naming
 from icdgen.icd.identifiers import Identifier
@@ -26,11 +26,3 @@ class Named(Generic[Model]):
     def identifier(self, scope: str, name: str) -> Identifier:
         """A name that generated code declares for it."""
         return Identifier(scope, name, self.owner, self.model.source)
-
-
-class Id(NamedTuple):
-    """An id of a message; ``name`` is ``id``, ``set_id`` or ``get_id``."""
-
-    name: str
-    value: int
-    comment: str

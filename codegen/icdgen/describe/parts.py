@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from icdgen.describe.description import FieldDescription
-from icdgen.describe.messages import MessageDescription
+from icdgen.describe.whole import MessageDescription
 
 
 class Copied(NamedTuple):

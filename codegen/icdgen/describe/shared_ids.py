@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from icdgen.describe.comments import words
+from icdgen.describe.comments import listed, words
 from icdgen.describe.numbers import length_text, value_text
 from icdgen.icd.model import Message
 from icdgen.icd.variants import Ids, Variant, common_length, is_narrower
@@ -24,11 +24,7 @@ def _sentence(own: Variant, group: tuple[Variant, ...]) -> str:
     others = [one for one in group if one is not own]
     has = [length_text(own.message)] if common_length(group) is None else []
     has += (f"{words(field.name)} {value_text(field.const or 0)}" for field in own.constants)
-    clauses = [f"has {_listed(has)}"] if has else []
+    clauses = [f"has {listed(has)}"] if has else []
     if any(is_narrower((one.message, one.node), (own.message, own.node)) for one in others):
         clauses.append("is what none of the others is")
-    return f"{_listed([words(one.message.name) for one in others])}, and {' and '.join(clauses)}."
-
-
-def _listed(items: list[str]) -> str:
-    return " and ".join(filter(None, (", ".join(items[:-1]), items[-1])))
+    return f"{listed([words(one.message.name) for one in others])}, and {' and '.join(clauses)}."

@@ -15,23 +15,22 @@ from icdgen.backends.c import (
     decoding,
     encoding,
     fields,
-    misfits,
+    members,
     names,
     parts,
     types,
 )
 from icdgen.backends.c.declared_names import declared_names
 from icdgen.backends.c.member_groups import Groups, Structs, in_groups
-from icdgen.backends.c.reserved_words import RESERVED
 from icdgen.backends.c.runtime import whole
 from icdgen.backends.c.statement import call, head, like
 from icdgen.backends.c.text import FILE, comment, described, literal, noted, prose
 from icdgen.backends.origin import origin
-from icdgen.describe import Description, MessageDescription, NodeDescription, describe
+from icdgen.describe import MessageDescription, NodeDescription, describe
+from icdgen.describe.arrays import Repeated, all_repeated, repeated_in
 from icdgen.describe.comments import sentence, text_comment, words
 from icdgen.describe.description import Composite, TailDescription
 from icdgen.describe.numbers import byte_count, length_text
-from icdgen.describe.repeated import Repeated, all_repeated, repeated_in
 from icdgen.icd.model import Icd
 
 if TYPE_CHECKING:
@@ -50,22 +49,24 @@ class CBackend:
     """``--lang c``"""
 
     name = "c"
-    reserved = RESERVED
+    reserved = names.RESERVED
     significant = 63  # characters of a name that C99 warrants to tell it from others
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """Every file, the support header first, then node by node."""
+        from icdgen.describe.links import links_of  # the rules about names need none of it
+
         first = f"/* {origin()} */\n"
-        yield PurePosixPath("icdgen.h"), first + whole("icdgen.h", {}, render)
+        yield PurePosixPath("icdgen.h"), first + whole("icdgen.h", render)
         description = describe(icd)
-        if _is_wide(description):
-            yield PurePosixPath("icdgen_wide.h"), first + whole("icdgen_wide.h", {}, render)
-        links = _links(description)
+        if any(one.has_wide_steps for node in description.nodes for one in node.composites):
+            yield PurePosixPath("icdgen_wide.h"), first + whole("icdgen_wide.h", render)
+        links = links_of(description)
         if links:
             step_bytes = max(1, *(link.longest_step for link in links.values()))
-            made = {"wire/sizes.h": render("sizes.h.j2", step_bytes=step_bytes)}
-            yield PurePosixPath("icdgen_wire.h"), first + whole("icdgen_wire.h", made, render)
-            yield PurePosixPath("icdgen_wire.c"), first + whole("icdgen_wire.c", {}, render)
+            sizes = {"wire/sizes.h": render("sizes.h.j2", step_bytes=step_bytes)}
+            yield PurePosixPath("icdgen_wire.h"), first + whole("icdgen_wire.h", render, sizes)
+            yield PurePosixPath("icdgen_wire.c"), first + whole("icdgen_wire.c", render)
         for node in description.nodes:
             folder = PurePosixPath(node.name)
             shared = {"origin": origin(node.model), "title": prose(words(node.model.title)), **_FUNCTIONS}
@@ -81,9 +82,8 @@ class CBackend:
                 link = {**_link(node, links[node.name]), **shared}
                 yield folder / "link.h", render("link.h.j2", **link)
                 yield folder / "link.c", render("link.c.j2", **link)
-                client = _client(node, links[node.name]) if node.has_client else _stream_client(node, links[node.name])
                 template = "client.h.j2" if node.has_client else "stream_client.h.j2"
-                yield folder / "client.h", render(template, **client, **shared)
+                yield folder / "client.h", render(template, **_client(node, links[node.name]), **shared)
             of_node = {**_node(node), "id_type": f"uint{description.id_bits}_t"}
             yield PurePosixPath(f"{node.name}.h"), render("node.h.j2", node=node, **of_node, **shared)
 
@@ -102,7 +102,7 @@ def _composite(one: Composite[Any], more: Iterable[str] = ()) -> dict[str, objec
         "about": comment([FILE, about.head, *about.rest, *noted(about)]),
         "includes": ["../icdgen_wide.h" if one.has_wide_steps else "../icdgen.h", *dict.fromkeys((*headers, *more))],
         "constants": constants.of_fields(one),
-        "initial": constants.initial(one),
+        "initial": members.initial(one),
         "declaration": types.declaration,
         "whole_accessors": accessors.whole_accessors(one),
         "accessors": accessors.accessors(one),
@@ -112,7 +112,6 @@ def _composite(one: Composite[Any], more: Iterable[str] = ()) -> dict[str, objec
 
 def _message(message: MessageDescription) -> dict[str, object]:
     groups = in_groups(message.steady) + _arrays(message, (one for one in repeated_in(message) if not one.part.is_open))
-    excess, excess_open = misfits.gathering(message), misfits.gathering(message, is_open=True)
     return {
         **_composite(message, parts.headers(message)),
         "empty": decoding.EMPTY,
@@ -121,9 +120,9 @@ def _message(message: MessageDescription) -> dict[str, object]:
         "element": None,
         "inner": [],
         "miscount": "",
-        "misfits": misfits.naming(message),
-        "misfits_of_end": misfits.naming(message, is_open=True),
-        "excess": excess + excess_open,
+        "misfits": members.misfits(message, is_open=False),
+        "misfits_of_end": members.misfits(message, is_open=True),
+        "excess": members.excess(message),
         "excess_type": bits.excess_type(message),
         "encode": encoding.statements(message, groups),
         "conditional": conditional.conditional(message),
@@ -178,17 +177,6 @@ def _tail(message: MessageDescription, tail: TailDescription) -> dict[str, objec
     }
 
 
-def _is_wide(description: Description) -> bool:
-    """Whether a formula needs more than the support header computes with."""
-    return any(one.has_wide_steps for node in description.nodes for one in node.composites)
-
-
-def _links(description: Description) -> dict[str, LinkDescription]:
-    from icdgen.describe.links import links_of  # the rules about names need none of it
-
-    return links_of(description)
-
-
 def _link(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
     from icdgen.backends.c import links
 
@@ -201,42 +189,25 @@ def _link(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
 
 
 def _client(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
-    buses = (
-        ("uart", link.facts.framing is not None),
-        ("i2c", link.facts.i2c_address is not None),
-        ("can", link.can is not None),
-    )
-    return {
-        **_any_client(node),
-        "buses": [bus for bus, is_known in buses if is_known],
-        "telecommands": [(one, one.telecommand_id_name) for one in node.telecommands],
-        "telemetry": [(one, one.telemetry_id_name) for one in node.telemetry],
-    }
-
-
-def _stream_client(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
-    form = link.facts.stream
-    sent = form.telecommands if form else ()
-    asked = {row.reply for row in sent if row.least == 0}
-    return {
-        **_any_client(node),
-        "sequences": form.sequences if form else 0,
-        "telecommands": [(one, one.telecommand_id_name) for one in node.telecommands],
-        "telemetry": [
-            (under.id in asked, one, under.tried[: place + 1])
-            for under in node.ids("telemetry")
-            for place, one in enumerate(under.candidates)
-        ],
-    }
-
-
-def _any_client(node: NodeDescription) -> dict[str, object]:
     headers = sorted({*(f"../{name}.h" for name in node.model.includes), *(f"{one.name}.h" for one in node.messages)})
-    return {
+    common = {
         "node": node.name,
         "about": comment([FILE, f"{words(node.model.title)}: a client that takes its messages only."]),
         "includes": ["link.h", *headers],
+        "telecommands": [(one, one.telecommand_id_name) for one in node.telecommands],
     }
+    form = link.facts.stream
+    if form is None:
+        known = {"uart": link.facts.framing, "i2c": link.facts.i2c_address, "can": link.can}
+        buses = [bus for bus, one in known.items() if one is not None]
+        return {**common, "buses": buses, "telemetry": [(one, one.telemetry_id_name) for one in node.telemetry]}
+    asked = {row.reply for row in form.telecommands if row.least == 0}
+    telemetry = [
+        (under.id in asked, one, under.tried[: place + 1])
+        for under in node.ids("telemetry")
+        for place, one in enumerate(under.candidates)
+    ]
+    return {**common, "sequences": form.sequences, "telemetry": telemetry}
 
 
 def _node(node: NodeDescription) -> dict[str, object]:

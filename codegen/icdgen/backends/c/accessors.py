@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from icdgen.backends.c import decoding, physical
-from icdgen.backends.c.names import stem
-from icdgen.backends.c.reserved_words import RESERVED
+from icdgen.backends.c.names import RESERVED, stem
 from icdgen.backends.c.statement import call, either
 from icdgen.backends.c.text import WIDTH, described
 from icdgen.backends.c.types import type_of
@@ -82,7 +81,7 @@ _MADE = "Read from the frame that the message makes: 0 if it makes none, as a ra
 def view(field: FieldDescription) -> View:
     """The getter of a view."""
     about = field.comment._replace(rest=(*field.comment.rest, _MADE) if field.message.is_narrow else field.comment.rest)
-    return View(field.name, type_of(field), described(about), decoding.view(field))
+    return View(field.name, type_of(field), described(about), decoding.number(field, "value"))
 
 
 def _double(field: FieldDescription) -> Accessor:

@@ -32,7 +32,7 @@ def conditional(message: MessageDescription) -> list[Conditional]:
             presence_comment(field.model, message.model),
             either(list(map(_test, field.needs)), " && "),
             f"message->{field.name} = {_absent(field)};",
-            decoding.number(field),
+            decoding.number(field, f"message->{field.member}"),
             tuple(_written(field)),
         )
         for field in message.conditional

@@ -7,7 +7,6 @@ from functools import partial
 from typing import Any
 
 from icdgen.backends.c import names
-from icdgen.backends.c.members import statements
 from icdgen.backends.c.types import mask
 from icdgen.describe import EnumDescription, FieldDescription
 from icdgen.describe.constants import Constant
@@ -47,22 +46,6 @@ def _float(one: Constant, bits: int) -> str:
         return f"icd_f{bits}_of({mask(one.value, bits)})"
     text = f"{one.number}{'f' if bits == 32 else ''}"
     return f"({text})" if text.startswith("-") else text
-
-
-def initial(message: Composite[Any]) -> list[str]:
-    """Statements that give fields with only one valid value that value, and what counts an open end its smallest."""
-    counts = {part.counter for part in message.model.open_parts if part.low}
-    counters = [field for field in message.members if field.model.name in counts]
-    found = [f"message->{field.member} = {field.fresh}u;" for field in counters]
-    for field in message.blocks:
-        count = message.fewest if field.is_open else field.count
-        if count or not field.count:
-            found += statements(field, _valid, f"{count}u")
-    return found
-
-
-def _valid(field: FieldDescription, member: str, name: str) -> list[str]:
-    return [] if field.model.const is None else [f"message->{member} = {only(field)};"]
 
 
 def only(field: FieldDescription) -> str:

@@ -9,9 +9,9 @@ from icdgen.backends import Identifier
 from icdgen.backends.c import names, physical
 from icdgen.backends.c.parts import part_name
 from icdgen.describe import Description, FieldDescription, MessageDescription, NodeDescription, StructDescription
+from icdgen.describe.arrays import all_repeated
 from icdgen.describe.description import Composite
 from icdgen.describe.parts import parts_of
-from icdgen.describe.repeated import all_repeated
 
 FILE = "C names at file scope"
 FILES = "C header files"

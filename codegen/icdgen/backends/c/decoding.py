@@ -13,9 +13,8 @@ from icdgen.backends.c.text import WIDTH
 from icdgen.backends.c.types import cast, type_of
 from icdgen.backends.lines import STEP
 from icdgen.describe import FieldDescription, MessageDescription
+from icdgen.describe.arrays import Repeated, Rounds
 from icdgen.describe.description import Composite, TailDescription
-from icdgen.describe.repeated import Repeated
-from icdgen.describe.rounds import Rounds
 
 EMPTY = "empty"
 """Member of the struct of a message without fields: C has no empty structs."""
@@ -27,9 +26,8 @@ def statements(message: Composite[Any], groups: Groups) -> list[str]:
         return ["(void)buffer;", f"message->{EMPTY} = 0u;"]
     found = [_one(one) if isinstance(one, FieldDescription) else _group(one, message) for one in groups]
     if message.tail is not None and message.tail.counter.model.implied:
-        found.append(
-            f"message->{message.tail.counter.name} = {cast(_count(message.tail), message.tail.counter.storage.bits)};"
-        )
+        counter = message.tail.counter
+        found.append(f"message->{counter.name} = {cast(_count(message.tail), counter.storage.bits)};")
     return found
 
 
@@ -46,12 +44,9 @@ def misfit_length(tail: TailDescription, longest: str, known: int = 0) -> str:
     tests = [f"length < {tail.least}u"] if tail.least > known else []
     tests.append(f"length > {longest}")
     if tail.step > 1:
-        tests.append(f"({_rest(tail)} % {tail.step}u) != 0u")
+        rest = f"(length - {tail.least}u)" if tail.least else "length"
+        tests.append(f"({rest} % {tail.step}u) != 0u")
     return either(tests)
-
-
-def _rest(tail: TailDescription) -> str:
-    return f"(length - {tail.least}u)" if tail.least else "length"
 
 
 def miscounted(tail: TailDescription) -> tuple[str, str, str] | None:
@@ -61,7 +56,7 @@ def miscounted(tail: TailDescription) -> tuple[str, str, str] | None:
     bits = max(tail.counter.storage.bits, 32)
     value = "value" if tail.counter.storage.bits == bits else cast("value", bits)
     told = cast(_count(tail), bits) + (f" + {tail.low}u" if tail.low else "")
-    return type_of(tail.counter), _number(tail.counter, "value"), f"{value} != {told}"
+    return type_of(tail.counter), number(tail.counter, "value"), f"{value} != {told}"
 
 
 def of_inner(message: MessageDescription) -> list[dict[str, object]]:
@@ -69,7 +64,7 @@ def of_inner(message: MessageDescription) -> list[dict[str, object]]:
     return [
         {
             "type": type_of(one.counter),
-            "reading": _number(one.counter, "value"),
+            "reading": number(one.counter, "value"),
             "misfit": miscount(one, "value") if one.is_bound else "",
             "begin": one.begin,
             "there": _bytes(elements(one, "value"), one.step),
@@ -88,10 +83,8 @@ def _bytes(count: str, step: int) -> str:
 def of_elements(tail: TailDescription, reading: str) -> list[str]:
     """The statements that read the structs of an open end, each where it stands in ``buffer``."""
     name = tail.part.member
-    return [
-        f"(void)memset(message->{name}, 0, sizeof message->{name});",
-        for_each(name, there(tail), reading, tail.begin, tail.step),
-    ]
+    loop_over = for_each(name, there(tail), reading, tail.begin, tail.step)
+    return [f"(void)memset(message->{name}, 0, sizeof message->{name});", loop_over]
 
 
 def for_each(name: str, count: str, function: str, begin: int, step: int) -> str:
@@ -146,7 +139,7 @@ def in_rounds(rounds: Rounds, const: str, lines: Iterable[str]) -> str:
 
 def _group(group: Flags | Row | Array | Structs, message: Composite[Any]) -> str:
     if isinstance(group, Array):
-        lines = (_number(one, f"message->{one.member}", "part") for one in group.members)
+        lines = (number(one, f"message->{one.member}", "part") for one in group.members)
         return in_rounds(group.rounds, "const ", lines)
     if isinstance(group, Structs):
         return of_array(group.array, group.reading)
@@ -159,24 +152,15 @@ def _group(group: Flags | Row | Array | Structs, message: Composite[Any]) -> str
     return call(f"ICDGEN_READ_{group.macro}", (*target, value, f"{len(members)}u", members[0], members[-1]))
 
 
-def view(field: FieldDescription) -> str:
-    """The statement that reads a view."""
-    return _number(field, "value")
-
-
-def number(field: FieldDescription) -> str:
-    """The statement that reads a number into its member."""
-    return _number(field, f"message->{field.member}")
-
-
 def _one(field: FieldDescription) -> str:
     one = field.model
     if one.is_bytes:
         return f"(void)memcpy(message->{field.member}, &buffer[{one.at // 8}], {one.bits // 8}u);"
-    return _number(field, f"message->{field.member}")
+    return number(field, f"message->{field.member}")
 
 
-def _number(field: FieldDescription, target: str, frame: str = "buffer") -> str:
+def number(field: FieldDescription, target: str, frame: str = "buffer") -> str:
+    """The statement that reads a number from the bytes that ``frame`` points to."""
     read = bits.read(field, frame)
     line = _assigned(field, target, read.whole)
     if len(STEP) + len(line) <= WIDTH or len(read.terms) == 1:

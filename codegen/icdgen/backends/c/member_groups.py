@@ -8,8 +8,7 @@ from dataclasses import replace
 
 from icdgen.backends.c.bits import is_word, order
 from icdgen.describe import FieldDescription
-from icdgen.describe.repeated import Repeated
-from icdgen.describe.rounds import Rounds, rounds_of
+from icdgen.describe.arrays import Repeated, Rounds, rounds_of
 from icdgen.frozen import dataclass
 
 LONG_ENOUGH = 8

@@ -8,6 +8,33 @@ from icdgen.describe import EnumDescription, FieldDescription, MessageDescriptio
 from icdgen.describe.description import Composite
 from icdgen.describe.enums import MemberDescription
 
+_HEADERS = """
+    assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg stdatomic stdbit
+    stdbool stdckdint stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype
+    alloca endian features pthread sched strings unistd
+    """.split()
+"""Of the language and the system: a node's header of that name would be found in their place."""
+
+RESERVED = frozenset("""
+    auto break case char const continue default do double else enum extern float for goto if inline int long register
+    restrict return short signed sizeof static struct switch typedef union unsigned void volatile while
+    alignas alignof bool constexpr false nullptr static_assert thread_local true typeof typeof_unqual noreturn
+    and and_eq asm bitand bitor catch char8_t char16_t char32_t class co_await co_return co_yield compl concept
+    consteval constinit const_cast decltype delete dynamic_cast explicit export friend mutable namespace new noexcept
+    not not_eq operator or or_eq private protected public reinterpret_cast requires static_cast template this throw
+    try typeid typename using virtual wchar_t xor xor_eq
+    int8_t int16_t int32_t int64_t uint8_t uint16_t uint32_t uint64_t intptr_t uintptr_t intmax_t uintmax_t
+    int_least8_t int_least16_t int_least32_t int_least64_t uint_least8_t uint_least16_t uint_least32_t
+    uint_least64_t int_fast8_t int_fast16_t int_fast32_t int_fast64_t uint_fast8_t uint_fast16_t uint_fast32_t
+    uint_fast64_t size_t ptrdiff_t max_align_t nullptr_t
+    complex imaginary offsetof errno assert stdin stdout stderr setjmp
+    unix linux i386 mips sparc
+    """.split()) | {f"{name}.h" for name in _HEADERS}
+"""Words that can't be identifiers in C99 to C23 or C++11 to C++20, or that the usual headers and compilers define.
+
+Member names are lower case, and every other name begins with the node's, so upper-case macros can't be met.
+"""
+
 
 def stem(one: Composite[Any] | EnumDescription) -> str:
     """``demo_estimated_roll``: stem of the functions and the type; of ``DemoState`` ``demo_state``, for it has the node's name."""
@@ -21,7 +48,7 @@ def enumerator(enum: EnumDescription, member: MemberDescription) -> str:
 
 
 def reading(message: MessageDescription, name: str) -> str:
-    """The function that reads an element of an array of structs; ``name`` is that of `icdgen.describe.repeated`."""
+    """The function that reads an element of an array of structs; ``name`` is that of `icdgen.describe.arrays`."""
     return f"{stem(message)}_read_{name}"
 
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from icdgen.backends.c.names import constant
 from icdgen.backends.c.text import WIDTH
 from icdgen.backends.lines import STEP, bracketed
-from icdgen.describe.nodes import Candidate
+from icdgen.describe.whole import Candidate
 
 _COMPOUND = re.compile(r" (?:<<|>>|&) \w+\Z")
 

@@ -14,7 +14,7 @@ from icdgen.backends.c.types import type_of
 from icdgen.backends.lines import in_rows
 from icdgen.backends.origin import origin
 from icdgen.describe import FieldDescription, MessageDescription, NodeDescription, describe
-from icdgen.describe.nodes import Direction
+from icdgen.describe.whole import Direction
 from icdgen.icd.model import Field, Icd, Message
 from icdgen.render import Renderer
 from icdgen.vectors.ids import worth_asking

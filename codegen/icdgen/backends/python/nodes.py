@@ -11,7 +11,7 @@ from icdgen.backends.python.text import docstring, literal, paragraph
 from icdgen.describe import Description, EnumDescription, NodeDescription
 from icdgen.describe.comments import sentence
 from icdgen.describe.description import Composite
-from icdgen.describe.nodes import Under
+from icdgen.describe.whole import Under
 from icdgen.icd.model import Message, Node
 
 _OF_NODE = (

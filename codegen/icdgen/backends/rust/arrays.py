@@ -6,9 +6,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from icdgen.describe import FieldDescription
+from icdgen.describe.arrays import Rounds, arrays_named, rounds_of
 from icdgen.describe.description import Composite
-from icdgen.describe.repeated import arrays_named
-from icdgen.describe.rounds import Rounds, rounds_of
 from icdgen.layout import is_whole_bytes
 
 

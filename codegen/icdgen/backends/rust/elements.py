@@ -9,8 +9,8 @@ from icdgen.backends.lines import STEP
 from icdgen.backends.rust import arrays, bits
 from icdgen.backends.rust.names import one_type, own_name, struct_path
 from icdgen.describe import FieldDescription, StructDescription
+from icdgen.describe.arrays import Rounds
 from icdgen.describe.description import Composite
-from icdgen.describe.rounds import Rounds
 
 DEPTH = 2  # steps of the body of a function
 

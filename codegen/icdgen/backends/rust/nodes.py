@@ -6,8 +6,8 @@ from icdgen.backends.lines import STEP
 from icdgen.backends.rust.text import WIDTH, code, doc, integer, mask, prose
 from icdgen.describe import NodeDescription
 from icdgen.describe.comments import sentence
-from icdgen.describe.nodes import Candidate
 from icdgen.describe.storage import holding
+from icdgen.describe.whole import Candidate
 from icdgen.icd.model import Node
 
 

@@ -1,0 +1,98 @@
+"""The arrays of a message that are read and written by a loop, or by a function for an element.
+
+Of structs, and of flags and numbers that are no words: as many of these as are whole bytes are read and written alike, in rounds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from copy import copy
+from dataclasses import replace
+from math import gcd
+from typing import Any, NamedTuple
+
+from icdgen.describe.description import Composite, FieldDescription, StructDescription
+
+MANY_ENOUGH = 4
+"""From this many elements on there are rounds; of fewer, each is read and written by itself."""
+
+
+class Repeated(NamedTuple):
+    """An array of structs, of a message or of an element of another array of it."""
+
+    part: FieldDescription  # the array as one
+    element: StructDescription  # in the orders that hold here
+    name: str  # from the message on: ``satellites_signals``
+
+    @property
+    def begin(self) -> int:
+        """The first byte, counted in what it stands in."""
+        return self.part.model.at // 8
+
+    @property
+    def step(self) -> int:
+        """Bytes of an element."""
+        return self.element.model.length
+
+
+def repeated_in(one: Composite[Any], within: str = "") -> tuple[Repeated, ...]:
+    """Those of a message or struct itself, its open end among them; ``within`` is where their names begin."""
+    return tuple(Repeated(part, part.element, within + part.name) for part in one.blocks if part.element is not None)
+
+
+def all_repeated(one: Composite[Any]) -> Iterator[Repeated]:
+    """All of a message, those in others before them."""
+    for part, name in arrays_named(one, lambda part: part.element is not None):
+        if part.element is not None:
+            yield Repeated(part, part.element, name)
+
+
+def arrays_named(
+    one: Composite[Any], wanted: Callable[[FieldDescription], bool], within: str = ""
+) -> Iterator[tuple[FieldDescription, str]]:
+    """The arrays of a message that are wanted, arrays of structs among them, and their names; those in others come first."""
+    for part in one.blocks:
+        if wanted(part):
+            name = within + part.name
+            if part.element is not None:
+                yield from arrays_named(part.element, wanted, f"{name}_")
+            yield part, name
+
+
+class Rounds(NamedTuple):
+    """``turns`` rounds of ``in_round`` elements; what is left of the array is none."""
+
+    in_round: int
+    turns: int
+    begin: int  # the first byte of the first
+    step: int  # bytes of each
+
+    @property
+    def elements(self) -> int:
+        """How many there are in all rounds."""
+        return self.turns * self.in_round
+
+    @property
+    def length(self) -> int:
+        """Bytes of all rounds."""
+        return self.turns * self.step
+
+    def members(self, first: FieldDescription, name: Callable[[int], str]) -> tuple[FieldDescription, ...]:
+        """The elements of one round, counted from where its bytes begin; ``name`` is what they are called by in code."""
+        found = []
+        for element in range(self.in_round):
+            one = copy(first)
+            one.model = replace(first.model, at=element * first.model.bits, count=0)
+            one.member = name(element)
+            found.append(one)
+        return tuple(found)
+
+
+def rounds_of(first: FieldDescription, count: int) -> Rounds | None:
+    """Those of an array of ``count`` elements, which begins with ``first``; None of few, and of what begins within a byte."""
+    at, bits = first.model.at, first.model.bits
+    if at % 8 or first.model.is_bytes or first.model.when:
+        return None
+    in_round = 8 // gcd(8, bits)
+    rounds = Rounds(in_round, count // in_round, at // 8, in_round * bits // 8)
+    return rounds if rounds.turns > 1 and rounds.elements >= MANY_ENOUGH else None
