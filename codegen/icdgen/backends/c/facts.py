@@ -4,36 +4,20 @@ from __future__ import annotations
 
 from typing import Any
 
+from icdgen.protocol import sections
 from icdgen.protocol.declared import Fact, Kind
-from icdgen.protocol.sections import (
-    BUSES,
-    Acknowledge,
-    Can,
-    Checksum,
-    Crc,
-    Download,
-    Erasure,
-    Extended,
-    Files,
-    Framing,
-    HoleMap,
-    Index,
-    Listing,
-    LogFile,
-    LogMask,
-    LogMessage,
-    Operation,
-    Settings,
-    Upload,
-)
+from icdgen.protocol.sections import BUSES
 
 MOST_SIGNED = 0x7FFF_FFFF
 TYPES: dict[type, str] = {
-    Settings: "icd_client_settings_t", Framing: "icd_framing_t", Acknowledge: "icd_acknowledge_t", Crc: "icd_crc_form_t",
-    Checksum: "icd_checksum_form_t", Can: "icd_can_form_t", Extended: "icd_can_extended_t", LogMask: "icd_log_mask_form_t",
-    LogFile: "icd_log_file_form_t", LogMessage: "icd_log_message_form_t", Index: "icd_index_form_t",
-    HoleMap: "icd_hole_map_form_t", Files: "icd_files_form_t", Listing: "icd_list_form_t", Download: "icd_download_form_t",
-    Upload: "icd_upload_form_t", Erasure: "icd_erase_form_t", Operation: "icd_operation_form_t",
+    sections.Settings: "icd_client_settings_t", sections.Framing: "icd_framing_t",
+    sections.Acknowledge: "icd_acknowledge_t", sections.Crc: "icd_crc_form_t",
+    sections.Checksum: "icd_checksum_form_t", sections.Can: "icd_can_form_t", sections.Extended: "icd_can_extended_t",
+    sections.LogMask: "icd_log_mask_form_t", sections.LogFile: "icd_log_file_form_t",
+    sections.LogMessage: "icd_log_message_form_t", sections.Index: "icd_index_form_t",
+    sections.HoleMap: "icd_hole_map_form_t", sections.Files: "icd_files_form_t", sections.Listing: "icd_list_form_t",
+    sections.Download: "icd_download_form_t", sections.Upload: "icd_upload_form_t",
+    sections.Erasure: "icd_erase_form_t", sections.Operation: "icd_operation_form_t",
 }  # fmt: skip
 
 

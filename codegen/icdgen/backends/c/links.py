@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-from icdgen.backends.c import streams
 from icdgen.backends.c.facts import TYPES, boolean, or_none, spelled
 from icdgen.backends.c.text import comment, plain
 from icdgen.backends.lines import STEP, in_rows
 from icdgen.describe.links import CAN_PARTS, INDEX_PARTS, Assumptions, LinkDescription, SentMessage, StepDescription
 from icdgen.protocol.declared import Kind, facts_of
-from icdgen.protocol.envelope import CRC, StreamRow
+from icdgen.protocol.envelope import CRC, PACKET, EnvelopeField, Stream, StreamRow
 from icdgen.protocol.sections import BUSES, CAN_KINDS, PROCEDURES, Crc, Step
 
 _MOST_ID, _MOST_LENGTH = 0xFF, 0xFFFF
@@ -45,7 +44,7 @@ def sizes(link: LinkDescription) -> list[tuple[str, int, str]]:
     """Sizes of buffers: name, bytes, what it is."""
     known = link.facts
     if known.stream:
-        return streams.sizes(known.stream)
+        return _stream_sizes(known.stream)
     rows = [("LONGEST", known.longest, "Bytes of the longest message of either direction, with id and checksum.")]
     slot = 1 + link.joined_bytes if known.can else 0
     if known.can:
@@ -59,6 +58,20 @@ def sizes(link: LinkDescription) -> list[tuple[str, int, str]]:
         rows.append(("BLOCK_BYTES", packets * known.files.packet_bytes, "Bytes of the largest block of a file."))
         rows.append(("BLOCK_BITMAP_BYTES", -(-packets // 8), "Bytes of a bit for each packet of such a block."))
     return rows
+
+
+def _stream_sizes(form: Stream) -> list[tuple[str, int, str]]:
+    """Those of a node whose messages have an envelope."""
+    return [
+        ("LONGEST", form.longest, "Bytes of a decoder's buffer: the longest message with its envelope."),
+        ("LINE_BYTES", form.longest_line, "Most bytes of a message on the line."),
+        ("SEQUENCES", form.sequences, "Numbers that a decoder remembers to notice gaps."),
+        (
+            "REQUEST_BYTES",
+            form.longest_request,
+            "Bytes of a client's buffer for each request, beside the longest message.",
+        ),
+    ]
 
 
 def tables(link: LinkDescription) -> list[Table]:
@@ -182,8 +195,11 @@ class _Tables:
         """The table of a part: its facts, then the rows that code ``made``. NULL if there is no such part."""
         if part is None:
             return "NULL"
-        assumed = (plain(f"{key}: {why}") for key, why in self.assumed.of_section(section))
-        return self.add(name, TYPES[type(part)], [*self.facts(name, part), *made], assumed)
+        return self.add(name, TYPES[type(part)], [*self.facts(name, part), *made], self.assumed_in(section))
+
+    def assumed_in(self, section: str) -> list[str]:
+        """What is assumed in a section, and why."""
+        return [plain(f"{key}: {why}") for key, why in self.assumed.of_section(section)]
 
     def facts(self, name: str, part: object) -> list[Row]:
         """A row for each declared fact."""
@@ -275,15 +291,17 @@ class _Tables:
         form = self.known.stream
         if form is None:
             return "NULL"
-        fields = self.array("envelope", "icd_envelope_field_t", streams.field_rows(form))
+        fields = self.array("envelope", "icd_envelope_field_t", map(_field, form.fields))
         check = "NULL"
         if form.check:
             crc = self.crc("check", form.check.crc, form.check.kind == CRC)
             row = Row(f"ICD_CHECK_{form.check.kind.upper()}, {{{crc}}}")
-            check = self.add("check", "icd_check_form_t", [row, Row(streams.covered(form.check), "covered")])
+            covered = f"{form.check.covered_from}u, {form.check.covered_trailer}u, {boolean(form.check.is_seeded)}"
+            check = self.add("check", "icd_check_form_t", [row, Row(covered, "covered")])
         both = (("sent", form.telecommands), ("received", form.telemetry))
-        rows = [self.array(name, "icd_stream_row_t", map(self.enveloped, found)) for name, found in both]
-        sizes = f"{streams.DELIMITERS[form.delimited_by]}, {form.header_bytes}u, {form.trailer_bytes}u"
+        rows = [self.array(name, "icd_stream_row_t", map(_enveloped, found)) for name, found in both]
+        delimiter = "packet" if form.delimited_by == PACKET else form.delimited_by
+        sizes = f"ICD_DELIMITED_BY_{delimiter.upper()}, {form.header_bytes}u, {form.trailer_bytes}u"
         parts = [
             Row(sizes, "bytes of header, trailer"),
             Row(f"{form.length_plus}, {boolean(form.per_id)}", "length beside the data, a sequence for each id"),
@@ -291,15 +309,7 @@ class _Tables:
             Row(check, "checksum"),
             Row(f"{{{rows[0]}, {rows[1]}}}, {{{len(form.telecommands)}u, {len(form.telemetry)}u}}", "messages"),
         ]
-        assumed = (plain(f"{key}: {why}") for key, why in self.assumed.of_section("stream"))
-        return self.add("stream", "icd_stream_form_t", parts, assumed)
-
-    @staticmethod
-    def enveloped(row: StreamRow) -> Row:
-        """A message in an envelope."""
-        numbers = f"{row.id:#x}u, {row.least}u, {row.most}u, {boolean(row.cuts_zeros)}, {row.seed}u, "
-        numbers += f"{boolean(row.reply is not None)}, {row.reply or 0:#x}u"
-        return Row(f"{{{numbers}}}", plain(row.name))
+        return self.add("stream", "icd_stream_form_t", parts, self.assumed_in("stream"))
 
     def log_mask(self) -> str:
         mask = self.known.mask
@@ -341,6 +351,20 @@ class _Tables:
     def procedure(self, name: str) -> str:
         """A procedure of file transfer."""
         return self.part(name, getattr(self.known.files, name, None), f"file_transfer.{name}")
+
+
+def _field(one: EnvelopeField) -> Row:
+    """A field of the envelope."""
+    values = ", ".join(f"{value:#x}u" for value in one.values)
+    numbers = f"{one.at}u, {one.size}u, {one.shift}u, {one.bits}u, {boolean(one.little)}, {{{values}}}"
+    return Row(f"{{ICD_ENVELOPE_{one.role.upper()}, {boolean(one.in_trailer)}, {numbers}}}")
+
+
+def _enveloped(row: StreamRow) -> Row:
+    """A message in an envelope."""
+    numbers = f"{row.id:#x}u, {row.least}u, {row.most}u, {boolean(row.cuts_zeros)}, {row.seed}u, "
+    numbers += f"{boolean(row.reply is not None)}, {row.reply or 0:#x}u"
+    return Row(f"{{{numbers}}}", plain(row.name))
 
 
 def _short(messages: Iterable[SentMessage]) -> list[SentMessage]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from types import MappingProxyType
 
 from icdgen.render import Renderer
 
@@ -15,12 +16,12 @@ _GUARDED = re.compile(
 )
 
 
-def whole(file: str, made: Mapping[str, str], render: Renderer) -> str:
+def whole(file: str, render: Renderer, made: Mapping[str, str] = MappingProxyType({})) -> str:
     """The text of a file with its parts in place. ``made`` are those that come from the ICD, instead of the runtime's samples."""
 
     def part(include: re.Match[str]) -> str:
         name = include["file"]
-        text = made[name] if name in made else render.source(name)
+        text = made.get(name) or render.source(name)
         guarded = _GUARDED.fullmatch(text)
         return guarded["body"] if guarded else text
 
