@@ -41,12 +41,17 @@ def _annotation(field: FieldDescription) -> str:
 
 def default(field: FieldDescription) -> str:
     """The raw value in a new message."""
+    if field.count:
+        return _repeated(field, _default(field))
     if field.is_open:
-        few = field.message.fewest
-        if not few:
-            return "()" if field.count else 'b""'
-        return f"({_default(field)},) * {few}" if field.count else f"bytes({few})"
-    return f"({_default(field)},) * {field.count}" if field.count else _default(field)
+        return f"bytes({field.message.fewest})" if field.message.fewest else 'b""'
+    return _default(field)
+
+
+def _repeated(field: FieldDescription, value: str) -> str:
+    """The values of an array in a new message."""
+    many = field.message.fewest if field.is_open else field.count
+    return f"({value},) * {many}" if many else "()"
 
 
 def _default(field: FieldDescription) -> str:
@@ -168,13 +173,7 @@ def scaled(field: FieldDescription) -> str:
     """``estimated_roll_angle_deg: float = _base.scaled(...)``: the steps of the physical value, and the first one."""
     curve, steps = field.curve, field.steps
     first = _double(curve.double(field.fresh) if curve is not None else steps.double(field.fresh) if steps else 0.0)
-    if field.is_open:
-        few = field.message.fewest
-        first, note = f"({first},) * {few}" if few else "()", "tuple[float, ...]"
-    elif field.count:
-        first, note = f"({first},) * {field.count}", "tuple[float, ...]"
-    else:
-        note = _perhaps(field, "float")
+    first, note = (_repeated(field, first), "tuple[float, ...]") if field.count else (first, _perhaps(field, "float"))
     if curve is not None:
         items = [*_pieces(curve), f"default={first}"]
         if field.is_set and field.model.ends != (field.model.raw_min, field.model.raw_max):
@@ -196,8 +195,7 @@ def _double(value: float) -> str:
 
 def text(field: FieldDescription) -> str:
     """``version_text: str = _base.text(...)``: a field of characters as what it says."""
-    first = f'("",) * {field.message.fewest if field.is_open else field.count}' if field.count else '""'
-    first = "()" if field.is_open and field.count and not field.message.fewest else first
+    first = _repeated(field, '""') if field.count else '""'
     return _statement(field.physical_name, "tuple[str, ...]" if field.count else "str", "text", [f"default={first}"])
 
 

@@ -9,22 +9,11 @@ from icdgen.backends.python.literals import Call, Noted, Verbatim, expression
 from icdgen.describe.links import Assumptions, LinkDescription, SentMessage
 from icdgen.protocol.declared import facts_of
 from icdgen.protocol.envelope import Check, Stream, StreamRow
-from icdgen.protocol.sections import (
-    Crc,
-    Download,
-    Erasure,
-    HoleMap,
-    Listing,
-    LogFile,
-    LogMessage,
-    Settings,
-    Step,
-    Upload,
-)
+from icdgen.protocol.sections import Crc, Download, Erasure, HoleMap, Listing, LogFile, LogMessage, Step, Upload
 
 # Types whose names in generated code are not those of the facts.
 _TYPES = {
-    Settings: "Settings", Crc: "CrcForm", LogFile: "LogFileForm", LogMessage: "LogMessageForm", HoleMap: "HoleMapForm",
+    Crc: "CrcForm", LogFile: "LogFileForm", LogMessage: "LogMessageForm", HoleMap: "HoleMapForm",
     Listing: "ListForm", Download: "DownloadForm", Upload: "UploadForm", Erasure: "ErasureForm",
 }  # fmt: skip
 

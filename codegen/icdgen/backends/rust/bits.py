@@ -6,7 +6,7 @@ from typing import Any
 
 from icdgen.backends.lines import STEP, bracketed
 from icdgen.backends.rust.arrays import helper_of, is_run, reader, writer
-from icdgen.backends.rust.names import field_name, own_name, struct_path
+from icdgen.backends.rust.names import field_name, integer_type, own_name, struct_path
 from icdgen.backends.rust.text import WIDTH, mask
 from icdgen.describe import FieldDescription, StructDescription
 from icdgen.describe.description import Composite
@@ -43,7 +43,7 @@ def reading(field: FieldDescription, tables: set[int], depth: int = 3, within: s
         return _whole(field, size)
     if len(row) == 1:
         return _finished(field, _one_byte(row[0]), size)
-    lines = [f"let mut value = {_first(row[0], size)};"]
+    lines = [f"let mut value = {_placed(row[0], size)};"]
     lines += [f"value |= {_placed(piece, size)};" for piece in row[1:]]
     lines.append(_finished(field, "value", size))
     body = "".join(f"\n{STEP * (depth + 1)}{line}" for line in lines)
@@ -64,14 +64,12 @@ def _struct(field: FieldDescription, struct: StructDescription, tables: set[int]
 
 def _array(field: FieldDescription, depth: int) -> str:
     """The words of an array, read one after the other."""
-    one, size = field.model, field.model.bits
-    first = one.at // 8
+    one, first = field.model, field.model.at // 8
     if one.is_bytes:
         return f"arrays(bytes, {first})"
-    if one.type == "uint" and size == 8:
+    if one.type == "uint" and one.bits == 8:
         return f"array(bytes, {first})"
-    kind = "f" if one.type == "float" else "i" if one.signed else "u"
-    word = f"{kind}{size}::from_{_order(field)}_bytes"
+    word = f"{_word(field)}::from_{_order(field)}_bytes"
     if one.type != "enum":
         return f"words(bytes, {first}, {word})"
     value = f"Coded::from_raw({word}(word))"
@@ -92,34 +90,36 @@ def _listed(field: FieldDescription, tables: set[int], depth: int) -> str:
 
 
 def _whole(field: FieldDescription, size: int) -> str:
-    one = field.model
-    first = one.at // 8
-    if size == 8:
-        byte = f"bytes[{first}]"
-        value = f"i8::from_le_bytes([{byte}])" if one.signed else byte
-        return _enum(field, value, size) if one.type == "enum" else value
-    kind = "f" if one.type == "float" else "i" if one.signed else "u"
-    value = f"{kind}{size}::from_{_order(field)}_bytes(take!(bytes[{first}; {size // 8}]))"
-    return _enum(field, value, size) if one.type == "enum" else value
+    first = field.model.at // 8
+    if size > 8:
+        value = f"{_word(field)}::from_{_order(field)}_bytes(take!(bytes[{first}; {size // 8}]))"
+    else:
+        value = f"i8::from_le_bytes([bytes[{first}]])" if field.model.signed else f"bytes[{first}]"
+    return _typed(field, value, size)
+
+
+def _word(field: FieldDescription) -> str:
+    """The type of a word: ``u16``, ``f32``."""
+    return f"{'f' if field.model.type == 'float' else 'i' if field.model.signed else 'u'}{field.model.bits}"
 
 
 def _order(field: FieldDescription) -> str:
     return "le" if field.byte_order == "little" else "be"
 
 
-def _enum(field: FieldDescription, value: str, size: int) -> str:
-    storage = field.storage
-    wider = value if size == storage.bits else f"{'i' if storage.signed else 'u'}{storage.bits}::from({value})"
+def _typed(field: FieldDescription, value: str, size: int) -> str:
+    """The integer of ``size`` bits as the field's type."""
+    if field.model.type != "enum":
+        return value
+    wider = value if size == field.storage.bits else f"{integer_type(field)}::from({value})"
     return f"Coded::from_raw({wider})"
 
 
 def _finished(field: FieldDescription, value: str, size: int) -> str:
     """The unsigned value of ``size`` bits as the field's type."""
-    kind = field.model.type
-    if kind == "float":
+    if field.model.type == "float":
         return f"f{size}::from_bits({value})"
-    value = _signed(field, value, size) if field.model.signed else value
-    return _enum(field, value, size) if kind == "enum" else value
+    return _typed(field, _signed(field, value, size) if field.model.signed else value, size)
 
 
 def _signed(field: FieldDescription, value: str, size: int) -> str:
@@ -147,35 +147,24 @@ def _parenthesised(text: str) -> str:
     return f"({text})" if " " in text else text
 
 
-def _first(piece: Piece, size: int) -> str:
-    return _placed(piece, size) if piece.at else _widened(piece, size)
-
-
-def _widened(piece: Piece, size: int) -> str:
-    return _one_byte(piece) if size == 8 else f"u{size}::from({_one_byte(piece)})"
-
-
 def _placed(piece: Piece, size: int) -> str:
-    value = _widened(piece, size)
+    """The run of bits at its place in a value of ``size`` bits."""
+    value = _one_byte(piece) if size == 8 else f"u{size}::from({_one_byte(piece)})"
     return f"{_parenthesised(value) if size == 8 else value} << {piece.at}" if piece.at else value
 
 
 def fitting(field: FieldDescription) -> list[str]:
     """The statements that return with an error if the raw value of a narrow field does not fit its bits."""
+    member = f"self.{field_name(field)}"
+    if field.struct is not None and not field.count:
+        return [f"{member}.fit()?;"]
     if field.struct is not None:
-        if not field.count:
-            return [f"self.{field_name(field)}.fit()?;"]
-        if field.is_open:
-            return [f"for part in self.{field_name(field)}() {{", f"{STEP}part.fit()?;", "}"]
-        return [f"for part in &self.{field_name(field)} {{", f"{STEP}part.fit()?;", "}"]
+        return [f"for part in {f'{member}()' if field.is_open else f'&{member}'} {{", f"{STEP}part.fit()?;", "}"]
     raw = ".raw()" if field.enum is not None else ""
-    if field.count:
-        values = f"self.{field_name(field)}"
-        if field.is_open:
-            values = f"self.{field_name(field)}().iter().copied()"
-        lines = f"for value in {values} {{", f"{STEP}{field.name.upper()}.fit(value{raw})?;", "}"
-        return list(lines)
-    return [f"{field.name.upper()}.fit({_source(field)}{raw})?;"]
+    if not field.count:
+        return [f"{field.name.upper()}.fit({_source(field)}{raw})?;"]
+    values = f"{member}().iter().copied()" if field.is_open else member
+    return [f"for value in {values} {{", f"{STEP}{field.name.upper()}.fit(value{raw})?;", "}"]
 
 
 def _source(field: FieldDescription, owner: str = "self") -> str:
@@ -221,31 +210,21 @@ def writing(field: FieldDescription, owner: str = "self", within: str = "") -> l
 
 def _put_run(field: FieldDescription, source: str) -> list[str]:
     """The words of an array, written one after the other."""
-    one, size = field.model, field.model.bits
-    first = one.at // 8
-    if one.is_bytes:
-        arguments = ("&mut bytes", str(first), f"&{source}", "|octets| octets")
-        return [bracketed("put_words(", arguments, ");", WIDTH, STEP * 2)]
-    if one.type == "uint" and size == 8:
+    one, first = field.model, field.model.at // 8
+    if one.type == "uint" and one.bits == 8:
         return [f"put_array(&mut bytes, {first}, &{source});"]
-    kind = "f" if one.type == "float" else "i" if one.signed else "u"
     to_bytes = f"to_{_order(field)}_bytes"
-    word = f"|value| value.raw().{to_bytes}()" if one.type == "enum" else f"{kind}{size}::{to_bytes}"
+    word = f"|value| value.raw().{to_bytes}()" if one.type == "enum" else f"{_word(field)}::{to_bytes}"
+    word = "|octets| octets" if one.is_bytes else word
     return [bracketed("put_words(", ("&mut bytes", str(first), f"&{source}", word), ");", WIDTH, STEP * 2)]
 
 
-def _copied(first: int, count: int, source: str) -> str:
-    return f"put!({source} => bytes[{first}; {count}]);"
-
-
 def _put_whole(field: FieldDescription, source: str) -> list[str]:
-    first, size, kind = field.model.at // 8, field.storage.bits, field.model.type
+    first, size, is_enum = field.model.at // 8, field.storage.bits, field.model.type == "enum"
     if size == 8 and not field.model.signed:
-        return [f"bytes[{first}] = {source}{'.raw()' if kind == 'enum' else ''};"]
-    to_bytes = f"to_{_order(field)}_bytes()"
-    if kind == "enum":
-        return [f"let value = {source}.raw();", _copied(first, size // 8, f"value.{to_bytes}")]
-    return [_copied(first, size // 8, f"{source}.{to_bytes}")]
+        return [f"bytes[{first}] = {source}{'.raw()' if is_enum else ''};"]
+    copied = f"put!({'value' if is_enum else source}.to_{_order(field)}_bytes() => bytes[{first}; {size // 8}]);"
+    return [f"let value = {source}.raw();", copied] if is_enum else [copied]
 
 
 def _put_pieces(row: tuple[Piece, ...], source: str, size: int) -> list[str]:

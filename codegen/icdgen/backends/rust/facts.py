@@ -5,11 +5,11 @@ from __future__ import annotations
 from icdgen.backends.rust.literals import Expression, flat, flat_rows, some, spelled
 from icdgen.backends.rust.text import mask
 from icdgen.protocol.declared import Fact, Kind
-from icdgen.protocol.sections import BUSES, Crc, Download, Erasure, HoleMap, Index, Listing, Operation, Settings, Upload
+from icdgen.protocol.sections import BUSES, Crc, Download, Erasure, HoleMap, Index, Listing, Operation, Upload
 
 # Types whose names in generated code are not those of the facts.
 _TYPES: dict[type, str] = {
-    Settings: "Settings", Crc: "CrcForm", Index: "IndexForm", HoleMap: "HoleMapForm", Listing: "ListForm",
+    Crc: "CrcForm", Index: "IndexForm", HoleMap: "HoleMapForm", Listing: "ListForm",
     Download: "DownloadForm", Upload: "UploadForm", Erasure: "ErasureForm", Operation: "OperationForm",
 }  # fmt: skip
 

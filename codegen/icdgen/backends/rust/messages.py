@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 from typing import Any, NamedTuple
 
-from icdgen.backends.rust import arrays, bits, conditional, constants, elements, parts
-from icdgen.backends.rust.names import field_name, struct_path
+from icdgen.backends.rust import arrays, bits, conditional, elements, parts
+from icdgen.backends.rust.names import field_name, integer_type, struct_path
 from icdgen.backends.rust.physical import has_constant
-from icdgen.backends.rust.text import integer
+from icdgen.backends.rust.text import double, integer
 from icdgen.describe import FieldDescription, MessageDescription
+from icdgen.describe.constants import Constant
 from icdgen.describe.description import Composite, TailDescription
 
 _SUPPORT = (
@@ -95,7 +96,7 @@ def of_composite(one: Composite[Any]) -> dict[str, object]:
     traits = ["Clone", "Copy", "Debug", *(["Default"] if has_default else []), "PartialEq"]
     narrow = [field for field in fields if (field.struct or field).is_narrow]
     return {
-        "constants": constants.of_fields(one),
+        "constants": _constants(one),
         "fits": [line for field in narrow if not field.model.when for line in bits.fitting(field)],
         "scales": [field for field in one.all_members if has_constant(field)],
         "curves": [field for field in one.all_members if field.curve is not None],
@@ -103,6 +104,23 @@ def of_composite(one: Composite[Any]) -> dict[str, object]:
         "derives": ", ".join(traits + ([] if one.has_floats else ["Eq", "Hash"])),
         "uses_enums": any(enum.node is one.node for enum in one.enums),
     }
+
+
+def _constants(one: Composite[Any]) -> list[tuple[Constant, str, str]]:
+    """The constants of fields, their types and values."""
+    return [(constant, *_constant(field, constant)) for field in one.all_members for constant in field.constants]
+
+
+def _constant(field: FieldDescription, one: Constant) -> tuple[str, str]:
+    if one.number:
+        kind = f"f{field.model.bits}"
+        named = {"nan": "NAN", "inf": "INFINITY", "-inf": "NEG_INFINITY"}.get(one.number)
+        return kind, f"{kind}::{named}" if named else double(float(one.number))
+    if field.model.type == "bool" and one.is_raw:
+        return "bool", "true" if one.value else "false"
+    if isinstance(one.value, int):
+        return integer_type(field), integer(one.value)
+    return "f64", double(one.value.numerator / one.value.denominator)
 
 
 def _length(before: int, step: int) -> str:
