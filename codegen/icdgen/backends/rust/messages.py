@@ -13,16 +13,13 @@ from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.constants import Constant
 from icdgen.describe.description import Composite, TailDescription
 
-_SUPPORT = (
-    """array arrays beginning counted each element_of elements first flags longest message number power present put
-    put_array put_each put_element put_rounds put_words quiet rounds spread structure take text text_array there told whole words
-    Big Coded Curve Error Frame Scale Wide""".split()
-)
-_USED = re.compile(
-    rf"""//.*|"(?:[^"\\]|\\.)*"  # comments and texts use nothing
-    |(?<![\w.:&])(?<!fn\ )(?P<name>{'|'.join(_SUPPORT)})(?=[(!<>]|::|\ =\ Wide)""",
-    re.VERBOSE,
-)
+_SUPPORT = frozenset("""
+    array arrays beginning counted each element_of elements first flags longest message number power present put put_array
+    put_each put_element put_rounds put_words quiet rounds spread structure take text text_array there told whole words
+    Big Coded Curve Error Frame Scale Wide
+    """.split())
+# What is called or named in code; comments and texts come first, so that nothing is found in them.
+_USED = re.compile(r'//.*|"(?:[^"\\]|\\.)*"|(?<![\w.:&])(?<!fn )([A-Za-z]\w*)(?=[(!<>]|::| = Wide)')
 DERIVES_DEFAULT = 32  # elements of an array; longer ones do not
 
 
@@ -84,8 +81,7 @@ def _times(step: int, count: str) -> str:
 
 def imports(body: str) -> str:
     """What a module uses of the support module, as its ``use`` has it; ``body`` is the rest of the module."""
-    found = {one["name"] for one in _USED.finditer(body) if one["name"]}
-    names = sorted(found, key=lambda name: (name[0].isupper(), name))
+    names = sorted(_SUPPORT.intersection(_USED.findall(body)), key=lambda name: (name[0].isupper(), name))
     return f"{{{', '.join(names)}}}" if len(names) > 1 else names[0]
 
 
