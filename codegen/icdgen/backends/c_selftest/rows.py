@@ -14,6 +14,7 @@ from icdgen.backends.c.types import type_of
 from icdgen.backends.lines import in_rows
 from icdgen.backends.origin import origin
 from icdgen.describe import FieldDescription, MessageDescription, NodeDescription, describe
+from icdgen.describe.description import TailDescription
 from icdgen.describe.whole import Direction
 from icdgen.icd.model import Field, Icd, Message
 from icdgen.render import Renderer
@@ -55,32 +56,6 @@ class FieldRow(NamedTuple):
     whole: Accessors | None
     scaled: Accessors | None
     text: Accessors | None
-
-
-class TailRow(NamedTuple):
-    """What there is of a message whose frames differ in length."""
-
-    least: int
-    counter: int
-    high: int
-    frames: list[str]
-    frame_lengths: list[int]
-
-
-class MessageRow(NamedTuple):
-    """A message with its vectors: the reason for each, and its bytes, which are the frame, then the packed raw values."""
-
-    message: MessageDescription
-    stem: str
-    vectors: list[tuple[str, list[str]]]
-    vector_size: int
-    kept: list[str]
-    doubles: list[str]
-    texts: list[str]
-    fields: list[FieldRow]
-    lengths: list[str]  # of the frames; none where all have one
-    refused_lengths: list[int]
-    tail: TailRow | None
 
 
 def files(icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
@@ -135,41 +110,36 @@ class _Rows:
         frames = [_frame(row) for row in self.vectors.shared if row.direction == direction.kind]
         return f"{self.node.name}_{direction.kind}", rows, bool(shared), frames
 
-    def message(self, message: MessageDescription, vectors: MessageVectors) -> MessageRow:
+    def message(self, message: MessageDescription, vectors: MessageVectors) -> dict[str, object]:
+        """A message with its vectors: the reason for each, and its bytes, which are the frame, then the packed raw values."""
         kept = bytes(message.model.length)
         vectors = _plain(message, vectors)
         for row in vectors.rows:  # reserved bits are those that no vector keeps
             kept = bytes(a | b for a, b in zip(kept, row.encoded.ljust(len(kept), b"\0"), strict=True))
         tables: dict[str, str] = {}
         fields = [self.field(field, vectors, tables) for field in message.all_fields]
-        size = message.model.length + sum(field.packed for field in fields)
         doubles = (f"UINT64_C(0x{double})" for row in vectors.rows for double in row.doubles.values())
-        return MessageRow(
-            message=message,
-            stem=names.stem(message),
-            vectors=[(plain(row.why), self.vector(row, fields)) for row in vectors.rows],
-            vector_size=size,
-            kept=_bytes(kept),
-            doubles=in_rows(doubles, NUMBERS_IN_ROW),
-            texts=[f"{_text(text)}," for row in vectors.rows for text in row.texts.values()],
-            fields=fields,
-            lengths=(
-                in_rows((str(len(row.frame)) for row in vectors.rows), BYTES_IN_ROW)
-                if len(message.model.lengths) > 1
-                else []
-            ),
-            refused_lengths=list(vectors.lengths),
-            tail=_tail(message, vectors) if message.tail is not None else None,
-        )
+        differ = len(message.model.lengths) > 1
+        return {
+            "message": message,
+            "stem": names.stem(message),
+            "vectors": [(plain(row.why), self.vector(row, fields)) for row in vectors.rows],
+            "vector_size": message.model.length + sum(field.packed for field in fields),
+            "kept": _bytes(kept),
+            "doubles": in_rows(doubles, NUMBERS_IN_ROW),
+            "texts": [f"{_text(text)}," for row in vectors.rows for text in row.texts.values()],
+            "fields": fields,
+            "lengths": in_rows((str(len(row.frame)) for row in vectors.rows), BYTES_IN_ROW) if differ else [],
+            "refused_lengths": vectors.lengths,
+            "tail": _tail(message, message.tail, vectors) if message.tail is not None else None,
+        }
 
     def vector(self, row: Row, fields: list[FieldRow]) -> list[str]:
-        data = bytearray(row.frame.ljust(fields[0].field.message.model.length if fields else 0, b"\0"))
+        data = row.frame.ljust(fields[0].field.message.model.length if fields else 0, b"\0")
         for field in fields:
             value = row.raw[field.field.model.name]
-            if isinstance(value, bytes):
-                data += value
-            else:
-                data += (value & ((1 << 8 * field.packed) - 1)).to_bytes(field.packed, "little")
+            bits = (1 << 8 * field.packed) - 1
+            data += value if isinstance(value, bytes) else (value & bits).to_bytes(field.packed, "little")
         return _bytes(data)
 
     def field(self, one: FieldDescription, vectors: MessageVectors, known: dict[str, str]) -> FieldRow:
@@ -239,17 +209,15 @@ def _plain(message: MessageDescription, vectors: MessageVectors) -> MessageVecto
     return replace(vectors, rows=tuple(rows), default=vectors.default | fresh, unfit=always)
 
 
-def _tail(message: MessageDescription, vectors: MessageVectors) -> TailRow:
-    tail, length = message.tail, message.model.length
-    assert tail is not None
-    frames = b"".join(frame.ljust(length, b"\0") for frame in vectors.miscounted)
-    return TailRow(
-        least=message.model.least,
-        counter=next(place for place, one in enumerate(message.all_fields) if one.model == tail.counter.model),
-        high=tail.high,
-        frames=_bytes(frames),
-        frame_lengths=[len(frame) for frame in vectors.miscounted],
-    )
+def _tail(message: MessageDescription, tail: TailDescription, vectors: MessageVectors) -> dict[str, object]:
+    """What there is of a message whose frames differ in length."""
+    return {
+        "least": message.model.least,
+        "counter": next(place for place, one in enumerate(message.all_fields) if one.model == tail.counter.model),
+        "high": tail.high,
+        "frames": _bytes(b"".join(frame.ljust(message.model.length, b"\0") for frame in vectors.miscounted)),
+        "frame_lengths": list(map(len, vectors.miscounted)),
+    }
 
 
 def _accessors(field: FieldDescription, end: str, type: str, rows: list[str]) -> Accessors:
@@ -307,5 +275,5 @@ def _unsigned(value: int) -> str:
     return f"{value}u" if 0 <= value < 1 << 16 else f"UINT64_C(0x{value & ((1 << 64) - 1):X})"
 
 
-def _bytes(data: bytes | bytearray) -> list[str]:
+def _bytes(data: bytes) -> list[str]:
     return in_rows((f"0x{byte:02X}" for byte in data), BYTES_IN_ROW)
