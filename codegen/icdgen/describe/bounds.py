@@ -65,13 +65,12 @@ def span(curve: Curve, field: Field) -> tuple[Fraction, Fraction] | None:
 
 def allowed_ends(field: Field) -> tuple[Fraction | None, Fraction | None]:
     """Smallest and largest physical value, as far as the type and inclusive limits tell."""
-    low = field.limits.min if field.limits else None
-    high = field.limits.max if field.limits else None
+    ends = None
     if field.curve is not None:
-        least, most = span(field.curve, field) or (None, None)
-        low, high = least if low is None else low, most if high is None else high
+        ends = span(field.curve, field)
     elif field.type in ("uint", "int"):
         scaled = steps(field)
-        least, most = scaled.span if scaled else (Fraction(field.raw_min), Fraction(field.raw_max))
-        low, high = least if low is None else low, most if high is None else high
-    return low, high
+        ends = scaled.span if scaled else (Fraction(field.raw_min), Fraction(field.raw_max))
+    least, most = ends or (None, None)
+    low, high = (field.limits.min, field.limits.max) if field.limits else (None, None)
+    return least if low is None else low, most if high is None else high

@@ -175,6 +175,22 @@ class FieldDescription(Named[Field]):
         return self.model.orders(self.message.node)[0]
 
     @property
+    def order(self) -> str:
+        """``le`` or ``be``: the same in short."""
+        return "le" if self.byte_order == "little" else "be"
+
+    @property
+    def is_word(self) -> bool:
+        """Whether it is a byte, or a word of 2, 4 or 8 whole bytes that is loaded and stored as one."""
+        one = self.model
+        return not one.is_bytes and one.at % 8 == 0 and one.bits in (8, 16, 32, 64)
+
+    @property
+    def is_plain_word(self) -> bool:
+        """Whether it is a word that lies in the frame as in memory, but for the order of its bytes."""
+        return self.is_word and self.model.bits == self.storage.bits
+
+    @property
     def pieces(self) -> tuple[layout.Piece, ...]:
         """The runs of bits of the frame that make up a number."""
         return layout.pieces(self.model, self.message.node)
@@ -228,17 +244,15 @@ class FieldDescription(Named[Field]):
         """The limits, one by one."""
         return bounds(self.model.limits)
 
-    @property
+    @cached_property
     def constants(self) -> tuple[Constant, ...]:
         """The only valid value, values with a meaning, limits: all by name."""
         field = self.model
         if self.declaration is not self:
             return self.declaration.constants
-        return () if field.const is None and not field.special and field.limits is None else self._constants
-
-    @cached_property
-    def _constants(self) -> tuple[Constant, ...]:
-        return tuple(constants(self.model, self.declared, self.physical_name, self.message.node.vocabulary))
+        if field.const is None and not field.special and field.limits is None:
+            return ()
+        return tuple(constants(field, self.declared, self.physical_name, self.message.node.vocabulary))
 
     @cached_property
     def comment(self) -> Comment:
@@ -380,8 +394,6 @@ class Composite(Named[Fielded]):
     @cached_property
     def leaves(self) -> tuple[FieldDescription, ...]:
         """The same, but arrays as one."""
-        if all(one.struct is None for one in self.members):
-            return self.members
         return tuple(leaf for one in self.members for leaf in one.leaves)
 
     @cached_property

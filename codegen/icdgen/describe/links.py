@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from icdgen.describe.description import FieldDescription
@@ -103,14 +103,15 @@ class LinkDescription:
     @property
     def telecommands(self) -> list[SentMessage]:
         """By rising id; none where the envelope of the link tells them."""
-        return (
-            [] if self.facts.stream else [SentMessage(id, one) for id, one in sorted(self.facts.telecommands.items())]
-        )
+        return self._sent(self.facts.telecommands)
 
     @property
     def telemetry(self) -> list[SentMessage]:
         """By rising id; none where the envelope of the link tells them."""
-        return [] if self.facts.stream else [SentMessage(id, one) for id, one in sorted(self.facts.telemetry.items())]
+        return self._sent(self.facts.telemetry)
+
+    def _sent(self, messages: Mapping[int, Message]) -> list[SentMessage]:
+        return [] if self.facts.stream else [SentMessage(id, one) for id, one in sorted(messages.items())]
 
     @property
     def error_codes(self) -> list[tuple[str, int]]:

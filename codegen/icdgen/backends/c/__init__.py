@@ -161,7 +161,7 @@ def _tail(message: MessageDescription, tail: TailDescription) -> dict[str, objec
             "there": decoding.there(tail),
             "place": decoding.place(tail.begin, tail.step),
             "decode": decoding.of_elements(tail, reading),
-            "encode": encoding.of_elements(tail, writing),
+            "encode": [decoding.for_each(tail.part.member, decoding.elements(tail), writing, tail.begin, tail.step)],
         }
     return {
         "element": of_element,

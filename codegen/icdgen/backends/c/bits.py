@@ -13,17 +13,6 @@ from icdgen.layout import Piece
 BITS = "{bits}"  # stands for the bits of the field in the expressions made here
 
 
-def is_word(field: FieldDescription) -> bool:
-    """Whether the field is a byte, or a word of 2, 4 or 8 whole bytes that is loaded and stored as one."""
-    one = field.model
-    return not one.is_bytes and one.at % 8 == 0 and one.bits in (8, 16, 32, 64)
-
-
-def order(field: FieldDescription) -> str:
-    """How the support header's loads and stores name the field's byte order."""
-    return "le" if field.byte_order == "little" else "be"
-
-
 class Read(NamedTuple):
     """The bits of a field, as terms to be or-ed together, and how the raw value is made of them."""
 
@@ -40,7 +29,7 @@ class Read(NamedTuple):
 def read(field: FieldDescription, frame: str = "buffer") -> Read:
     """The raw value of an integer, enum or bool field (the bits of a float) over the bytes that ``frame`` points to."""
     bits = field.model.bits
-    if is_word(field):
+    if field.is_word:
         return Read(32, (_load(field, frame),), f"icdgen_i{bits}({BITS})" if field.storage.signed else BITS)
     pieces = field.pieces
     if field.model.type == "bool":
@@ -65,7 +54,7 @@ def _from_bits(field: FieldDescription, wide: int, joined: bool) -> str:
 
 def _load(field: FieldDescription, frame: str) -> str:
     byte, bits = field.model.at // 8, field.model.bits
-    return f"{frame}[{byte}]" if bits == 8 else f"icdgen_load_u{bits}{order(field)}(&{frame}[{byte}])"
+    return f"{frame}[{byte}]" if bits == 8 else f"icdgen_load_u{bits}{field.order}(&{frame}[{byte}])"
 
 
 def _byte(piece: Piece, frame: str) -> str:
@@ -99,13 +88,13 @@ def put(field: FieldDescription, piece: Piece) -> str:
 
 
 def store(field: FieldDescription, frame: str = "buffer") -> str:
-    """The statement that stores a field for which `is_word` holds in the bytes that ``frame`` points to."""
+    """The statement that stores a field that is a word in the bytes that ``frame`` points to."""
     byte, bits, value = field.model.at // 8, field.model.bits, _raw(field)
     if field.storage.signed or field.storage.bits > bits:
         value = cast(value, bits)
     if bits == 8:
         return f"{frame}[{byte}] = {value};"
-    return f"icdgen_store_u{bits}{order(field)}(&{frame}[{byte}], {value});"
+    return f"icdgen_store_u{bits}{field.order}(&{frame}[{byte}], {value});"
 
 
 def _raw(field: FieldDescription) -> str:

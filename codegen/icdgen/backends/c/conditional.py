@@ -67,7 +67,7 @@ def _literal(field: FieldDescription, value: int) -> str:
 
 def _written(field: FieldDescription) -> list[str]:
     """Statements that put it into bytes that hold none of its bits yet."""
-    if bits.is_word(field):
+    if field.is_word:
         return [bits.store(field)]
     return [
         assigned_byte(f"buffer[{piece.byte}]", [f"buffer[{piece.byte}]", bits.put(field, piece)])

@@ -19,16 +19,9 @@ FILES = "C header files"
 _STATUS = ("LENGTH", "RANGE", "UNKNOWN_ID", "UNSUPPORTED", "CHECKSUM", "BUSY")
 _SUPPORT = ("ICDGEN_SHARED", "icd_status_t", "ICD_OK", *(f"ICD_ERROR_{end}" for end in _STATUS))
 _SIZES = (
-    "LONGEST",
-    "CAN_SLOT_BYTES",
-    "CLIENT_BYTES",
-    "REQUEST_BYTES",
-    "LOG_BYTES",
-    "BLOCK_BYTES",
-    "BLOCK_BITMAP_BYTES",
-    "LINE_BYTES",
-    "SEQUENCES",
-)
+    "LONGEST", "CAN_SLOT_BYTES", "CLIENT_BYTES", "REQUEST_BYTES", "LOG_BYTES", "BLOCK_BYTES", "BLOCK_BITMAP_BYTES",
+    "LINE_BYTES", "SEQUENCES",
+)  # fmt: skip
 _BUSES = ("uart", "i2c", "can")
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from icdgen.backends.c import bits
-from icdgen.backends.c.decoding import elements, for_each, in_rounds, of_array
+from icdgen.backends.c.decoding import elements, in_rounds, of_array
 from icdgen.backends.c.member_groups import Array, Flags, Groups, Row, Structs
 from icdgen.backends.c.names import stem
 from icdgen.backends.c.statement import assigned_byte, call
@@ -37,11 +37,6 @@ def counted_text(tail: TailDescription) -> str:
     if tail.fewest:
         return f"(strlen(text) > {tail.fewest}u) ? (strlen(text) - {tail.fewest}u) : 0u"
     return f"strlen(text) + {tail.low}u" if tail.low else "strlen(text)"
-
-
-def of_elements(tail: TailDescription, writing: str) -> list[str]:
-    """The loop that writes the structs of an open end, each where it stands in ``buffer``."""
-    return [for_each(tail.part.member, elements(tail), writing, tail.begin, tail.step)]
 
 
 def statements(message: Composite[Any], groups: Groups) -> list[str]:
@@ -77,7 +72,7 @@ class _Frame:
         first, size = one.at // 8, one.bits // 8
         if one.is_bytes:
             self.whole[first] = size, f"(void)memcpy(&buffer[{first}], message->{field.member}, {size}u);"
-        elif bits.is_word(field):
+        elif field.is_word:
             self.whole[first] = size, bits.store(field, self.frame)
         else:
             for piece in field.pieces:

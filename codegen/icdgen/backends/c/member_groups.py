@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from copy import copy
 from dataclasses import replace
 
-from icdgen.backends.c.bits import is_word, order
 from icdgen.describe import FieldDescription
 from icdgen.describe.arrays import Repeated, Rounds, rounds_of
 from icdgen.frozen import dataclass
@@ -51,7 +50,7 @@ class Row:
     @property
     def macro(self) -> str:
         """The end of the macro's name."""
-        return f"ROW_{order(self.members[0]).upper()}"
+        return f"ROW_{self.members[0].order.upper()}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,18 +103,13 @@ def _octets(first: FieldDescription) -> FieldDescription:
 
 
 def _array(first: FieldDescription) -> Array | None:
-    begins = first.model.index == 0 and not _is_plain_word(first)
+    begins = first.model.index == 0 and not first.is_plain_word
     rounds = rounds_of(first, first.model.path[-1].count) if begins else None
     if rounds is None:
         return None
     name = first.member.removesuffix("[0]")
     members = rounds.members(first, lambda element: f"{name}[element{f' + {element}u' if element else ''}]")
     return Array(members, rounds)
-
-
-def _is_plain_word(field: FieldDescription) -> bool:
-    """Whether its member has as many bits as the word."""
-    return is_word(field) and field.storage.bits == field.model.bits
 
 
 def _position(field: FieldDescription) -> tuple[int, int] | None:
@@ -142,13 +136,13 @@ def _flags(fields: Members, positions: Sequence[tuple[int, int] | None], first: 
 def _row(fields: Members, begin: int) -> Row | None:
     first, end = fields[begin], begin + 1
     bits, at = first.model.bits, first.model.at
-    if not _is_plain_word(first):
+    if not first.is_plain_word:
         return None
     for field in fields[end:]:
         at += bits
         is_next = field.model.bits == bits and field.model.at == at
         is_next = is_next and field.holder == first.holder  # a struct may end with padding
-        if not (is_next and _is_plain_word(field) and field.byte_order == first.byte_order):
+        if not (is_next and field.is_plain_word and field.byte_order == first.byte_order):
             break
         end += 1
     row = fields[begin:end]

@@ -31,7 +31,7 @@ class PythonBackend:
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """The project's files, then the package's, then those of each node."""
-        from icdgen.backends.python import links, messages, nodes  # the rules about names need none of them
+        from icdgen.backends.python import links, nodes  # the rules about names need none of them
         from icdgen.describe.links import links_of
 
         description = describe(icd)
@@ -58,7 +58,7 @@ class PythonBackend:
             folder = root / node.name
             shared = {**common, "origin": origin(node.model), "node": node}
             digested = {**shared, "origin": origin(node.model, with_digest=True)}
-            yield folder / "__init__.py", render("node.py.j2", **digested, **nodes.values(node, description))
+            yield folder / "__init__.py", render("node.py.j2", **digested, **nodes.of_node(node, description))
             if node.name in linked:
                 yield folder / "_link.py", render("link.py.j2", **shared, link=links.literal(linked[node.name]))
             folder /= names.TYPES
@@ -67,10 +67,10 @@ class PythonBackend:
                 yield folder / f"{names.module_name(enum)}.py", render("enum.py.j2", enum=enum, **shared)
             for struct in node.structs:
                 path = folder / f"{names.module_name(struct)}.py"
-                yield path, render("struct.py.j2", m=struct, **messages.shared(struct), **shared)
+                yield path, render("struct.py.j2", m=struct, **nodes.of_composite(struct), **shared)
             for message in node.messages:
                 path = folder / f"{names.module_name(message)}.py"
-                yield path, render("message.py.j2", m=message, **shared, **messages.values(message))
+                yield path, render("message.py.j2", m=message, **shared, **nodes.of_message(message))
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """Every name that ``files`` declares, for the name rules."""

@@ -1,4 +1,4 @@
-"""A node, or the package -> what templates need beside the description."""
+"""The package, a node, or a message -> what templates need beside the description."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ from typing import Any
 
 from icdgen.backends.lines import exploded
 from icdgen.backends.python import names
+from icdgen.backends.python.fields import constant
 from icdgen.backends.python.text import docstring, literal, paragraph
-from icdgen.describe import Description, EnumDescription, NodeDescription
+from icdgen.describe import Description, EnumDescription, MessageDescription, NodeDescription, StructDescription
 from icdgen.describe.comments import sentence
 from icdgen.describe.description import Composite
+from icdgen.describe.parts import parts_of
 from icdgen.describe.whole import Under
 from icdgen.icd.model import Message, Node
 
@@ -23,7 +25,7 @@ _OF_PACKAGE = (
 )  # fmt: skip
 
 
-def values(node: NodeDescription, description: Description) -> dict[str, object]:
+def of_node(node: NodeDescription, description: Description) -> dict[str, object]:
     """What can be imported from a node: modules and names; and what is told of it."""
     declared: list[tuple[str, str]] = []
     for owner in map(description.node, (*description.icd.included(node.model), node.model)):
@@ -102,3 +104,25 @@ def _documentation(node: Node) -> list[str]:
     paragraphs = [sentence(node.title), sentence(node.summary), sentence(f"From {', '.join(known)}") if known else ""]
     paragraphs += (f"Missing: {one.kind} {one.id}, {sentence(one.name)} {sentence(one.why)}" for one in node.missing)
     return [paragraph(text) for text in paragraphs if text]
+
+
+def of_message(message: MessageDescription) -> dict[str, object]:
+    """What is said of it, and what it repeats in the order of the frame."""
+    parts = [(begin, part.message) for part in parts_of(message) for begin in part.begins]
+    return {**of_composite(message), "parts": sorted(parts, key=lambda one: one[0])}
+
+
+def of_composite(composite: Composite[Any]) -> dict[str, object]:
+    """The enumerations and structs that are imported for a message or a struct, and the constants of its fields."""
+    used_by: tuple[EnumDescription | StructDescription, ...] = (*composite.enums, *composite.structs)
+    return {
+        "imports": sorted(_import(used, composite) for used in used_by),
+        "constants": [(one, constant(one, field)) for field in composite.all_members for one in field.constants],
+    }
+
+
+def _import(used: EnumDescription | StructDescription, by: Composite[Any]) -> str:
+    module = names.module_name(used)
+    if used.node is not by.node:
+        module = f"..{used.node.name}.{names.TYPES}.{module}"
+    return f"from .{module} import {names.class_name(used)}"

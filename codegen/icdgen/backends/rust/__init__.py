@@ -80,10 +80,9 @@ def _functions() -> dict[str, object]:
     """What templates spell names and text with."""
     from icdgen.backends.rust import text
     from icdgen.backends.rust.accessors import accessors, curve_of, field_row, scale_of
-    from icdgen.backends.rust.derived import derived_statements
     from icdgen.backends.rust.examples import direction_example, enum_example, message_example
     from icdgen.backends.rust.messages import imports
-    from icdgen.backends.rust.physical import big_parts
+    from icdgen.backends.rust.physical import big_parts, derived_statements
     from icdgen.describe.comments import sentence, text_comment, words
     from icdgen.describe.numbers import byte_count, count_text
 

@@ -8,7 +8,6 @@ from typing import Any
 from icdgen.describe import FieldDescription
 from icdgen.describe.arrays import Rounds, arrays_named, rounds_of
 from icdgen.describe.description import Composite
-from icdgen.layout import is_whole_bytes
 
 
 def named(one: Composite[Any]) -> Iterator[tuple[FieldDescription, str]]:
@@ -34,8 +33,7 @@ def rounds_in(field: FieldDescription) -> Rounds | None:
 
 def is_run(field: FieldDescription) -> bool:
     """Whether the elements of an array are words that lie in the frame as they do in memory, but for their byte order."""
-    one = field.model
-    return one.is_bytes or (is_whole_bytes(one) and one.bits == field.storage.bits and one.type != "bool")
+    return field.model.is_bytes or field.is_plain_word
 
 
 def reader(name: str) -> str:

@@ -11,7 +11,7 @@ from icdgen.backends.rust.text import WIDTH, mask
 from icdgen.describe import FieldDescription, StructDescription
 from icdgen.describe.description import Composite
 from icdgen.describe.storage import holding
-from icdgen.layout import Piece, is_whole_bytes
+from icdgen.layout import Piece
 
 _ARRAY_WIDTH = 60  # of an array that rustfmt leaves on one line
 RAW = "raw"  # the variable that holds the value of what is not always there
@@ -39,7 +39,7 @@ def reading(field: FieldDescription, tables: set[int], depth: int = 3, within: s
         byte, shift = row[0].byte, row[0].shift
         return f"flags_{byte}[{shift}]" if byte in tables else f"bytes[{byte}] & {mask(1 << shift)} != 0"
     size = holding(one.bits)
-    if is_whole_bytes(one) and one.bits == size:
+    if field.is_word:
         return _whole(field, size)
     if len(row) == 1:
         return _finished(field, _one_byte(row[0]), size)
@@ -69,7 +69,7 @@ def _array(field: FieldDescription, depth: int) -> str:
         return f"arrays(bytes, {first})"
     if one.type == "uint" and one.bits == 8:
         return f"array(bytes, {first})"
-    word = f"{_word(field)}::from_{_order(field)}_bytes"
+    word = f"{_word(field)}::from_{field.order}_bytes"
     if one.type != "enum":
         return f"words(bytes, {first}, {word})"
     value = f"Coded::from_raw({word}(word))"
@@ -92,7 +92,7 @@ def _listed(field: FieldDescription, tables: set[int], depth: int) -> str:
 def _whole(field: FieldDescription, size: int) -> str:
     first = field.model.at // 8
     if size > 8:
-        value = f"{_word(field)}::from_{_order(field)}_bytes(take!(bytes[{first}; {size // 8}]))"
+        value = f"{_word(field)}::from_{field.order}_bytes(take!(bytes[{first}; {size // 8}]))"
     else:
         value = f"i8::from_le_bytes([bytes[{first}]])" if field.model.signed else f"bytes[{first}]"
     return _typed(field, value, size)
@@ -101,10 +101,6 @@ def _whole(field: FieldDescription, size: int) -> str:
 def _word(field: FieldDescription) -> str:
     """The type of a word: ``u16``, ``f32``."""
     return f"{'f' if field.model.type == 'float' else 'i' if field.model.signed else 'u'}{field.model.bits}"
-
-
-def _order(field: FieldDescription) -> str:
-    return "le" if field.byte_order == "little" else "be"
 
 
 def _typed(field: FieldDescription, value: str, size: int) -> str:
@@ -192,7 +188,7 @@ def writing(field: FieldDescription, owner: str = "self", within: str = "") -> l
     if one.type == "bool":
         shift = f" << {row[0].shift}" if row[0].shift else ""
         return [f"bytes[{row[0].byte}] |= u8::from({source}){shift};"]
-    if is_whole_bytes(one) and not field.is_narrow:
+    if field.is_plain_word:
         return _put_whole(field, source)
     lines, size = [], field.storage.bits
     if one.type == "enum":
@@ -213,7 +209,7 @@ def _put_run(field: FieldDescription, source: str) -> list[str]:
     one, first = field.model, field.model.at // 8
     if one.type == "uint" and one.bits == 8:
         return [f"put_array(&mut bytes, {first}, &{source});"]
-    to_bytes = f"to_{_order(field)}_bytes"
+    to_bytes = f"to_{field.order}_bytes"
     word = f"|value| value.raw().{to_bytes}()" if one.type == "enum" else f"{_word(field)}::{to_bytes}"
     word = "|octets| octets" if one.is_bytes else word
     return [bracketed("put_words(", ("&mut bytes", str(first), f"&{source}", word), ");", WIDTH, STEP * 2)]
@@ -223,7 +219,7 @@ def _put_whole(field: FieldDescription, source: str) -> list[str]:
     first, size, is_enum = field.model.at // 8, field.storage.bits, field.model.type == "enum"
     if size == 8 and not field.model.signed:
         return [f"bytes[{first}] = {source}{'.raw()' if is_enum else ''};"]
-    copied = f"put!({'value' if is_enum else source}.to_{_order(field)}_bytes() => bytes[{first}; {size // 8}]);"
+    copied = f"put!({'value' if is_enum else source}.to_{field.order}_bytes() => bytes[{first}; {size // 8}]);"
     return [f"let value = {source}.raw();", copied] if is_enum else [copied]
 
 

@@ -18,7 +18,6 @@ DEPTH = 2  # steps of the body of a function
 class Functions(NamedTuple):
     """What reads an element of an array, or as many as are whole bytes, and what writes it."""
 
-    helper: str  # of the support module, that calls them for all
     reader: str
     writer: str
     of: str  # the array, as the ICD calls it
@@ -60,8 +59,8 @@ def _of_numbers(field: FieldDescription, rounds: Rounds, name: str) -> Functions
     return Functions(*_called(field, name), rounds.step, type, [], value, writings)
 
 
-def _called(field: FieldDescription, name: str) -> tuple[str, str, str, str]:
-    return arrays.helper_of(field), arrays.reader(name), arrays.writer(name), field.model.name
+def _called(field: FieldDescription, name: str) -> tuple[str, str, str]:
+    return arrays.reader(name), arrays.writer(name), field.model.name
 
 
 def literal(fields: tuple[FieldDescription, ...], values: list[str], type: str = "Self") -> str:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from icdgen.backends.literals import Brackets, Item, written
 from icdgen.backends.rust.facts import member_name, type_name, value_of
 from icdgen.backends.rust.literals import Expression, flat, flat_rows, members, part, rows, some, spelled, struct
+from icdgen.backends.rust.names import variant
 from icdgen.backends.rust.streams import stream_of, tabulated
 from icdgen.backends.rust.text import doc, integer, prose, string
 from icdgen.describe import FieldDescription
@@ -20,17 +21,10 @@ from icdgen.describe.links import (
     SentMessage,
     StepDescription,
 )
-from icdgen.naming import camel
 from icdgen.protocol.declared import facts_of
 from icdgen.protocol.sections import BUSES, CAN_KINDS, PROCEDURES, Step
 
-_REASONS = {
-    "none": "NoError",
-    "unknown_id": "UnknownId",
-    "length": "Length",
-    "parameter": "Parameter",
-    "checksum": "Checksum",
-}
+_REASONS = {"none": "NoError"}
 _RENAMED = {"type": "kind", "channel": "id"}  # `type` is a keyword
 _ONLY_POLLED = frozenset({"id", "processed", "parameter"})  # roles that no procedure asks for
 _NUMBER_BITS = 32  # of what the wire layer handles
@@ -97,7 +91,9 @@ class _Literal:
 
     def link(self) -> Brackets:
         known, link = self.facts, self.description
-        codes = (f"({integer(code)}, link::Reason::{_REASONS[key]})" for key, code in link.error_codes)
+        codes = (
+            f"({integer(code)}, link::Reason::{_REASONS.get(key) or variant(key)})" for key, code in link.error_codes
+        )
         return struct(
             "Link",
             part("node", string(known.node.name)),
@@ -250,7 +246,7 @@ def _step(step: StepDescription | None, direction: str) -> Brackets | None:
         if field.model.is_bytes:
             payload = _span(field)
         elif role not in _ONLY_POLLED and field.model.bits <= _NUMBER_BITS:
-            name = Item(f"link::Role::{camel(tuple(role.split('_')))}")
+            name = Item(f"link::Role::{variant(role)}")
             places.append(Brackets("(", (name, Item(_place(field))), ")", True))
     return struct(
         "Step",

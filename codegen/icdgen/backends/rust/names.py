@@ -54,6 +54,11 @@ def own_name(field: FieldDescription) -> str:
     return f"r#{field.declared}" if field.declared in _RAW else field.declared
 
 
+def variant(word: str) -> str:
+    """``UnknownId`` of ``unknown_id``: a word of the protocol as a variant of its enumeration."""
+    return camel(tuple(word.split("_")))
+
+
 def catch_all(enum: EnumDescription) -> str:
     """The variant for values without a name."""
     taken = {type_name(member) for member in enum.members}

@@ -5,8 +5,8 @@ from __future__ import annotations
 from icdgen.backends.literals import Brackets, Item
 from icdgen.backends.rust.facts import member_name, value_of
 from icdgen.backends.rust.literals import flat, members, part, rows, some, spelled, struct
+from icdgen.backends.rust.names import variant
 from icdgen.backends.rust.text import mask
-from icdgen.naming import camel
 from icdgen.protocol.declared import facts_of
 from icdgen.protocol.envelope import CRC, WORD, Check, EnvelopeField, Stream, StreamRow
 
@@ -17,7 +17,7 @@ def stream_of(form: Stream) -> Brackets:
     """The expression of an envelope."""
     return struct(
         "Stream",
-        part("delimited_by", f"link::Delimiter::{_DELIMITERS.get(form.delimited_by) or _camel(form.delimited_by)}"),
+        part("delimited_by", f"link::Delimiter::{_DELIMITERS.get(form.delimited_by) or variant(form.delimited_by)}"),
         part("header_bytes", spelled(form.header_bytes)),
         part("trailer_bytes", spelled(form.trailer_bytes)),
         part("length_plus", spelled(form.length_plus)),
@@ -32,7 +32,7 @@ def stream_of(form: Stream) -> Brackets:
 def _check(check: Check) -> Brackets:
     return struct(
         "CheckForm",
-        part("kind", f"link::CheckKind::{_camel(check.kind)}"),
+        part("kind", f"link::CheckKind::{variant(check.kind)}"),
         part("crc", _crc(check)),
         part("table", some("&TABLE" if check.kind == CRC else None)),
         part("covered_from", spelled(check.covered_from)),
@@ -51,14 +51,10 @@ def _crc(check: Check) -> Brackets:
     return flat("CrcForm", **{member_name(fact): value_of(fact, check.crc) for fact in facts_of(check.crc)})
 
 
-def _camel(word: str) -> str:
-    return camel(tuple(word.split("_")))
-
-
 def _field(one: EnvelopeField) -> Brackets:
     values = Brackets("[", tuple(Item(mask(value, WORD)) for value in one.values), "]", True)
     return flat(
-        "EnvelopeField", **{**members(one), "role": f"link::EnvelopeRole::{_camel(one.role)}", "values": values}
+        "EnvelopeField", **{**members(one), "role": f"link::EnvelopeRole::{variant(one.role)}", "values": values}
     )
 
 
