@@ -7,6 +7,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
+
+from icdgen.describe.comments import one_line
 
 STEP = "    "
 _BLOCK = re.compile(r"(\d*)([-+*=#]+\Z|[.)]\Z|>)")  # what begins a list, a heading or a quotation
@@ -41,6 +44,13 @@ def wrapped(text: str, width: int) -> list[str]:
         lines.append(rest[:end])
         rest = rest[end + 1 :]
     return [*lines, rest]
+
+
+@lru_cache(maxsize=8192)
+def plain(text: str) -> str:
+    """One line without control, invisible or direction-changing characters."""
+    text = one_line(text)
+    return text if text.isprintable() else "".join(c if c.isprintable() else f"U+{ord(c):04X}" for c in text)
 
 
 def commented(paragraphs: Iterable[str], width: int, start: str, is_spaced: bool = False) -> list[str]:

@@ -66,22 +66,14 @@ def _as_double(field: FieldDescription) -> str:
     return raw if field.model.type == "float" and field.model.bits == 64 else f"ICDGEN_CAST(double, {raw})"
 
 
-class View(NamedTuple):
-    """A getter of a raw value that lies on bits of other members."""
-
-    name: str
-    type: str
-    about: str
-    statement: str  # gives ``value`` its value, from ``buffer``
-
-
 _MADE = "Read from the frame that the message makes: 0 if it makes none, as a raw value does not fit its field."
 
 
-def view(field: FieldDescription) -> View:
-    """The getter of a view."""
+def view(field: FieldDescription) -> dict[str, str]:
+    """The getter of a view; its ``statement`` gives ``value`` its value, from ``buffer``."""
     about = field.comment._replace(rest=(*field.comment.rest, _MADE) if field.message.is_narrow else field.comment.rest)
-    return View(field.name, type_of(field), described(about), decoding.number(field, "value"))
+    statement = decoding.number(field, "value")
+    return {"name": field.name, "type": type_of(field), "about": described(about), "statement": statement}
 
 
 def _double(field: FieldDescription) -> Accessor:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from icdgen.backends.c import bits, constants, decoding
 from icdgen.backends.c.names import enumerator, has
 from icdgen.backends.c.statement import assigned_byte, either
@@ -13,28 +11,17 @@ from icdgen.describe.comments import presence_comment
 from icdgen.describe.description import Need
 
 
-class Conditional(NamedTuple):
-    """A member that is not always there; what it is where it isn't, and what is done where it is."""
-
-    name: str  # of the function
-    about: str
-    test: str
-    absent: str
-    decode: str
-    encode: tuple[str, ...]
-
-
-def conditional(message: MessageDescription) -> list[Conditional]:
-    """Those of a message."""
+def conditional(message: MessageDescription) -> list[dict[str, object]]:
+    """Those of a message: what each is where it isn't there, and what is done where it is."""
     return [
-        Conditional(
-            has(field),
-            presence_comment(field.model, message.model),
-            either(list(map(_test, field.needs)), " && "),
-            f"message->{field.name} = {_absent(field)};",
-            decoding.number(field, f"message->{field.member}"),
-            tuple(_written(field)),
-        )
+        {
+            "name": has(field),
+            "about": presence_comment(field.model, message.model),
+            "test": either(list(map(_test, field.needs)), " && "),
+            "absent": f"message->{field.name} = {_absent(field)};",
+            "decode": decoding.number(field, f"message->{field.member}"),
+            "encode": _written(field),
+        }
         for field in message.conditional
     ]
 

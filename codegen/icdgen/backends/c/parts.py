@@ -3,39 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from icdgen.backends.c.names import stem
 from icdgen.backends.c.statement import call
 from icdgen.backends.c.text import comment
 from icdgen.describe import MessageDescription
 from icdgen.describe.comments import part_comment
-from icdgen.describe.parts import Copied, parts_of
+from icdgen.describe.parts import Copied, PartDescription, parts_of
 
 
-class Part(NamedTuple):
-    """A function that gives a part; ``copies`` are its statements, once for each time that the message is repeated."""
-
-    name: str
-    type: str
-    about: str
-    copies: tuple[tuple[str, ...], ...]
+def parts(message: MessageDescription) -> list[dict[str, object]]:
+    """Those of a composite message; ``copies`` are the statements of each, once for each time that it is repeated."""
+    return [_part(message, one) for one in parts_of(message)]
 
 
-def parts(message: MessageDescription) -> list[Part]:
-    """Those of a composite message."""
-    found = []
-    for one in parts_of(message):
-        said = [part_comment(one.message.model, one.begins)]
-        if len(one.begins) > 1:
-            said.append(
-                f"ICD_ERROR_RANGE, and `part` as it was, if there is no such part: they are 0 to {len(one.begins) - 1}."
-            )
-        copies = tuple(
-            tuple(line for copied in one.copies(message, begin) for line in _statements(copied)) for begin in one.begins
+def _part(message: MessageDescription, part: PartDescription) -> dict[str, object]:
+    said, begins = [part_comment(part.message.model, part.begins)], part.begins
+    if len(begins) > 1:
+        said.append(
+            f"ICD_ERROR_RANGE, and `part` as it was, if there is no such part: they are 0 to {len(begins) - 1}."
         )
-        found.append(Part(part_name(one.message), f"{stem(one.message)}_t", comment(said), copies))
-    return found
+    copies = [[line for copied in part.copies(message, begin) for line in _statements(copied)] for begin in begins]
+    name, type = part_name(part.message), f"{stem(part.message)}_t"
+    return {"name": name, "type": type, "about": comment(said), "copies": copies}
 
 
 def part_name(part: MessageDescription) -> str:

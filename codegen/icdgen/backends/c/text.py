@@ -6,8 +6,9 @@ import re
 from collections.abc import Iterable
 from functools import lru_cache
 
+from icdgen.backends import lines
 from icdgen.backends.lines import commented, tamed
-from icdgen.describe.comments import Comment, one_line
+from icdgen.describe.comments import Comment
 
 WIDTH = 120
 
@@ -33,9 +34,7 @@ FILE = _Command("@file")
 @lru_cache(maxsize=8192)
 def plain(text: str) -> str:
     """One line that is safe within a block comment: no comment delimiters, trigraphs or control characters."""
-    text = one_line(text)
-    if not text.isprintable():
-        text = "".join(c if c.isprintable() else f"U+{ord(c):04X}" for c in text)
+    text = lines.plain(text)
     for unsafe, safe in (("*/", "* /"), ("/*", "/ *"), ("??", "? ?")):
         while unsafe in text:
             text = text.replace(unsafe, safe)

@@ -83,11 +83,8 @@ def _functions() -> dict[str, object]:
     from icdgen.describe.comments import physical_comment, text_comment
 
     found = (
-        fields.annotation, fields.declaration, fields.exact, fields.inner, fields.physical, fields.scaled, fields.tail, fields.text,
-        fields.getter,
-        fields.view_info,
-        fields.whole, names.class_name, physical_comment, nodes.listing, nodes.literals, nodes.mapping,
-        text.docstring,
-        text.documented, text.literal, text.prose, text_comment,
+        fields.annotation, fields.declaration, fields.exact, fields.getter, fields.inner, fields.open_part, fields.physical,
+        fields.scaled, fields.text, fields.view_info, fields.whole, names.class_name, nodes.listing, nodes.literals,
+        nodes.mapping, physical_comment, text.docstring, text.documented, text.literal, text.prose, text_comment,
     )  # fmt: skip
     return {function.__name__: function for function in found}

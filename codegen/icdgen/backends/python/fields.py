@@ -111,23 +111,17 @@ def declaration(field: FieldDescription) -> str:
     return _statement(field.name, annotation(field), "field", items)
 
 
-def tail(message: MessageDescription) -> str:
-    """``_base.Tail(...)``: attributes, bytes and elements of the open end."""
-    assert message.tail is not None
-    return _open_part(message.tail)
-
-
 def inner(message: MessageDescription) -> list[str]:
     """The items of ``INNER``: what is open in front of the end, its place, and the bits of what counts it."""
     found = []
     for one in message.inner:
         pieces = [f"({p.byte}, {p.shift}, {p.bits}, {p.at})" for p in one.counter.pieces]
-        found.append(f"({_open_part(one)}, {one.begin}, ({', '.join(pieces)}{',' * (len(pieces) == 1)}))")
+        found.append(f"({open_part(one)}, {one.begin}, ({', '.join(pieces)}{',' * (len(pieces) == 1)}))")
     return found
 
 
-def _open_part(one: TailDescription) -> str:
-    """``_base.Tail(...)``"""
+def open_part(one: TailDescription) -> str:
+    """``_base.Tail(...)``: attributes, bytes and elements of what is open."""
     counter = "" if one.counter.model.implied else one.counter.name
     plus = f", {one.model.plus}" if one.model.plus else ""
     return f'_base.Tail("{one.part.name}", "{counter}", {one.step}, {one.most}{plus})'

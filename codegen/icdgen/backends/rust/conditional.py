@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from icdgen.backends.lines import STEP
 from icdgen.backends.rust import bits
 from icdgen.backends.rust.names import field_name, has
@@ -13,30 +11,20 @@ from icdgen.describe.comments import presence_comment
 from icdgen.describe.description import Need
 
 
-class Conditional(NamedTuple):
-    """A member that is not always there."""
-
-    name: str  # of the method
-    about: str
-    test: str
-    decode: str  # the line that sets the member
-    encode: tuple[str, ...]  # lines that put it into ``bytes``
-
-
-def conditional(message: MessageDescription) -> list[Conditional]:
-    """Those of a message."""
+def conditional(message: MessageDescription) -> list[dict[str, object]]:
+    """Those of a message: ``decode`` is the line that sets the member, ``encode`` are those that put it into ``bytes``."""
     return [
-        Conditional(
-            has(field),
-            presence_comment(field.model, message.model),
-            " && ".join(map(_test, field.needs)),
-            _read(field),
-            (
+        {
+            "name": has(field),
+            "about": presence_comment(field.model, message.model),
+            "test": " && ".join(map(_test, field.needs)),
+            "decode": _read(field),
+            "encode": [
                 f"let {bits.RAW} = there({string(field.model.name)}, self.{field_name(field)})?;",
                 *(bits.fitting(field) if field.is_narrow else ()),
                 *bits.writing(field),
-            ),
-        )
+            ],
+        }
         for field in message.conditional
     ]
 

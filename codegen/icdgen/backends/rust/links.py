@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from typing import NamedTuple
 
 from icdgen.backends.literals import Brackets, Item, written
 from icdgen.backends.rust.facts import member_name, type_name, value_of
@@ -30,46 +29,32 @@ _ONLY_POLLED = frozenset({"id", "processed", "parameter"})  # roles that no proc
 _NUMBER_BITS = 32  # of what the wire layer handles
 
 
-class LinkValues(NamedTuple):
-    """What the template of a node's link is given."""
-
-    node: str
-    doc: str
-    literal: str
-    longest: str
-    sequences: str  # empty where there is no envelope
-    tabulated: str  # the CRC of the envelope
-
-
-class Sizes(NamedTuple):
-    """What the buffers of the procedures hold, for every node."""
-
-    step: int
-    map: int
-    packets: int
-
-
-def sizes(links: Collection[LinkDescription]) -> Sizes:
-    """The most that any node needs."""
+def sizes(links: Collection[LinkDescription]) -> dict[str, int]:
+    """What the buffers of the procedures hold, for every node: the most that any needs."""
     known = [link.facts for link in links]
-    return Sizes(
-        max((link.longest_step for link in links), default=1),
-        max((one.hole_map.bytes for one in known if one.hole_map), default=1),
-        max((one.files.block_packets for one in known if one.files), default=1),
-    )
+    return {
+        "step": max((link.longest_step for link in links), default=1),
+        "map": max((one.hole_map.bytes for one in known if one.hole_map), default=1),
+        "packets": max((one.files.block_packets for one in known if one.files), default=1),
+    }
 
 
-def values(link: LinkDescription) -> LinkValues:
-    """The link of a node."""
+def values(link: LinkDescription) -> dict[str, str]:
+    """What the template of a node's link is given; ``tabulated`` is the CRC of the envelope, of which there is a table."""
     known, link_literal = link.facts, _Literal(link)
     text = written(link_literal.link(), _note)
-    sequences = integer(known.stream.sequences) if known.stream else ""
     about = [f"The protocol of node `{known.node.name}`. What the manual leaves open is marked as assumed."]
     for section, key, why in link_literal.assumed.others():
         about.append(f"Assumed (`{section}`, `{key}`): {prose(sentence(why))}")
     crc = tabulated(known.stream)
-    table = written(crc, _note) if crc else ""
-    return LinkValues(known.node.name, doc(about), text, integer(longest(link)), sequences, table)
+    return {
+        "node": known.node.name,
+        "doc": doc(about),
+        "literal": text,
+        "longest": integer(longest(link)),
+        "sequences": integer(known.stream.sequences) if known.stream else "",
+        "tabulated": written(crc, _note) if crc else "",
+    }
 
 
 def longest(link: LinkDescription) -> int:

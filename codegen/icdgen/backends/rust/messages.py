@@ -121,7 +121,7 @@ def _constant(field: FieldDescription, one: Constant) -> tuple[str, str]:
 
 def _length(before: int, step: int) -> str:
     """Bytes of a frame that has ``count`` elements behind so many bytes."""
-    rest = "count" if step == 1 else f"{step} * count"
+    rest = _times(step, "count")
     return f"{before} + {rest}" if before else rest
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from icdgen.describe import EnumDescription, FieldDescription, MessageDescription, StructDescription
+from icdgen.describe import EnumDescription, FieldDescription, MessageDescription
 from icdgen.describe.description import Composite
 from icdgen.describe.enums import MemberDescription
 from icdgen.icd.model import Node
@@ -76,8 +76,8 @@ def message_path(message: MessageDescription, node: Node) -> str:
     return type_name(message) if message.node.name == node.name else f"crate::{message.node.name}::{type_name(message)}"
 
 
-def struct_path(struct: StructDescription, node: Node) -> str:
-    """The type as the messages of ``node`` write it."""
+def struct_path(struct: Composite[Any], node: Node) -> str:
+    """The type of a struct, or of a message, as the messages of ``node`` write it."""
     return f"{'super' if struct.node.name == node.name else f'crate::{struct.node.name}'}::{type_name(struct)}"
 
 

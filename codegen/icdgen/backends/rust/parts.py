@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from icdgen.backends.lines import STEP, bracketed
-from icdgen.backends.rust.names import field_name, own_name, struct_path, type_name
+from icdgen.backends.rust.names import field_name, own_name, struct_path
 from icdgen.backends.rust.text import WIDTH
 from icdgen.describe import FieldDescription, MessageDescription, StructDescription
 from icdgen.describe.comments import part_comment
@@ -27,17 +27,12 @@ def parts(message: MessageDescription) -> list[Part]:
     """Those of a composite message."""
     found = []
     for one in parts_of(message):
-        path = _path(one.message, message)
+        path = struct_path(one.message, message.node)
         count = len(one.begins)
         kind = f"[{path}; {count}]" if count > 1 else path
         values = tuple(tuple(_values(one, message, begin)) for begin in one.begins)
         found.append(Part(part_comment(one.message.model, one.begins), kind, count > 1, values, path))
     return found
-
-
-def _path(part: MessageDescription, composite: MessageDescription) -> str:
-    """The type as the file of the composite message writes it."""
-    return f"super::{type_name(part)}" if part.node is composite.node else f"crate::{part.node.name}::{type_name(part)}"
 
 
 def _values(part: PartDescription, composite: MessageDescription, begin: int) -> Iterator[str]:

@@ -6,28 +6,17 @@ import re
 from collections.abc import Iterable
 from functools import lru_cache
 
-from icdgen.backends.lines import STEP, bracketed, commented
-from icdgen.describe.comments import Comment, one_line
+from icdgen.backends.lines import STEP, bracketed, commented, plain
+from icdgen.describe.comments import Comment
 
 WIDTH = 100
 
 _MARKDOWN = re.compile(r"[\\`*\[\]<|~$]|(?<![A-Za-z0-9])_|_(?![A-Za-z0-9])|&(?=[#A-Za-z])|(?<=http):|(?<=https):")
 
 
-def _character(char: str) -> str:
-    return char if char.isprintable() else f"U+{ord(char):04X}"
-
-
-@lru_cache(maxsize=8192)
-def plain(text: str) -> str:
-    """One line without control, invisible or direction-changing characters."""
-    text = one_line(text)
-    return text if text.isprintable() else "".join(map(_character, text))
-
-
 @lru_cache(maxsize=8192)
 def prose(text: str) -> str:
-    """``plain`` text that rustdoc shows as it is: no markup, links or HTML but what stands in backticks, as code."""
+    """`plain` text that rustdoc shows as it is: no markup, links or HTML but what stands in backticks, as code."""
     text = plain(text)
     if text.replace(" ", "").isalnum():
         return text
