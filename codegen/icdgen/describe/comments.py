@@ -110,11 +110,13 @@ def _said_of(field: Field | None, value: int) -> str:
     return next((words(one.name) for one in members if one.value == value and one.to is None), str(value))
 
 
-def presence_comment(field: Field, message: Message | None = None) -> str:
+def presence_comment(field: Field, message: Message) -> str:
     """What tells whether a field is there."""
-    return (
-        f"Whether {words(field.name)} is there: if {' and '.join(condition_text(one, message) for one in field.when)}."
-    )
+    return f"Whether {words(field.name)} is there: if {_conditions(field, message)}."
+
+
+def _conditions(field: Field, message: Message) -> str:
+    return " and ".join(condition_text(one, message) for one in field.when)
 
 
 def part_comment(part: Message, begins: Sequence[int]) -> str:
@@ -166,13 +168,9 @@ def member_comment(member: Member, told: Mapping[str, str]) -> Comment:
     return _comment(f"{words(member.name)} ({member.value}).", (sentence(member.summary),), member.errata, told)
 
 
-def field_comment(
-    field: Field, told: Mapping[str, str], tail: Tail | None = None, message: Message | None = None
-) -> Comment:
-    """Name, place, range and unit; summary; values that are allowed or mean something.
-
-    ``told``: as for a member. ``tail``: the open end of its message, ``message`` itself.
-    """
+def field_comment(field: Field, told: Mapping[str, str], message: Message) -> Comment:
+    """Name, place, range and unit; summary; values that are allowed or mean something. ``told``: as for a member."""
+    tail = message.tail
     if tail is not None and field.implied:
         what = f"how much of {words(tail.name)} the frame has, up to {tail.most}; told by its length"
         return Comment(f"{words(field.name)}: {what}.")
@@ -181,19 +179,17 @@ def field_comment(
         return _comment(head, (sentence(field.summary),), field.errata, told)
     facts = ["A view: it reads bits of other fields, and is not set."] if field.view else []
     if field.when:
-        facts.append(f"Only there if {' and '.join(condition_text(one, message) for one in field.when)}.")
+        facts.append(f"Only there if {_conditions(field, message)}.")
     if field.const is not None:
         facts.append(f"Always {value_text(field.const)}.")
     if field.limits is not None:
         facts.append(_limits(field))
     facts += (f"{special_text(special)}: {sentence(special.meaning)}" for special in field.special)
-    parts = message.open_parts if message is not None else ()
-    for part in (one for one in parts if one.counter == field.name):
+    for part in (one for one in message.open_parts if one.counter == field.name):
         plus = f", of which there are {abs(part.plus)} {'more' if part.plus > 0 else 'less'}" if part.plus else ""
         facts.append(f"Counts {words(part.name)}{plus}: at most {part.most}.")
-    place = _place(field)
-    if message is not None and (opening := next((part for part in parts if part.name == field.name), None)):
-        place = _open_place(field, message, opening)
+    opening = next((part for part in message.open_parts if part.name == field.name), None)
+    place = _open_place(field, message, opening) if opening else _place(field)
     head = f"{words(field.name)}: {place}{_meaning(field)}."
     return _comment(head, (sentence(field.summary), " ".join(facts)), field.errata, told)
 
@@ -204,8 +200,7 @@ def _limits(field: Field) -> str:
 
 def limits_text(limits: Iterable[Bound], field: Field) -> str:
     """``above 0 and at most 10 mA``"""
-    unit = f" {words(field.unit.symbol)}" if field.unit else ""
-    return " and ".join(f"{bound.kind.words} {exact_text(bound.value)}" for bound in limits) + unit
+    return " and ".join(f"{bound.kind.words} {exact_text(bound.value)}" for bound in limits) + _unit(field, " ")
 
 
 def _place(field: Field) -> str:
@@ -233,11 +228,8 @@ def _open_place(field: Field, message: Message, part: Tail) -> str:
         what = f"up to {array_text(part.most, field.bits)}"
     before = [one.name for one in message.open_parts[:-1] if 8 * one.begin < field.at]
     place = f"behind {words(before[-1])}" if before else f"from byte {field.at // 8} on"
-    counted = (
-        f"as many as {words(part.counter)} says"
-        if any(f.name == part.counter and not f.implied for f in message.fields)
-        else ""
-    )
+    is_counted = any(f.name == part.counter and not f.implied for f in message.fields)
+    counted = f"as many as {words(part.counter)} says" if is_counted else ""
     return ", ".join(filter(None, (place, what, counted, orders_text(field))))
 
 
@@ -252,15 +244,13 @@ def _meaning(field: Field) -> str:
     text = f", raw {field.raw_min} to {field.raw_max}" if field.type in ("uint", "int") else ""
     if field.type == "float":
         text = f", {field.bits}-bit float"
-    unit = words(field.unit.symbol) if field.unit else ""
     if not field.has_formula:
-        return f"{text}, in {unit}" if unit else text
-    range = span_text(field)
+        return text + _unit(field, ", in ")
     how = f"`{words(field.formula)}`"
     if field.curve is not None:
         how = f"by points {points_text(field.curve, 6)}" if field.curve.points else f"{how}, in doubles"
-    what = f"; physical {how}"
-    return f"{text}{what}{f', {range}' if range else ', in' if unit else ''}{f' {unit}' if unit else ''}"
+    range = span_text(field)
+    return f"{text}; physical {how}" + (f", {range}{_unit(field, ' ')}" if range else _unit(field, ", in "))
 
 
 def span_text(field: Field) -> str:
@@ -274,7 +264,7 @@ def span_text(field: Field) -> str:
 
 def takes_text(field: Field, is_narrow: bool) -> str:
     """``0 to 6553.5 m/s``, ``Mode, 0 to 15``: what a setter takes, or an encoder; also raw where more fits what holds it."""
-    unit = f" {words(field.unit.symbol)}" if field.unit else ""
+    unit = _unit(field, " ")
     if field.type == "float":
         return f"what {field.bits} bits of a float hold"
     raw, span = f"{field.raw_min} to {field.raw_max}", span_text(field)
@@ -294,8 +284,8 @@ def physical_name(field: Field) -> str:
     return f"{words(field.name)}{_unit(field) or ', as a physical value'}"
 
 
-def _unit(field: Field) -> str:
-    return f" in {words(field.unit.symbol)}" if field.unit else ""
+def _unit(field: Field, before: str = " in ") -> str:
+    return before + words(field.unit.symbol) if field.unit else ""
 
 
 def text_comment(field: Field) -> str:

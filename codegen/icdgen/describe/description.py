@@ -77,7 +77,8 @@ class FieldDescription(Named[Field]):
             self._within(field.path[0], within)
         if field.derived is not None and field.unit is not None:  # it is a physical value, and has no raw one
             self.name = self.member = self.declared = f"{self.name}_{field.unit.identifier}"
-        self.physical_name = f"{self.declared}_{self.unit_name}"
+        unit = "text" if self.is_text else field.unit.identifier if field.unit else "physical"
+        self.physical_name = f"{self.declared}_{unit}"
 
     def _within(self, step: Step, struct: StructDescription | None) -> None:
         """What it is called as an element of an array, or as a field of a struct."""
@@ -232,13 +233,6 @@ class FieldDescription(Named[Field]):
         """Whether a physical value sets it."""
         return not self.model.view and self.model.leads_back
 
-    @property
-    def unit_name(self) -> str:
-        """What names of the physical value end in: the unit's identifier, ``physical`` or ``text``."""
-        if self.is_text:
-            return "text"
-        return self.model.unit.identifier if self.model.unit else "physical"
-
     @cached_property
     def bounds(self) -> tuple[Bound, ...]:
         """The limits, one by one."""
@@ -257,7 +251,7 @@ class FieldDescription(Named[Field]):
     @cached_property
     def comment(self) -> Comment:
         told = told_elsewhere(self.model, self.message.tellers) if self.model.errata else {}
-        return field_comment(self.model, told, self.message.model.tail, self.message.model)
+        return field_comment(self.model, told, self.message.model)
 
 
 class TailDescription(NamedTuple):
@@ -267,36 +261,16 @@ class TailDescription(NamedTuple):
     counter: FieldDescription  # how many elements there are; implied, or a field of the frame
     begin: int  # bytes before it
     model: Tail
+    step: int  # bytes of an element
+    most: int  # elements
+    fewest: int  # elements: those that every frame has
+    low: int  # the smallest value of the counter: of a frame that has the fewest elements
+    high: int  # the largest
 
     @property
     def element(self) -> StructDescription | None:
         """What an element is made of, where that is a struct."""
         return self.part.element
-
-    @property
-    def step(self) -> int:
-        """Bytes of an element."""
-        return self.model.step
-
-    @property
-    def most(self) -> int:
-        """The most elements."""
-        return self.model.most
-
-    @property
-    def fewest(self) -> int:
-        """Elements that every frame has."""
-        return self.model.fewest
-
-    @property
-    def low(self) -> int:
-        """The smallest value of the counter: of a frame that has the fewest elements."""
-        return self.model.low
-
-    @property
-    def high(self) -> int:
-        """The largest."""
-        return self.model.high
 
     @property
     def least(self) -> int:

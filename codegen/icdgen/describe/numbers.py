@@ -17,15 +17,9 @@ def exact_text(value: Fraction | int) -> str:
     """The decimal if it ends soon enough, else the nearest double."""
     if value.denominator == 1:
         return str(int(value)) if abs(value) < 10 ** MOST_DIGITS else repr(float(value))
-    twos = fives = 0
-    rest = value.denominator
-    while rest % 2 == 0:
-        rest, twos = rest // 2, twos + 1
-    while rest % 5 == 0:
-        rest, fives = rest // 5, fives + 1
-    places = max(twos, fives)
+    places = next((n for n in range(1, MOST_DIGITS + 1) if 10**n % value.denominator == 0), 0)
     scaled = value * 10**places
-    if rest != 1 or len(str(abs(scaled.numerator))) > MOST_DIGITS or places > MOST_DIGITS:
+    if not places or len(str(abs(scaled.numerator))) > MOST_DIGITS:
         return repr(value.numerator / value.denominator)
     digits = str(abs(scaled.numerator)).rjust(places + 1, "0")
     return f"{'-' if value < 0 else ''}{digits[:-places]}.{digits[-places:]}"

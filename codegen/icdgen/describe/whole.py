@@ -66,7 +66,7 @@ class MessageDescription(Composite[Message]):
         part, counter = (
             next(one for one in self.members if one.model.name == name) for name in (tail.name, tail.counter)
         )
-        return TailDescription(part, counter, begin, tail)
+        return TailDescription(part, counter, begin, tail, tail.step, tail.most, tail.fewest, tail.low, tail.high)
 
     @cached_property
     def contained(self) -> tuple[tuple[MessageDescription, int], ...]:
@@ -182,6 +182,11 @@ class NodeDescription:
     def composites(self) -> tuple[Composite[Any], ...]:
         """Structs and messages that it declares, each after those that it has in it."""
         return (*self.structs, *self.messages)
+
+    @property
+    def declared(self) -> tuple[Composite[Any] | EnumDescription, ...]:
+        """All that it declares by a name: messages, enumerations and structs."""
+        return (*self.messages, *self.enums, *self.structs)
 
     @cached_property
     def spoken(self) -> tuple[MessageDescription, ...]:

@@ -91,6 +91,8 @@ class _Tables:
         link, known = self.link, self.known
         telecommands, telemetry = _short(link.telecommands), _short(link.telemetry)
         codes = link.error_codes
+        longest = f"{known.longest_telecommand}u, {known.longest_reply}u, {known.longest}u"
+        settings = f"{{{self.values('client', known.client)}}}"
         rows = [
             Row(self.array("nodes", "char *const", (f'"{name}"' for name in known.owners)), "whose messages"),
             Row(f"{len(known.owners)}u", "how many"),
@@ -101,22 +103,12 @@ class _Tables:
             Row(self.messages("telemetry", (self.message(one, "0u") for one in telemetry)), "what can be requested"),
             Row(_count("telecommands", telecommands), "how many can be sent"),
             Row(_count("telemetry", telemetry), "how many can be requested"),
-            Row(
-                f"{known.longest_telecommand}u, {known.longest_reply}u, {known.longest}u",
-                "longest telecommand, reply, any",
-            ),
+            Row(longest, "longest telecommand, reply, any"),
             Row(f"{known.longest_data}u", "longest without id and checksum"),
             Row(or_none(known.node.node_type), "node type"),
             Row(or_none(known.node.interface_version), "interface version"),
-            Row(
-                f"{{{self.values('client', known.client)}}}", "ms for a reply, retries, ms between polls, ms of polling"
-            ),
-            Row(
-                self.array(
-                    "errors", "icd_error_code_t", (f"{{ICD_REASON_{key.upper()}, {code}u}}" for key, code in codes)
-                ),
-                "error codes",
-            ),
+            Row(settings, "ms for a reply, retries, ms between polls, ms of polling"),
+            Row(self.array("errors", "icd_error_code_t", map(_error_code, codes)), "error codes"),
             Row(f"{len(codes)}u, {known.errors.get('none', 0)}u", "how many; no error"),
             Row(self.part("framing", known.framing, "uart.framing"), "framing of the UART"),
             Row(self.part("acknowledge", known.acknowledge, "uart.acknowledge"), "acknowledges on the UART"),
@@ -351,6 +343,10 @@ class _Tables:
     def procedure(self, name: str) -> str:
         """A procedure of file transfer."""
         return self.part(name, getattr(self.known.files, name, None), f"file_transfer.{name}")
+
+
+def _error_code(code: tuple[str, int]) -> str:
+    return f"{{ICD_REASON_{code[0].upper()}, {code[1]}u}}"
 
 
 def _field(one: EnvelopeField) -> Row:

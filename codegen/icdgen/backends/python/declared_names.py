@@ -7,7 +7,7 @@ from typing import Any
 
 from icdgen.backends import Identifier
 from icdgen.backends.python import names
-from icdgen.describe import Description, FieldDescription
+from icdgen.describe import Description
 from icdgen.describe.description import Composite
 from icdgen.describe.wholes import whole
 from icdgen.naming import DEVICES
@@ -23,12 +23,8 @@ def declared_names(description: Description, package: str) -> Iterator[Identifie
         for name in DEVICES:
             yield Identifier(f"files of {within}", name, "a device of Windows", None)
         for owner in map(description.node, (*description.icd.included(node.model), node.model)):
-            for one in owner.messages:
+            for one in owner.declared:
                 yield one.identifier(f"module {within}", names.class_name(one))
-            for enum in owner.enums:
-                yield enum.identifier(f"module {within}", names.class_name(enum))
-            for struct in owner.structs:
-                yield struct.identifier(f"module {within}", names.class_name(struct))
         for struct in node.structs:
             yield struct.identifier(f"files of {within}", names.module_name(struct))
             yield from _fields(struct, f"members of {within}.{names.class_name(struct)}")
@@ -36,24 +32,18 @@ def declared_names(description: Description, package: str) -> Iterator[Identifie
             yield enum.identifier(f"files of {within}", names.module_name(enum))
             for member in enum.members:
                 yield member.identifier(f"members of {within}.{names.class_name(enum)}", member.name.upper())
-        for one in node.messages:
-            yield from _fields(one, f"members of {within}.{names.class_name(one)}")
-
-
-def _of_field(field: FieldDescription) -> Iterator[str]:
-    yield field.name
-    if field.has_physical:
-        yield field.physical_name
-    found = None if field.steps is None else whole(field.steps)
-    if found is not None:
-        yield field.whole_name(found.per)
+        for message in node.messages:
+            yield from _fields(message, f"members of {within}.{names.class_name(message)}")
 
 
 def _fields(one: Composite[Any], scope: str) -> Iterator[Identifier]:
     for field in one.all_members:
         if field.model.implied:
             continue
-        for name in (*_of_field(field), *(constant.name.upper() for constant in field.constants)):
+        exact = None if field.steps is None else whole(field.steps)
+        physical = [field.physical_name] if field.has_physical else []
+        physical += [field.whole_name(exact.per)] if exact is not None else []
+        for name in (field.name, *physical, *(constant.name.upper() for constant in field.constants)):
             yield field.identifier(scope, name)
             if name in names.IN_MESSAGE:
                 yield Identifier(scope, name, names.IN_MESSAGE[name].format(name), None)

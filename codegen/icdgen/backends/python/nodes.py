@@ -29,8 +29,7 @@ def of_node(node: NodeDescription, description: Description) -> dict[str, object
     """What can be imported from a node: modules and names; and what is told of it."""
     declared: list[tuple[str, str]] = []
     for owner in map(description.node, (*description.icd.included(node.model), node.model)):
-        every: tuple[Composite[Any] | EnumDescription, ...] = (*owner.messages, *owner.enums, *owner.structs)
-        declared += ((names.home(one, node.name, ".."), names.class_name(one)) for one in every)
+        declared += ((names.home(one, node.name, ".."), names.class_name(one)) for one in owner.declared)
     declared += [("._link", "LINK")] if node.is_linked else []
     return {
         "doc": docstring(0, _documentation(node.model)),

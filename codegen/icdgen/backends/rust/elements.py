@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import Any
 
 from icdgen.backends.lines import STEP
 from icdgen.backends.rust import arrays, bits
@@ -15,52 +15,37 @@ from icdgen.describe.description import Composite
 DEPTH = 2  # steps of the body of a function
 
 
-class Functions(NamedTuple):
-    """What reads an element of an array, or as many as are whole bytes, and what writes it."""
-
-    reader: str
-    writer: str
-    of: str  # the array, as the ICD calls it
-    step: int  # bytes
-    type: str
-    tables: list[int]
-    value: str
-    writings: list[str]
-
-
-def functions(one: Composite[Any]) -> Iterator[Functions]:
-    """All of a message."""
+def functions(one: Composite[Any]) -> Iterator[dict[str, object]]:
+    """All of a message: what reads an element of an array, or as many as are whole bytes, and what writes it."""
     for field, name in arrays.named(one):
+        known = {"reader": arrays.reader(name), "writer": arrays.writer(name), "of": field.model.name}
         rounds = arrays.rounds_in(field)
         if field.element is not None:
-            yield _of_struct(field, field.element, name)
+            yield {**known, **_of_struct(field.element, f"{name}_")}
         elif rounds is not None:
-            yield _of_numbers(field, rounds, name)
+            yield {**known, **_of_numbers(field, rounds)}
 
 
-def _of_struct(field: FieldDescription, struct: StructDescription, name: str) -> Functions:
-    within, tables, type = f"{name}_", bits.flag_tables(struct), struct_path(struct, struct.seen_from)
+def _of_struct(struct: StructDescription, within: str) -> dict[str, object]:
+    tables, type = bits.flag_tables(struct), struct_path(struct, struct.seen_from)
     value = literal(struct.members, [bits.reading(one, tables, within=within) for one in struct.members], type)
     writings = [line for one in struct.blocks for line in bits.writing(one, "part", within)]
-    return Functions(*_called(field, name), struct.model.length, type, sorted(tables), value, writings)
+    step = struct.model.length
+    return {"step": step, "type": type, "tables": sorted(tables), "value": value, "writings": writings}
 
 
-def _of_numbers(field: FieldDescription, rounds: Rounds, name: str) -> Functions:
+def _of_numbers(field: FieldDescription, rounds: Rounds) -> dict[str, object]:
     type, pad, many = one_type(field), STEP * DEPTH, rounds.in_round > 1
     members = rounds.members(field, lambda element: f"part[{element}]" if many else "part")
     if many:
+        type = f"[{type}; {rounds.in_round}]"
         rows = "".join(f"{pad}{STEP}{bits.reading(one, set(), DEPTH + 1)},\n" for one in members)
         value = f"{pad}[\n{rows}{pad}]"
     else:
         value = bits.reading(members[0], set(), DEPTH - 1)  # a block is the body of the function
         value = value[2:-2].rstrip() if value.startswith("{\n") else pad + value
     writings = [line for one in members for line in bits.writing(one, "")]
-    type = f"[{type}; {rounds.in_round}]" if many else type
-    return Functions(*_called(field, name), rounds.step, type, [], value, writings)
-
-
-def _called(field: FieldDescription, name: str) -> tuple[str, str, str]:
-    return arrays.reader(name), arrays.writer(name), field.model.name
+    return {"step": rounds.step, "type": type, "tables": (), "value": value, "writings": writings}
 
 
 def literal(fields: tuple[FieldDescription, ...], values: list[str], type: str = "Self") -> str:

@@ -61,12 +61,8 @@ def integer(value: int) -> str:
 @lru_cache(maxsize=4096)
 def mask(value: int, bits: int = 8) -> str:
     """``0x0f``; ``0x0fff``; ``0x000f_ffff``: a digit for each four of ``bits``."""
-    digits = f"{value:0{bits // 4}x}"
-    return "0x" + "_".join(digits[max(0, end - 4) : end] for end in _ends(len(digits)))
-
-
-def _ends(length: int) -> range:
-    return range(length % 4 or 4, length + 1, 4)
+    digits = bits // 4
+    return f"0x{value:0{digits + (digits - 1) // 4}_x}"
 
 
 def whole_double(value: int) -> str:
