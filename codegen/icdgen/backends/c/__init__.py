@@ -14,7 +14,6 @@ from icdgen.backends.c import (
     constants,
     decoding,
     encoding,
-    fields,
     members,
     names,
     parts,
@@ -106,7 +105,7 @@ def _composite(one: Composite[Any], more: Iterable[str] = ()) -> dict[str, objec
         "declaration": types.declaration,
         "whole_accessors": accessors.whole_accessors(one),
         "accessors": accessors.accessors(one),
-        "known": fields.fields(one),
+        "known": constants.table(one),
     }
 
 

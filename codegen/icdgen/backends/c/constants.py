@@ -1,12 +1,16 @@
-"""Values of macros and enumerators: the only valid raw values, raw values with a meaning of their own, limits."""
+"""Values of macros and enumerators: the only valid raw values, raw values with a meaning of their own, limits.
+
+And what is said of fields as data: rows of tables.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 from icdgen.backends.c import names
+from icdgen.backends.c.text import literal
 from icdgen.backends.c.types import mask
 from icdgen.describe import EnumDescription, FieldDescription
 from icdgen.describe.constants import Constant
@@ -76,3 +80,26 @@ def _signed(value: int, bits: int) -> str:
         return f"INT{bits}_MIN"
     text = f"INT64_C({value})" if bits == 64 else str(value)
     return f"({text})" if value < 0 and bits else text
+
+
+class Fields(NamedTuple):
+    """Rows of the fields, and of their limits, to which they point."""
+
+    limits: list[str]
+    rows: list[str]
+
+
+def table(one: Composite[Any]) -> Fields:
+    """Those of a message or a struct, in the order of the ICD, an array as one, and a struct."""
+    found = Fields([], [])
+    for field in one.members:
+        model, bounds = field.model, field.bounds
+        limits = f"&limits[{len(found.limits)}]" if bounds else "NULL"
+        unit = literal(model.unit.symbol if model.unit else "")
+        inside = "NULL" if field.struct is None else f"{names.stem(field.struct)}_fields"
+        place = f"{model.at}u, {model.bits}u, {field.count or 1}u"
+        found.rows.append(f"{{{literal(model.name)}, {unit}, {place}, {limits}, {len(bounds)}u, {inside}}}")
+        for bound in bounds:
+            value = repr(bound.value.numerator / bound.value.denominator)
+            found.limits.append(f"{{ICD_LIMIT_{bound.key.upper()}, {value}}}")
+    return found

@@ -10,7 +10,6 @@ from icdgen import __version__
 from icdgen.backends import Identifier
 from icdgen.backends.origin import origin
 from icdgen.backends.python import names
-from icdgen.backends.python.declared_names import declared_names
 from icdgen.describe import describe
 from icdgen.icd.model import Icd
 
@@ -74,7 +73,7 @@ class PythonBackend:
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """Every name that ``files`` declares, for the name rules."""
-        return declared_names(describe(icd), self.package)
+        return names.declared_names(describe(icd), self.package)
 
 
 def _functions() -> dict[str, object]:
