@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from icdgen.describe.description import FieldDescription
@@ -191,11 +191,8 @@ class LinkDescription:
     @cached_property
     def in_procedures(self) -> list[Message]:
         """The messages that take part in the transfer of files and programs."""
-        return list(self._in_procedures())
-
-    def _in_procedures(self) -> Iterator[Message]:
         facts = self.facts
-        yield from (step.message for step in (facts.files.steps.values() if facts.files else ()))
-        operations = [one for one in (facts.program_copy, facts.program_information) if one]
-        yield from (step.message for one in operations for step in (one.request, one.progress))
-        yield from (facts.hole_map.messages if facts.hole_map else ())
+        steps = list(facts.files.steps.values()) if facts.files else []
+        for operation in filter(None, (facts.program_copy, facts.program_information)):
+            steps += [operation.request, operation.progress]
+        return [step.message for step in steps] + list(facts.hole_map.messages if facts.hole_map else ())

@@ -21,7 +21,7 @@ def whole(file: str, render: Renderer, made: Mapping[str, str] = MappingProxyTyp
 
     def part(include: re.Match[str]) -> str:
         name = include["file"]
-        text = made.get(name) or render.source(name)
+        text = made[name] if name in made else render.source(name)
         guarded = _GUARDED.fullmatch(text)
         return guarded["body"] if guarded else text
 

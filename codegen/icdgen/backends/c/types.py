@@ -22,10 +22,10 @@ def type_of(field: FieldDescription) -> str:
 
 def declaration(field: FieldDescription) -> str:
     """The member of a message's struct."""
+    name = field.name + (f"[{field.count}]" if field.count else "")
     if field.model.is_bytes:
-        return f"uint8_t {field.name}{f'[{field.count}]' if field.count else ''}[{field.size}]"
-    kind = f"{stem(field.struct)}_t" if field.struct is not None else type_of(field)
-    return f"{kind} {field.name}{f'[{field.count}]' if field.count else ''}"
+        return f"uint8_t {name}[{field.size}]"
+    return f"{f'{stem(field.struct)}_t' if field.struct is not None else type_of(field)} {name}"
 
 
 @cache

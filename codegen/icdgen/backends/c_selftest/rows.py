@@ -43,15 +43,12 @@ class FieldRow(NamedTuple):
     field: FieldDescription
     stem: str
     tables: str  # of the names of its tables: elements of an array have the same
-    has_tables: bool
-    holder: str  # where the struct in which it stands is in the message
     element: str  # the index of an element of an array, and a comma
     size: int  # bytes of the member
     packed: int  # bytes in a vector
     type: str
     fresh: str
     view: str  # the type of its getter, where it is one
-    is_derived: bool
     unfit: list[str]
     whole: Accessors | None
     scaled: Accessors | None
@@ -153,15 +150,12 @@ class _Rows:
             field=one,
             stem=stem,
             tables=tables,
-            has_tables=tables == stem,
-            holder=one.holder,
             element="" if index is None else f"{index}u, ",
             size=field.bits // 8 if is_bytes else storage.bits // 8,
             packed=(field.bits + 7) // 8,
             type=_type(field),
             fresh="0u" if is_bytes else _unsigned(_number(vectors.default[field.name])),
             view=type_of(one) if field.view else "",
-            is_derived=field.derived is not None,
             unfit=list(map(_unsigned, unfit)),
             whole=None if field.view else _whole(one),
             scaled=_scaled(one, vectors.settings.get(field.name)) if one.is_scaled else None,

@@ -134,8 +134,7 @@ class _Maker:
             "types": can.types,
             "extended_types": can.extended_types,
         }
-        if can.extended:
-            made["extended"] = self.part(can.extended, "can.extended")
+        made |= {"extended": self.part(can.extended, "can.extended")} if can.extended else {}
         return self.part(can, "can", **made)
 
     def checksum(self) -> object:

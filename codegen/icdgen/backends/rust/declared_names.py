@@ -72,11 +72,10 @@ def _members(
 ) -> Iterator[Identifier]:
     where = f"{message.node.name}::{message.model.name}"
     fields, methods, associated = f"fields of {where}", f"methods of {where}", f"constants of {where}"
-    of_open = (
-        (*_OPEN_METHODS, *(("inner",) if message.model.open_parts[:-1] else ())) if message.tail is not None else ()
-    )
-    yield from _ours(methods, (*used_methods, *of_open))
+    yield from _ours(methods, used_methods)
     if isinstance(message, MessageDescription):
+        if message.tail is not None:
+            yield from _ours(methods, (*_OPEN_METHODS, "inner") if message.inner else _OPEN_METHODS)
         for _, name in arrays.named(message):
             yield message.identifier(methods, arrays.reader(name))
             yield message.identifier(methods, arrays.writer(name))
