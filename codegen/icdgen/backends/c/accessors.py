@@ -77,15 +77,16 @@ def view(field: FieldDescription) -> dict[str, str]:
 
 
 def _double(field: FieldDescription) -> Accessor:
-    getter, (function, *arguments), declared = physical.in_doubles(field)
+    found = physical.scaled(field)
+    function, *arguments = found.setter
     return Accessor(
         end=field.physical_name,
         type="double",
         about=physical_comment(field.model),
         what=physical_name(field.model),
-        expression=getter.format(raw=_raw(field)),
+        expression=found.getter.format(raw=_raw(field)),
         assignment="" if not field.is_set else call(f"return {function}", (f"&{_member(field)}", *arguments)),
-        declared=declared,
+        declared=found.declared,
         elements=field.count,
     )
 

@@ -48,12 +48,10 @@ def _node(node: NodeDescription) -> Iterator[Identifier]:
     for end in ("ICD_DIGEST", "NODE_TYPE", "INTERFACE_VERSION", "H"):
         yield node.identifier(FILE, f"{node.name.upper()}_{end}")
     for kind in ("telemetry", "telecommand"):
-        for end in ("t", "name", "length", "size", "decode", "encode"):
+        rare = ("which", "which_t") if node.shares_ids(kind) else ()
+        for end in ("t", "name", "length", "size", "decode", "encode", *rare):
             owner = f"{kind} of node `{node.name}`"
             yield Identifier(FILE, f"{node.name}_{kind}_{end}", owner, node.model.source)
-        if node.shares_ids(kind):
-            for end in ("which", "which_t"):
-                yield Identifier(FILE, f"{node.name}_{kind}_{end}", owner, node.model.source)
     for direction in node.directions:
         if node.shares_ids(direction.kind):
             stem = f"{node.name}_{direction.kind}"

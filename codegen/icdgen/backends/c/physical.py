@@ -32,18 +32,25 @@ class Scaled(NamedTuple):
 
     getter: str  # a double, over ``{raw}``
     setter: tuple[str, ...]  # a function, and its arguments after the raw value
-    whole: Whole | None
+    declared: tuple[str, ...] = ()  # lines that declare what both use
+    whole: Whole | None = None
 
 
-def in_doubles(field: FieldDescription) -> tuple[str, tuple[str, ...], tuple[str, ...]]:
-    """Getter and setter, as those of `Scaled`, and the lines that declare what both use."""
+def scaled(field: FieldDescription) -> Scaled:
+    """The accessors of a field with a scale, or with a curve."""
     if field.curve is not None:
         return _on_curve(field, field.curve)
-    found = scaled(field)
-    return found.getter, found.setter, tuple(wide_scale(field.steps)) if field.steps and field.steps.is_wide else ()
+    assert field.steps is not None
+    return _scaled(field.steps, field.storage)
 
 
-def _on_curve(field: FieldDescription, curve: Curve) -> tuple[str, tuple[str, ...], tuple[str, ...]]:
+@lru_cache(maxsize=2048)
+def _scaled(steps: Steps, storage: Storage) -> Scaled:
+    declared = tuple(_wide_scale(steps)) if steps.is_wide else ()
+    return Scaled(_double_getter(steps, storage), _double_setter(steps, storage), declared, _whole(steps, storage))
+
+
+def _on_curve(field: FieldDescription, curve: Curve) -> Scaled:
     count, storage = f"{len(curve.pieces)}u", field.storage
     getter = f"icdgen_curve(ICDGEN_CAST(double, {RAW}), curve, {count})"
     if field.model.type == "float":
@@ -51,7 +58,7 @@ def _on_curve(field: FieldDescription, curve: Curve) -> tuple[str, tuple[str, ..
     else:
         limits = (_limit(end, storage) for end in field.model.ends)
         setter = f"icdgen_set_curve_{_kind(storage)}", "value", "curve", count, *limits
-    return getter, setter, tuple(_declared(curve))
+    return Scaled(getter, setter, tuple(_declared(curve)))
 
 
 def _kind(storage: Storage, bits: int = 0) -> str:
@@ -78,17 +85,6 @@ def _array(head: str, rows: list[str]) -> Iterator[str]:
     yield f"{head} = {{"
     yield from (f"    {row}," for row in rows)
     yield "};"
-
-
-def scaled(field: FieldDescription) -> Scaled:
-    """The accessors of a field with a scale."""
-    assert field.steps is not None
-    return _scaled(field.steps, field.storage)
-
-
-@lru_cache(maxsize=2048)
-def _scaled(steps: Steps, storage: Storage) -> Scaled:
-    return Scaled(_double_getter(steps, storage), _double_setter(steps, storage), _whole(steps, storage))
 
 
 def int64(value: int) -> str:
@@ -126,7 +122,7 @@ def _double_setter(steps: Steps, storage: Storage) -> tuple[str, ...]:
     return f"icdgen_set_{_kind(storage)}", value, int64(factor), int64(offset), int64(divisor), *limits
 
 
-def wide_scale(steps: Steps) -> list[str]:
+def _wide_scale(steps: Steps) -> list[str]:
     """The lines that declare the numbers of a wide scale."""
     rows = ((f"0x{part:X}u" if part > 9 else f"{part}u" for part in wide_parts(term, 32)) for term in steps.terms)
     return ["static const icdgen_scale_t scale = {", *(f"    {{{{{', '.join(row)}}}}}," for row in rows), "};"]

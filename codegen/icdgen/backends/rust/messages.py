@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import Any, NamedTuple
+from typing import Any
 
 from icdgen.backends.rust import arrays, bits, conditional, elements, parts
 from icdgen.backends.rust.names import field_name, integer_type, struct_path
@@ -35,7 +35,7 @@ def values(message: MessageDescription) -> dict[str, object]:
         "refused": message.is_narrow or bool(conditions),
         "conditional": conditions,
         "tail": tail,
-        "inner": [_Inner.of(one) for one in message.inner],
+        "inner": list(map(_inner, message.inner)),
         **(_of_end(message, tail) if tail else {}),
         "tables": sorted(tables),
         "literal": elements.literal(fields, readings),
@@ -58,19 +58,11 @@ def _of_end(message: MessageDescription, tail: TailDescription) -> dict[str, obj
     }
 
 
-class _Inner(NamedTuple):
-    """What is open in front of the end."""
-
-    part: TailDescription
-    reading: str  # of what counts it, from ``bytes``
-    bytes: str  # of it in a message
-    bytes_at_most: str  # the same, of a count that there may be, or not
-
-    @classmethod
-    def of(cls, part: TailDescription) -> _Inner:
-        count = f"number(self.{field_name(part.counter)}, {part.low}, {part.fewest})"
-        counts = (count, f"{count}.min({part.most})")
-        return cls(part, bits.reading(part.counter, set(), depth=3), *(_times(part.step, one) for one in counts))
+def _inner(part: TailDescription) -> tuple[TailDescription, str, str, str]:
+    """What is open in front of the end, how its count is read, and its bytes: of a count that there may be, and of any."""
+    count = f"number(self.{field_name(part.counter)}, {part.low}, {part.fewest})"
+    there, any_count = (_times(part.step, one) for one in (count, f"{count}.min({part.most})"))
+    return part, bits.reading(part.counter, set(), depth=3), there, any_count
 
 
 def _times(step: int, count: str) -> str:
