@@ -7,18 +7,7 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any
 
 from icdgen.backends import Identifier
-from icdgen.backends.c import (
-    accessors,
-    bits,
-    conditional,
-    constants,
-    decoding,
-    encoding,
-    members,
-    names,
-    parts,
-    types,
-)
+from icdgen.backends.c import accessors, bits, conditional, constants, decoding, encoding, members, names, parts, types
 from icdgen.backends.c.declared_names import declared_names
 from icdgen.backends.c.member_groups import Groups, Structs, in_groups
 from icdgen.backends.c.runtime import whole

@@ -132,12 +132,12 @@ class _Rows:
         }
 
     def vector(self, row: Row, fields: list[FieldRow]) -> list[str]:
-        data = row.frame.ljust(fields[0].field.message.model.length if fields else 0, b"\0")
+        data = bytearray(row.frame.ljust(fields[0].field.message.model.length if fields else 0, b"\0"))
         for field in fields:
             value = row.raw[field.field.model.name]
             bits = (1 << 8 * field.packed) - 1
             data += value if isinstance(value, bytes) else (value & bits).to_bytes(field.packed, "little")
-        return _bytes(data)
+        return _bytes(bytes(data))
 
     def field(self, one: FieldDescription, vectors: MessageVectors, known: dict[str, str]) -> FieldRow:
         """``known``: of each line of the ICD the field that has its tables."""

@@ -12,14 +12,7 @@ from icdgen.backends.rust.streams import stream_of, tabulated
 from icdgen.backends.rust.text import doc, integer, prose, string
 from icdgen.describe import FieldDescription
 from icdgen.describe.comments import sentence
-from icdgen.describe.links import (
-    CAN_PARTS,
-    INDEX_PARTS,
-    Assumptions,
-    LinkDescription,
-    SentMessage,
-    StepDescription,
-)
+from icdgen.describe.links import CAN_PARTS, INDEX_PARTS, Assumptions, LinkDescription, SentMessage, StepDescription
 from icdgen.protocol.declared import facts_of
 from icdgen.protocol.sections import BUSES, CAN_KINDS, PROCEDURES, Step
 
