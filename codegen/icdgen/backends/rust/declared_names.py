@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from icdgen.backends import Identifier
@@ -18,7 +18,7 @@ _CONSTANTS = ("NAME", "LENGTH", "ID", "SET_ID", "GET_ID")
 _METHODS_OF_STRUCTS = ("fit", "rows", "default")
 _CONSTANTS_OF_STRUCTS = ("NAME", "FIELDS")
 _ENUM_USES = ("Option", "From", "Enumeration")
-_OURS = "a name of the generated code"
+_OURS, _DEVICE = "a name of the generated code", "a device of Windows"
 
 
 def declared_names(description: Description) -> Iterator[Identifier]:
@@ -27,25 +27,21 @@ def declared_names(description: Description) -> Iterator[Identifier]:
     yield from _ours(scope, names.USED_MODULES)
     for name, said in names.ROOTS.items():
         yield Identifier(scope, name, said, None)
-    yield from _devices(scope)
+    yield from _ours(scope, DEVICES, _DEVICE)
     for node in description.nodes:
         yield node.identifier(scope, node.name)
     for node in description.nodes:
         yield from _node(node)
 
 
-def _ours(scope: str, found: tuple[str, ...]) -> Iterator[Identifier]:
-    return (Identifier(scope, name, _OURS, None) for name in found)
-
-
-def _devices(scope: str) -> Iterator[Identifier]:
-    return (Identifier(scope, name, "a device of Windows", None) for name in DEVICES)
+def _ours(scope: str, found: Iterable[str], said: str = _OURS) -> Iterator[Identifier]:
+    return (Identifier(scope, name, said, None) for name in found)
 
 
 def _node(node: NodeDescription) -> Iterator[Identifier]:
     modules, types, enums = f"modules of {node.name}", f"types of {node.name}", f"enumerations of {node.name}"
     yield from _ours(modules, names.USED_IN_NODES)
-    yield from _devices(modules)
+    yield from _ours(modules, DEVICES, _DEVICE)
     yield from _ours(types, names.USED_TYPES)
     yield from _ours(enums, _ENUM_USES)
     for enum in node.enums:
@@ -54,32 +50,29 @@ def _node(node: NodeDescription) -> Iterator[Identifier]:
         yield from _ours(variants, (names.catch_all(enum),))
         for member in enum.members:
             yield member.identifier(variants, names.type_name(member))
-    for struct in node.structs:
-        yield struct.identifier(modules, struct.name)
-        yield struct.identifier(types, names.type_name(struct))
-        yield from _members(struct, _METHODS_OF_STRUCTS, _CONSTANTS_OF_STRUCTS)
-    for one in node.messages:
+    for one in node.composites:
         yield one.identifier(modules, one.name)
         yield one.identifier(types, names.type_name(one))
-        yield from _members(one, _METHODS, _CONSTANTS)
+        yield from _members(one)
     for direction in node.directions:
-        for one, _ in direction.messages:
-            yield one.identifier(f"variants of {node.name}::{direction.kind.capitalize()}", names.type_name(one))
+        for message, _ in direction.messages:
+            yield message.identifier(
+                f"variants of {node.name}::{direction.kind.capitalize()}", names.type_name(message)
+            )
 
 
-def _members(
-    message: Composite[Any], used_methods: tuple[str, ...], used_constants: tuple[str, ...]
-) -> Iterator[Identifier]:
+def _members(message: Composite[Any]) -> Iterator[Identifier]:
     where = f"{message.node.name}::{message.model.name}"
     fields, methods, associated = f"fields of {where}", f"methods of {where}", f"constants of {where}"
-    yield from _ours(methods, used_methods)
+    is_message = isinstance(message, MessageDescription)
+    yield from _ours(methods, _METHODS if is_message else _METHODS_OF_STRUCTS)
     if isinstance(message, MessageDescription):
         if message.tail is not None:
             yield from _ours(methods, (*_OPEN_METHODS, "inner") if message.inner else _OPEN_METHODS)
         for _, name in arrays.named(message):
             yield message.identifier(methods, arrays.reader(name))
             yield message.identifier(methods, arrays.writer(name))
-    yield from _ours(associated, used_constants)
+    yield from _ours(associated, _CONSTANTS if is_message else _CONSTANTS_OF_STRUCTS)
     for field in message.all_members:
         is_view = field.model.view
         if message.tail is not None and (field.is_open or field.is_inner):
