@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
 
+from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 from icdgen.icd.model import Condition, Enum, Field
 from icdgen.suggest import close_to
@@ -12,15 +12,6 @@ from icdgen.suggest import close_to
 _LEAST = "`when` names a field that is always there: an unsigned number without a formula, a value of an enumeration, or a flag"
 _PLAIN = ("uint", "enum", "bool")
 _TYPES = (*_PLAIN, "int", "float", "bytes", "text")
-
-
-class Obstacle(NamedTuple):
-    """Why a condition cannot be held; ``key`` of ``item`` is wrong."""
-
-    item: Map
-    key: str
-    message: str
-    help: str
 
 
 def given(item: Map) -> Map | None:
@@ -54,18 +45,18 @@ def are_understood(field: Field) -> bool:
     return when is None or len(when) == len(field.when)
 
 
-def faults_of_names(message: Map, item: Map) -> Iterator[Obstacle]:
+def faults_of_names(message: Map, item: Map) -> Iterator[Fault]:
     """What is wrong with the fields that it depends on."""
     when, known = given(item), _fields(message)
     for name in when or ():
         assert when is not None
         if name not in known:
             text = f"`{name}`, on which `{item['name']}` depends, is no field of `{message['name']}`"
-            yield Obstacle(when, name, text, _meant(name, item, known) or _LEAST)
+            yield Fault.at_key(when, name, text, _meant(name, item, known) or _LEAST)
         elif not _is_sound(known[name]):
             continue  # a finding already
         elif why := "is the field itself" if name == item["name"] else _odd(known[name]):
-            yield Obstacle(when, name, f"`{name}`, on which `{item['name']}` depends, {why}", _LEAST)
+            yield Fault.at_key(when, name, f"`{name}`, on which `{item['name']}` depends, {why}", _LEAST)
 
 
 def _meant(name: str, item: Map, known: Mapping[str, Map]) -> str:
@@ -76,7 +67,7 @@ def _meant(name: str, item: Map, known: Mapping[str, Map]) -> str:
     return f"did you mean `{near}`?" if near else ""
 
 
-def faults_of_values(message: Map, item: Map, enums: Mapping[str, Enum]) -> Iterator[Obstacle]:
+def faults_of_values(message: Map, item: Map, enums: Mapping[str, Enum]) -> Iterator[Fault]:
     """What is wrong with the values that others must have."""
     when, known = given(item), _fields(message)
     for name in when or ():
@@ -93,15 +84,15 @@ def faults_of_values(message: Map, item: Map, enums: Mapping[str, Enum]) -> Iter
         for said, value in zip(_listed(when[name]), values, strict=True):
             if value is None and _is_range(one, said, enums):
                 text = f"{_shown(said)} is a range of values of `{one['enum']}`"
-                yield Obstacle(when, name, text, "write the values as numbers, each that is meant")
+                yield Fault.at_key(when, name, text, "write the values as numbers, each that is meant")
             elif value is None:
-                yield Obstacle(when, name, f"`{name}` is never {_shown(said)}", f"`{name}` {_allowed(one, enums)}")
+                yield Fault.at_key(when, name, f"`{name}` is never {_shown(said)}", f"`{name}` {_allowed(one, enums)}")
             elif "const" in one and value != one["const"]:
                 text = f"`{name}` is always {one['const']}, so that `{item['name']}` is never there"
-                yield Obstacle(when, name, text, "correct the value, or remove the field")
+                yield Fault.at_key(when, name, text, "correct the value, or remove the field")
         told = [value for value in values if value is not None]
         if len(set(told)) < len(told):
-            yield Obstacle(when, name, f"a value of `{name}` is given twice", "remove one of them")
+            yield Fault.at_key(when, name, f"a value of `{name}` is given twice", "remove one of them")
 
 
 def _listed(said: object) -> list[object]:

@@ -3,21 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
+from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 
 OF_A_WHOLE = ("unit", "formula", "points", "outside", "const", "special", "min", "max", "above", "below")
 """Keys that say what a value means: of a divided field its parts say so."""
-
-
-class Obstacle(NamedTuple):
-    """Why a field cannot be divided as it says; ``key`` of ``item`` is wrong."""
-
-    item: Map
-    key: str
-    message: str
-    help: str
 
 
 def parts_of(field: Map) -> list[Map]:
@@ -26,26 +17,26 @@ def parts_of(field: Map) -> list[Map]:
     return [item for item in items if isinstance(item, Map)] if isinstance(items, list) else []
 
 
-def obstacles(field: Map, byte_order: str, bit_order: str) -> Iterator[Obstacle]:
+def obstacles(field: Map, byte_order: str, bit_order: str) -> Iterator[Fault]:
     """What is wrong with the division; the parts are `parts_of` it."""
     name, bits = f"`{field['name']}`", field["bits"]
     if "count" in field:
         message = f"{name} is an array, and `bitfields` divide one number"
-        yield Obstacle(
+        yield Fault.at(
             field, "bitfields", message, "write a field for each element, or the parts as fields of the message"
         )
         return
     if field["type"] != "uint" or bits > 64:
         what = f"{name} is `{field['type']}`" if field["type"] != "uint" else f"{name} has {bits:,} bits"
         message = f"`bitfields` divide an unsigned number, and {what}"
-        yield Obstacle(field, "bitfields", message, "make the parts fields of the message")
+        yield Fault.at(field, "bitfields", message, "make the parts fields of the message")
         return
     for key in OF_A_WHOLE:
         if key in field:
             message = f"{name} is divided, so its value has no `{key}`: its parts have"
-            yield Obstacle(field, key, message, "move it to the parts; an erratum removes what is printed")
+            yield Fault.at(field, key, message, "move it to the parts; an erratum removes what is printed")
     if field.get("view"):
-        yield Obstacle(field, "view", f"{name} is divided, so it is no view", "make the parts views of the message")
+        yield Fault.at(field, "view", f"{name} is divided, so it is no view", "make the parts views of the message")
     taken: dict[int, str] = {}
     for part in parts_of(field):
         at, size, title = part.get("at"), part.get("bits"), f"`{part.get('name')}`"
@@ -53,18 +44,18 @@ def obstacles(field: Map, byte_order: str, bit_order: str) -> Iterator[Obstacle]
             continue  # the schema's business
         if at + size > bits:
             message = f"{title} ends at bit {at + size} of {name}, which has {bits} bit{'s' * (bits != 1)}"
-            yield Obstacle(part, "bits", message, "`at` counts within the field")
+            yield Fault.at(part, "bits", message, "`at` counts within the field")
         elif not lies_together(field, part, byte_order, bit_order):
             message = f"the bits of {title} do not lie together in the frame"
-            yield Obstacle(part, "at", message, "make the parts fields of the message")
+            yield Fault.at(part, "at", message, "make the parts fields of the message")
         clash = next((taken[bit] for bit in range(at, at + size) if bit in taken), None)
         if clash:
-            yield Obstacle(part, "at", f"{title} overlaps {clash}", "`at` counts within the field")
+            yield Fault.at(part, "at", f"{title} overlaps {clash}", "`at` counts within the field")
         taken.update((bit, title) for bit in range(at, at + size))
     left = [bit for bit in range(bits) if bit not in taken]
     if left:
         message = f"bit {left[0]} of {name} belongs to none of its parts"
-        yield Obstacle(field, "bitfields", message, "name what it is, or that it is reserved")
+        yield Fault.at(field, "bitfields", message, "name what it is, or that it is reserved")
 
 
 def place(field: Map, part: Map, byte_order: str, bit_order: str) -> int:

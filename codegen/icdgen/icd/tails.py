@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from itertools import pairwise, takewhile
 from typing import NamedTuple
 
+from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 from icdgen.suggest import close_to
 
@@ -17,15 +18,6 @@ MOST_BYTES = 65535  # of a frame
 MOST_ELEMENTS = 1024  # as of any array
 _OCTETS = ("bytes", "text")
 Lengths = Mapping[str, int]  # bytes of the structs that a message may name
-
-
-class Obstacle(NamedTuple):
-    """Why a part cannot be the open end that it is said to be; ``key`` of ``item`` is wrong."""
-
-    item: Map
-    key: str
-    message: str
-    help: str
 
 
 class Counting(NamedTuple):
@@ -92,7 +84,7 @@ def _is_sized(item: Map) -> bool:
     return "size" in item or isinstance(item.get("struct"), str)
 
 
-def faults_of_count(message: Map, item: Map) -> Iterator[Obstacle]:
+def faults_of_count(message: Map, item: Map) -> Iterator[Fault]:
     """What is wrong with how many elements there are said to be."""
     name = f"`{item['name']}`"
     key, (said, plus) = key_of(item), counting(item)
@@ -101,16 +93,16 @@ def faults_of_count(message: Map, item: Map) -> Iterator[Obstacle]:
         numbers = "a number, " if key == "count" else ""
         near = close_to(said, [*(one["name"] for one in _fields(message) if _can_count(one, message)), REST])
         help = f"did you mean `{near}`?" if near else f"`{key}` is {numbers}the name of an earlier field, or `{REST}`"
-        yield Obstacle(item, key, text, help)
+        yield Fault.at(item, key, text, help)
         return
     if "up_to" not in item and key == "count":
         text = f"{name} has no fixed {key}, and nothing says how large it can become"
-        yield Obstacle(item, key, text, "add `up_to:`, the most elements that there are: buffers are made for them")
+        yield Fault.at(item, key, text, "add `up_to:`, the most elements that there are: buffers are made for them")
     if "up_to" not in item:
         return
     if item["up_to"] > MOST_ELEMENTS and key == "count":
         text = f"{name} has up to {item['up_to']:,} elements: an array has at most {MOST_ELEMENTS:,}"
-        yield Obstacle(item, "up_to", text, "what is longer is `bytes` with `size: rest`")
+        yield Fault.at(item, "up_to", text, "what is longer is `bytes` with `size: rest`")
     if said == REST:
         return
     counter = counter_of(message, item)
@@ -119,19 +111,19 @@ def faults_of_count(message: Map, item: Map) -> Iterator[Obstacle]:
     same = next((one for one in others if counting(one).name == said), None)
     if same is not None:
         text = f"`{said}`, which counts {name}, counts `{same['name']}` already"
-        yield Obstacle(item, key, text, "each open part has a field of its own that counts it")
+        yield Fault.at(item, key, text, "each open part has a field of its own that counts it")
     odd = _odd(counter, message)
     if odd:
         text = f"`{counter['name']}`, which counts {name}, {odd}"
-        yield Obstacle(item, key, text, "what counts is an unsigned number in the bytes before")
+        yield Fault.at(item, key, text, "what counts is an unsigned number in the bytes before")
         return
     most, elements = (1 << counter["bits"]) - 1 + plus, "bytes" if key == "size" else "elements"
     if most < item["up_to"]:
         text = f"`{counter['name']}` counts up to {max(most, 0):,}, and {name} has up to {item['up_to']:,} {elements}"
-        yield Obstacle(item, "up_to", text, "correct `up_to`, or the `bits` of the field that counts")
+        yield Fault.at(item, "up_to", text, "correct `up_to`, or the `bits` of the field that counts")
     elif plus > item["up_to"]:
         text = f"{name} has at least {plus:,} {elements}, and up to {item['up_to']:,}"
-        yield Obstacle(item, "up_to", text, "correct `up_to`, or `plus`")
+        yield Fault.at(item, "up_to", text, "correct `up_to`, or `plus`")
 
 
 def _is_unknown(message: Map, item: Map) -> bool:
@@ -157,7 +149,7 @@ def _odd(counter: Map, message: Map) -> str:
     return ""
 
 
-def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Obstacle]:
+def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Fault]:
     """What is wrong with where it stands, and with what it is."""
     name, fixed = f"`{item['name']}`", 8 * message["length"]
     if _is_unknown(message, item):
@@ -167,47 +159,47 @@ def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Obsta
     written = [one["name"] for one in parts]
     if item.get("after") in written[written.index(item["name"]) + 1 :]:
         text = f"{name} comes after `{item['after']}`, which is written behind it"
-        yield Obstacle(item, "after", text, "write open parts in the order in which they stand in a frame")
+        yield Fault.at(item, "after", text, "write open parts in the order in which they stand in a frame")
         return
     if before is None and "after" in item:
         text = f"{name} comes after `{item['after']}`, and no part in front of it is open"
-        yield Obstacle(item, "after", text, "remove `after`: what is open begins where `length` ends")
+        yield Fault.at(item, "after", text, "remove `after`: what is open begins where `length` ends")
         return
     if before is not None and item.get("after") != before["name"]:
         text = f"{name} is not the first part of `{message['name']}` that has no fixed size"
         help = f"it stands behind `{before['name']}`: write `after: {before['name']}`"
-        yield Obstacle(item, "after" if "after" in item else "name", text, help)
+        yield Fault.at(item, "after" if "after" in item else "name", text, help)
         return
     if before is not None and counting(before).name == REST:
         text = f"{name} comes after `{before['name']}`, which goes up to the end of the frame"
-        yield Obstacle(item, "after", text, f"name the field that counts `{before['name']}`")
+        yield Fault.at(item, "after", text, f"name the field that counts `{before['name']}`")
         return
     if item["at"] != fixed:
         text = f"{name} is open and begins at bit {item['at']:,}; the `length` of `{message['name']}` ends at bit {fixed:,}"
         help = "`length` is that of a frame without any of it, which ends where the open part begins"
-        yield Obstacle(item, "at", text, help)
+        yield Fault.at(item, "at", text, help)
         return
     is_octets = item.get("type") in _OCTETS
     if "size" in item and not is_octets:
         text = f"{name} is `{item.get('type')}`: `size` is for bytes and text"
-        yield Obstacle(item, "size", text, "of numbers write `bits` of an element, and `count`")
+        yield Fault.at(item, "size", text, "of numbers write `bits` of an element, and `count`")
     elif unit(item, structs) % 8:
         text = f"an element of {name} has {unit(item, structs)} bits, and a frame ends with a byte"
-        yield Obstacle(item, "bits", text, "describe its bytes as elements, or count them")
+        yield Fault.at(item, "bits", text, "describe its bytes as elements, or count them")
     for key in ("view", "bitfields"):
         if item.get(key):
             text = f"{name} is open, so it has no `{key}`"
-            yield Obstacle(item, key, text, f"remove `{key}`")
+            yield Fault.at(item, key, text, f"remove `{key}`")
     if "reserved" in message:
         text = f"`{message['name']}` ends with {name}, so there are no reserved bytes behind it"
-        yield Obstacle(message, "reserved", text, "remove `reserved`")
+        yield Fault.at(message, "reserved", text, "remove `reserved`")
     longest = message["length"] + sum(one.get("up_to", 0) * unit(one, structs) // 8 for one in parts)
     if longest > MOST_BYTES and item is parts[-1]:
         text = f"with all of {name}, `{message['name']}` has {longest:,} bytes: at most {MOST_BYTES:,} are held"
-        yield Obstacle(item, "up_to", text, "correct `up_to`")
+        yield Fault.at(item, "up_to", text, "correct `up_to`")
 
 
-def obstacles(message: Map, item: Map, structs: Lengths) -> Iterator[Obstacle]:
+def obstacles(message: Map, item: Map, structs: Lengths) -> Iterator[Fault]:
     """All that is wrong with an open part."""
     yield from faults_of_count(message, item)
     yield from faults_of_place(message, item, structs)

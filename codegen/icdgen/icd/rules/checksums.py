@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Message, Node
 from icdgen.icd.rules.context import Context, section_of
-from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.protocol_limits import in_force
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, quote
@@ -37,13 +37,12 @@ def _fault(ctx: Context, node: Node, message: Message, other: Node, taken: Messa
         f"{quote(message.name)} of {node.name} with its checksum{data} is {quote(taken.name)} where {other.name} runs"
     )
     help = "give one of them another id or length, or accept it in an erratum, and send this one without a checksum"
-    return Fault(message.source, message.source.at(key), text, help)
+    return Fault.at(message.source, key, text, help)
 
 
 def _extra_bytes(ctx: Context, node: Node) -> int:
     """Bytes that a checksum adds to telecommands of the node; 0 without one."""
-    crc8 = ctx.protocol_of(node).get("crc8")
-    given = crc8.get("telecommand") if isinstance(crc8, dict) else None
+    given = ctx.fact(node, "crc8", "telecommand")
     extra = given.get("extra_bytes", 1) if isinstance(given, dict) else 0
     return extra if isinstance(extra, int) else 0
 
@@ -72,7 +71,7 @@ def _bytes(uses: list[Map]) -> Iterator[Fault]:
     for use, size in given[1:]:
         if size != given[0][1]:
             message = f"the checksum adds {count(size, 'byte')} to telemetry and {given[0][1]} to telecommands"
-            yield Fault(use, use.at("extra_bytes"), message, "a checksum has one size: make them agree")
+            yield Fault.at(use, "extra_bytes", message, "a checksum has one size: make them agree")
 
 
 def _on_can(crc8: Map, telemetry: Map) -> Iterator[Fault]:

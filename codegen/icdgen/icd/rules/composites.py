@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.diagnostics import Place
+from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 from icdgen.icd.model import Field, Message, Node, Part
 from icdgen.icd.rules.context import Context, mappings
-from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import line_of, listing, quote
+from icdgen.icd.rules.wording import VERBATIM, line_of, listing, quote, suggestion
 from icdgen.icd.wire_ids import number
-from icdgen.suggest import close_to
 
 _KEYS = ("bits", "type", "enum", "unit", "formula", "points", "outside")
 _IDS = ("id", "set_id", "get_id")
@@ -34,8 +33,7 @@ def part_exists(ctx: Context) -> Iterator[Fault]:
         frame = frames.get(part.message)
         if frame is None:
             if ctx.complete:
-                close = close_to(part.message, frames)
-                help = f"did you mean {quote(close)}?" if close else "names are the manual's, to the letter"
+                help = suggestion(part.message, frames, VERBATIM)
                 yield Fault(message.source, row.at("message"), f"there is no message {quote(part.message)}", help)
         elif message.name in _repeated(frame, frames):
             text = f"{quote(message.name)} contains itself"
@@ -64,15 +62,12 @@ def _repeated(frame: Message, frames: dict[str, Message]) -> set[str]:
 def part_matches(ctx: Context) -> Iterator[Fault]:
     for message, node, part, row in _parts(ctx):
         frame = next((m for m in ctx.messages_of(node) if m.name == part.message), None)
-        if (
-            frame is None
-            or frame is message
-            or frame.tail is not None
-            or part.at + frame.length * 8 > message.length * 8
-        ):
+        if frame is None or frame is message or frame.tail is not None:
             continue  # a finding already
-        wanted = {part.at + f.at: f for f in frame.owners}
         start, end = part.at, part.at + frame.length * 8
+        if end > message.length * 8:
+            continue  # likewise
+        wanted = {part.at + f.at: f for f in frame.owners}
         told = set()
         for field in [one for one in message.owners if one.at < end and one.at + one.bits > start]:
             twin = wanted.pop(field.at, None)
@@ -83,7 +78,7 @@ def part_matches(ctx: Context) -> Iterator[Fault]:
                 text = f"{quote(frame.name)} has no field at bit {field.at - start:,}, where {quote(field.name)} begins"
                 if field.at < start:
                     text = f"{quote(field.name)} lies across bit {start:,}, where {quote(frame.name)} begins"
-                yield Fault(field.source, field.source.at("at"), text, _compare(frame, field.source.at("at")))
+                yield Fault.at(field.source, "at", text, _compare(frame, field.source.at("at")))
             else:
                 differences = list(_differences(field, twin, frame))
                 told |= {id(one.owner) for one in differences}
@@ -91,9 +86,8 @@ def part_matches(ctx: Context) -> Iterator[Fault]:
         if wanted:
             names = [f"{quote(f.name)} at bit {at:,}" for at, f in list(wanted.items())[:3]]
             more = [f"{len(wanted) - 3} more"] if len(wanted) > 3 else []
-            place = row.at("at")
             text = f"{quote(message.name)} lacks fields of {quote(frame.name)}: {listing(names + more)}"
-            yield Fault(message.source, place, text, _compare(frame, place))
+            yield Fault(message.source, row.at("at"), text, _compare(frame, row.at("at")))
 
 
 def _compare(frame: Message, here: Place) -> str:

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.icd import conditions, tails
-from icdgen.icd.located import Map
+from icdgen.icd.fault import Fault
 from icdgen.icd.model import Struct
-from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.fault import Fault
+from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import quote
 
@@ -18,14 +17,14 @@ _NEVER = (("count", "an array"), ("size", "open"), ("bitfields", "divided"), ("v
 @rule("ICD160")
 def depends_on_a_field(ctx: Context) -> Iterator[Fault]:
     for field, message, _ in ctx.having["when"]:
-        yield from map(_fault, conditions.faults_of_names(message.source, field.source))
+        yield from conditions.faults_of_names(message.source, field.source)
 
 
 @rule("ICD161")
 def may_hold(ctx: Context) -> Iterator[Fault]:
     for field, message, node in ctx.having["when"]:
         enums = {one.name: one for known in ctx.scope(node) for one in known.enums}
-        yield from map(_fault, conditions.faults_of_values(message.source, field.source, enums))
+        yield from conditions.faults_of_values(message.source, field.source, enums)
 
 
 @rule("ICD162")
@@ -35,46 +34,30 @@ def can_be_absent(ctx: Context) -> Iterator[Fault]:
         odd = next((words for key, words in _NEVER if source.get(key)), f"`{field.type}`" if field.is_bytes else "")
         if isinstance(message, Struct):
             text = f"{quote(field.name)} is a field of a struct, which is always there as a whole"
-            yield Fault(
-                source, source.at("when"), text, "write the fields of the struct into the message, or remove `when`"
-            )
+            yield Fault.at(source, "when", text, "write the fields of the struct into the message, or remove `when`")
         elif odd:
             text = f"{quote(field.name)} is {odd}, and only a number, a flag or a value of an enumeration may be there or not"
-            yield Fault(source, source.at("when"), text, "remove `when`")
+            yield Fault.at(source, "when", text, "remove `when`")
         elif tails.open_parts(message.source):
             text = f"{quote(message.name)} has an open end, so each field before it is always there"
-            yield Fault(source, source.at("when"), text, "remove `when`")
+            yield Fault.at(source, "when", text, "remove `when`")
 
 
 @rule("ICD163")
 def carried(ctx: Context) -> Iterator[Fault]:
     """Links, logs and composites take every field for one that is there."""
     told = {id(message.source) for _, message, _ in ctx.having["when"]}
-    for node in ctx.icd.nodes if told else ():
-        protocol = ctx.protocol_of(node)
-        linked = bool(protocol) and "stream" not in protocol
+    for node in filter(ctx.is_linked, ctx.icd.nodes):
         for message in ctx.messages_of(node):
-            if linked and id(message.source) in told:
-                text = (
-                    f"fields of {quote(message.name)} are not always there, which the links of `protocol` do not carry"
-                )
-                yield Fault(
-                    message.source,
-                    message.source.at("name"),
-                    text,
-                    "leave `when` or `protocol` out of this ICD, or describe the link as a `stream`",
-                )
+            if id(message.source) in told:
+                absent = f"fields of {quote(message.name)} are not always there"
+                help = "leave `when` or `protocol` out of this ICD, or describe the link as a `stream`"
+                yield Fault.at(message.source, "name", f"{absent}, which the links of `protocol` do not carry", help)
     for message, node in ctx.messages if told else ():
-        named = {one.name for one in ctx.messages_of(node) if id(one.source) in told}
-        for part in message.source.get("contains") or ():
-            name = part.get("message") if isinstance(part, Map) else None
-            if isinstance(name, str) and (name in named or id(message.source) in told):
-                who = name if name in named else message.name
-                text = (
-                    f"fields of {quote(who)} are not always there, so {quote(message.name)} cannot repeat {quote(name)}"
-                )
+        names = {one.name for one in ctx.messages_of(node) if id(one.source) in told}
+        for part in mappings(message.source.get("contains")):
+            name = part.get("message")
+            if isinstance(name, str) and (name in names or id(message.source) in told):
+                absent = f"fields of {quote(name if name in names else message.name)} are not always there"
+                text = f"{absent}, so {quote(message.name)} cannot repeat {quote(name)}"
                 yield Fault(message.source, part.at("message"), text, "remove it from `contains`")
-
-
-def _fault(one: conditions.Obstacle) -> Fault:
-    return Fault(one.item, one.item.key_at(one.key), one.message, one.help)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from icdgen.icd.errata import Applied
+from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
-from icdgen.icd.model import Field, Icd, Message, Node, Struct
-from icdgen.icd.rules.fault import Fault
+from icdgen.icd.model import Enum, Field, Icd, Message, Node, Struct
 
 if TYPE_CHECKING:
     from icdgen.icd.identifiers import Language
@@ -18,21 +18,37 @@ RARE = ("enum", "unit", "formula", "formula_for", "points", "outside", "const", 
     "bitfields", "byte_order", "bit_order", "count", "view", "after", "up_to", "when",
 )  # fmt: skip
 
+T = TypeVar("T")
 Owner = Message | Struct
 Row = tuple[Field, Owner, Node]
 
 
+def said(node: Node, *path: str) -> Any:
+    """What the node's own protocol says at a path; None if nothing."""
+    return at_path(node.source.get("protocol"), path)
+
+
 def section_of(node: Node, *path: str) -> Map | None:
     """A section of the node's own protocol."""
-    found: object = node.source
-    for key in ("protocol", *path):
-        found = found.get(key) if isinstance(found, Map) else None
+    found = said(node, *path)
     return found if isinstance(found, Map) else None
+
+
+def at_path(tree: Any, path: Iterable[str]) -> Any:
+    """What stands at a path of keys; None if nothing, or if there are no mappings on the way."""
+    for key in path:
+        tree = tree.get(key) if isinstance(tree, dict) else None
+    return tree
 
 
 def mappings(items: object) -> Iterator[Map]:
     """The mappings of a list as it was read: nothing where it is no list."""
     return (item for item in items if isinstance(item, Map)) if isinstance(items, list) else iter(())
+
+
+def named(known: Mapping[str, T], name: object) -> T | None:
+    """What is known by a name; None if it is no name, for anything may stand in a tree where one should."""
+    return known.get(name) if isinstance(name, str) else None
 
 
 class Context:
@@ -53,6 +69,7 @@ class Context:
         self.raised: list[tuple[str, Fault]] = []  # code and fault, of the rules that ran already
         self.messages: list[tuple[Message, Node]] = [(m, n) for n in icd.nodes for m in n.messages]
         self.structs: list[tuple[Struct, Node]] = [(one, n) for n in icd.nodes for one in n.structs]
+        self.enums: list[Enum] = [one for n in icd.nodes for one in n.enums]
         self.owners: list[tuple[Owner, Node]] = [*self.messages, *self.structs]  # of fields
         self.members: list[Row] = [
             (f, m, n) for m, n in self.owners for f in m.members if not f.implied and f.derived is None
@@ -101,5 +118,14 @@ class Context:
         """The protocol facts that hold for the node: its own over those of what it includes."""
         merged: dict[str, Any] = {}
         for one in self.scope(node):
-            merged.update(one.protocol if isinstance(one.protocol, dict) else {})
+            merged.update(one.protocol)
         return merged
+
+    def fact(self, node: Node, *path: str) -> Any:
+        """The protocol fact at a path that holds for the node; None if there is none."""
+        return at_path(self.protocol_of(node), path)
+
+    def is_linked(self, node: Node) -> bool:
+        """Whether its protocol describes links that know a message by its id, and in one length: an envelope does without."""
+        protocol = self.protocol_of(node)
+        return bool(protocol) and "stream" not in protocol

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.icd import derived
+from icdgen.icd.fault import Fault
 from icdgen.icd.formula import FormulaError
 from icdgen.icd.located import Map
 from icdgen.icd.model import Message
 from icdgen.icd.rules.context import Context, mappings
-from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.layout import is_read
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import quote
@@ -40,7 +40,7 @@ def _faults(message: Message) -> Iterator[Fault]:
                 derived.check(found, known)
         except FormulaError as error:
             what = f"{quote(item['name'])} cannot be derived by {quote(text)}: {error}"
-            yield Fault(item, item.at("formula"), what, _HELP)
+            yield Fault.at(item, "formula", what, _HELP)
         failed.add(item["name"])
 
 

@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from typing import TypeVar
 
+from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 from icdgen.icd.model import Enum, Member, Message, Node, Struct
 from icdgen.icd.rules.context import Context, mappings
-from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, quote
 from icdgen.icd.units import STANDARD
 
 T = TypeVar("T")
+PRINTED_TWICE = "if the manual prints the name twice, an erratum holds another"
 
 
 def _twice(items: Iterable[T], key: Callable[[T], Hashable]) -> Iterator[tuple[T, T]]:
@@ -48,16 +49,14 @@ def names_twice(
     for node in ctx.icd.nodes:
         for (n1, first), (n2, second) in _twice(in_scope(ctx, node, items), lambda pair: pair[1].name):
             if is_news(ctx, node, n1, n2):
-                place = second.source.at("name")
-                there = line_of(first.source.at("name"), place)
+                there = line_of(first.source.at("name"), second.source.at("name"))
                 message = f"there is already {what} called {quote(second.name)}, in {there}{together(node, n2)}"
-                yield Fault(second.source, place, message, help)
+                yield Fault.at(second.source, "name", message, help)
 
 
 @rule("ICD050")
 def message_names(ctx: Context) -> Iterator[Fault]:
-    help = "if the manual prints the name twice, an erratum holds another"
-    yield from names_twice(ctx, "a message", lambda n: n.messages, help)
+    yield from names_twice(ctx, "a message", lambda n: n.messages, PRINTED_TWICE)
 
 
 @rule("ICD051")
@@ -74,10 +73,9 @@ def field_names(ctx: Context) -> Iterator[Fault]:
             if id(second.source) in told:
                 continue  # another element of the same array
             told.add(id(second.source))
-            place = second.source.at("name")
-            there = line_of(first.source.at("name"), place)
+            there = line_of(first.source.at("name"), second.source.at("name"))
             text = f"{quote(message.name)} already has a field {quote(second.name)}, in {there}"
-            yield Fault(second.source, place, text, "if the manual prints the name twice, an erratum holds another")
+            yield Fault.at(second.source, "name", text, PRINTED_TWICE)
 
 
 @rule("ICD052")
@@ -87,12 +85,11 @@ def enum_names(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD053")
 def member_values(ctx: Context) -> Iterator[Fault]:
-    for enum in (e for n in ctx.icd.nodes for e in n.enums):
+    for enum in ctx.enums:
         for first, second in _sharing(enum):
-            place = second.source.at("value")
-            there = f"{quote(first.name)} ({line_of(first.source.at('value'), place)})"
+            there = f"{quote(first.name)} ({line_of(first.source.at('value'), second.source.at('value'))})"
             what = f"the value {max(first.value, second.value)}"
-            yield Fault(second.source, place, f"{there} already has {what}", "correct one of them")
+            yield Fault.at(second.source, "value", f"{there} already has {what}", "correct one of them")
 
 
 def _sharing(enum: Enum) -> Iterator[tuple[Member, Member]]:
@@ -110,13 +107,12 @@ def _sharing(enum: Enum) -> Iterator[tuple[Member, Member]]:
 
 @rule("ICD054")
 def member_names(ctx: Context) -> Iterator[Fault]:
-    for enum in (e for n in ctx.icd.nodes for e in n.enums):
+    for enum in ctx.enums:
         for first, second in _twice(enum.members, lambda m: (m.name, m.identifier)):
-            place = second.source.at("name")
-            there = f"{first.value} ({line_of(first.source.at('name'), place)})"
+            there = f"{first.value} ({line_of(first.source.at('name'), second.source.at('name'))})"
             message = f"{quote(second.name)} is already the name of {there}"
             help = "if the manual does say so, give each an `identifier:` of its own"
-            yield Fault(second.source, place, message, help)
+            yield Fault.at(second.source, "name", message, help)
 
 
 @rule("ICD057")
@@ -124,7 +120,7 @@ def node_names(ctx: Context) -> Iterator[Fault]:
     for first, second in _twice(ctx.icd.nodes, lambda n: n.name):
         head = second.source["node"]
         message = f"another file has declared the node `{second.name}`: {first.file}"
-        yield Fault(head, head.at("name"), message, "name one of them differently, or leave one file out")
+        yield Fault.at(head, "name", message, "name one of them differently, or leave one file out")
 
 
 @rule("ICD058")
@@ -133,14 +129,13 @@ def unit_symbols(ctx: Context) -> Iterator[Fault]:
         pairs = in_scope(ctx, node, _declared_units)
         for (n1, first), (n2, second) in _twice(pairs, lambda pair: pair[1]["symbol"]):
             if is_news(ctx, node, n1, n2):
-                place = second.at("symbol")
-                there = line_of(first.at("symbol"), place)
+                there = line_of(first.at("symbol"), second.at("symbol"))
                 message = f"the unit {quote(second['symbol'])} is already declared, in {there}{together(node, n2)}"
-                yield Fault(second, place, message, "declare it once")
+                yield Fault.at(second, "symbol", message, "declare it once")
         for unit in _declared_units(node):
             if unit["symbol"] in STANDARD:
                 message = f"the unit {quote(unit['symbol'])} is built in: {STANDARD[unit['symbol']].quantity}"
-                yield Fault(unit, unit.at("symbol"), message, "remove the declaration, or choose another symbol")
+                yield Fault.at(unit, "symbol", message, "remove the declaration, or choose another symbol")
 
 
 def _declared_units(node: Node) -> Iterator[Map]:

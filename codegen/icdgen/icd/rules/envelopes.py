@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-from icdgen.icd.located import Map, Seq
-from icdgen.icd.model import Message, Node
-from icdgen.icd.rules.context import Context, mappings, section_of
-from icdgen.icd.rules.fault import Fault
+from icdgen.icd.fault import Fault
+from icdgen.icd.located import Map, Seq, unread
+from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node
+from icdgen.icd.rules.context import Context, at_path, mappings, section_of
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import count, listing, quote
-from icdgen.suggest import close_to
+from icdgen.icd.rules.wording import count, listing, quote, suggestion
 
+DIRECTIONS = (TELECOMMAND, TELEMETRY)
 PARTS = ("header", "trailer")
 FIXED = ("sync", "constant")
 WORD = 32  # bits of a field, at most
@@ -61,25 +61,23 @@ def described_once(ctx: Context) -> Iterator[Fault]:
         for key in protocol:
             if key not in BESIDE:
                 message = f"`{key}` is of another kind of link than `stream`, and nothing would heed it"
-                yield Fault(protocol, protocol.key_at(key), message, f"remove `{key}` or `stream`")
+                yield Fault.at_key(protocol, key, message, f"remove `{key}` or `stream`")
         uart = protocol.get("uart")
         client = protocol.get("client")
         for key in ("poll_interval_ms", "poll_timeout_ms"):
             if isinstance(client, Map) and key in client:
                 message = f"nothing is polled where messages travel in envelopes, and nothing would heed `{key}`"
-                yield Fault(client, client.key_at(key), message, "remove it")
+                yield Fault.at_key(client, key, message, "remove it")
         for key in ("framing", "acknowledge"):
             if isinstance(uart, Map) and key in uart:
                 message = f"`uart: {key}` and `stream` describe how messages are delimited, each in another way"
-                yield Fault(uart, uart.key_at(key), message, "remove one of them")
+                yield Fault.at_key(uart, key, message, "remove one of them")
     for node in ctx.icd.nodes:
         checksums = section_of(node, "checksums")
         if checksums is not None and "stream" not in ctx.protocol_of(node):
             protocol = node.source["protocol"]
             message = "there is no `stream` whose messages these checksums could be of"
-            yield Fault(
-                protocol, protocol.key_at("checksums"), message, "describe the link as a `stream`, or remove them"
-            )
+            yield Fault.at_key(protocol, "checksums", message, "describe the link as a `stream`, or remove them")
 
 
 @rule("ICD171")
@@ -90,34 +88,34 @@ def roles_that_are_needed(ctx: Context) -> Iterator[Fault]:
             role = row["role"]
             if role in seen and role not in FIXED:
                 message = f"there are two fields of the role `{role}`"
-                yield Fault(row, row.at("role"), message, "give one of them its own role, or make it a `constant`")
+                yield Fault.at(row, "role", message, "give one of them its own role, or make it a `constant`")
             seen.add(role)
             if role in FIXED and "value" not in row:
-                yield Fault(row, row.at("role"), f"a `{role}` has no `value`", "add `value:`, what it always is")
+                yield Fault.at(row, "role", f"a `{role}` has no `value`", "add `value:`, what it always is")
             if role in ("id", "length", "checksum") and "value" in row:
                 message = f"the {role} follows from the message, so it has no `value`"
-                yield Fault(row, row.key_at("value"), message, "remove `value`, or make the field a `constant`")
+                yield Fault.at_key(row, "value", message, "remove `value`, or make the field a `constant`")
             for key, owner in ONLY_WITH.items():
                 if key in row and role != owner:
                     message = f"`{key}` says something of a field of the role `{owner}`, not of a `{role}`"
-                    yield Fault(row, row.key_at(key), message, "remove it, or correct `role`")
+                    yield Fault.at_key(row, key, message, "remove it, or correct `role`")
         yield from _missing(ctx, link)
 
 
 def _missing(ctx: Context, link: Link) -> Iterator[Fault]:
-    section, place = link.section, link.section.at("delimited_by")
-    if section.get("delimited_by") == "length":
-        if not link.of("length"):
+    lengths = link.of("length")
+    if link.section.get("delimited_by") == "length":
+        if not lengths:
             help = "add one, or say what else delimits messages in `delimited_by`"
-            yield Fault(section, place, "no field has the role `length`, which delimits messages", help)
-        elif link.rows and any(part == "trailer" for part, row in link.rows if row["role"] == "length"):
-            row = link.of("length")[0]
+            message = "no field has the role `length`, which delimits messages"
+            yield Fault.at(link.section, "delimited_by", message, help)
+        elif any(part == "trailer" for part, row in link.rows if row["role"] == "length"):
             message = "the length that delimits messages stands behind their data"
-            yield Fault(row, row.at("role"), message, "it stands in `header`")
-    for direction in ("telecommand", "telemetry"):
+            yield Fault.at(lengths[0], "role", message, "it stands in `header`")
+    for direction in DIRECTIONS:
         if len({id for id, _ in _ids(ctx, link.node, direction)}) > 1 and not link.of("id"):
             message = f"no field has the role `id`, and there are several messages in one direction ({direction})"
-            yield Fault(section, place, message, "add one: nothing else tells them apart")
+            yield Fault.at(link.section, "delimited_by", message, "add one: nothing else tells them apart")
             return
 
 
@@ -141,11 +139,11 @@ def _places(link: Link) -> Iterator[Fault]:
         size = bits[-1] // 8 - bits[0] // 8 + 1
         if size > MOST_SPAN:
             message = f"the {row['role']} has part in {count(size, 'byte')}, more than {MOST_SPAN}"
-            yield Fault(row, row.at("bits"), message, "make it narrower, or begin it at a whole byte")
+            yield Fault.at(row, "bits", message, "make it narrower, or begin it at a whole byte")
         order = row.get("byte_order", link.node.byte_order)
         if size > 1 and row["bits"] % 8 + row["at"] % 8 and (order == "big") != (link.node.bit_order == "msb0"):
             message = f"the {row['role']} crosses bytes in {order} order, though bits are {link.node.bit_order}"
-            yield Fault(row, row.at("at"), message, "only whole bytes can have an order that is not that of the bits")
+            yield Fault.at(row, "at", message, "only whole bytes can have an order that is not that of the bits")
 
 
 def _values(link: Link) -> Iterator[Fault]:
@@ -154,19 +152,19 @@ def _values(link: Link) -> Iterator[Fault]:
         for one in value.values() if isinstance(value, Map) else [value]:
             if isinstance(one, Seq | list) and len(one) * 8 != row["bits"]:
                 message = f"{count(len(one), 'byte')} are given for {count(row['bits'], 'bit')}"
-                yield Fault(row, row.at("value"), message, "correct `bits` or `value`")
+                yield Fault.at(row, "value", message, "correct `bits` or `value`")
             elif isinstance(one, int) and one >> row["bits"] > 0:
                 message = f"{one} does not fit {count(row['bits'], 'bit')}"
-                yield Fault(row, row.at("value"), message, "correct `bits` or `value`")
+                yield Fault.at(row, "value", message, "correct `bits` or `value`")
 
 
 def _contents(ctx: Context, link: Link) -> Iterator[Fault]:
-    messages = [pair for direction in ("telecommand", "telemetry") for pair in _ids(ctx, link.node, direction)]
+    messages = [pair for direction in DIRECTIONS for pair in _ids(ctx, link.node, direction)]
     for row in link.of("id"):
         id, one = max(messages, key=lambda pair: pair[0], default=(0, None))
         if one is not None and id >> row["bits"]:
             message = f"an id of {count(row['bits'], 'bit')} does not hold 0x{id:X}, that of {quote(one.name)}"
-            yield Fault(row, row.at("bits"), message, "make the field wider, or correct the id")
+            yield Fault.at(row, "bits", message, "make the field wider, or correct the id")
     around = sum(
         -(-max((row["at"] + row["bits"] for where, row in link.rows if where == part), default=0) // 8)
         for part in PARTS
@@ -174,32 +172,29 @@ def _contents(ctx: Context, link: Link) -> Iterator[Fault]:
     empty = next((one for _, one in messages if one.least == 0 and around == 0), None)
     if empty is not None:
         message = f"nothing is sent of {quote(empty.name)}, which can have no data"
-        yield Fault(link.section, link.section.at("delimited_by"), message, "add a field to `header`, such as an id")
+        yield Fault.at(link.section, "delimited_by", message, "add a field to `header`, such as an id")
     for row in link.of("length"):
         plus = row.get("plus", 0) + (around if row.get("counts") == "message" else 0)
-        for least, most, one in ((one.least, one.length, one) for _, one in messages):
-            if most + plus >= 1 << row["bits"]:
-                message = (
-                    f"a length of {count(row['bits'], 'bit')} does not hold {most + plus}, that of {quote(one.name)}"
-                )
-                yield Fault(row, row.at("bits"), message, "make the field wider, or the message shorter")
+        for _, one in messages:
+            least, most = one.least + plus, one.length + plus
+            if most >= 1 << row["bits"]:
+                message = f"a length of {count(row['bits'], 'bit')} does not hold {most}, that of {quote(one.name)}"
+                yield Fault.at(row, "bits", message, "make the field wider, or the message shorter")
                 break
-            if least + plus < 0:
-                message = f"the length of {quote(one.name)} would be {least + plus}"
-                yield Fault(row, row.at("plus"), message, "correct `plus`, or let the message have more bytes")
+            if least < 0:
+                message = f"the length of {quote(one.name)} would be {least}"
+                yield Fault.at(row, "plus", message, "correct `plus`, or let the message have more bytes")
                 break
     for row in link.of("sequence"):
         if row["bits"] > MOST_SEQUENCE_BITS:
             message = f"a sequence number has at most {MOST_SEQUENCE_BITS} bits"
-            yield Fault(row, row.at("bits"), message, "make it narrower, and the rest a `constant`")
+            yield Fault.at(row, "bits", message, "make it narrower, and the rest a `constant`")
 
 
 @rule("ICD173")
 def checksums_of_links(ctx: Context) -> Iterator[Fault]:
     for link in links(ctx):
-        protocol = link.node.source["protocol"]
-        given = protocol.get("checksums")
-        checksums = given if isinstance(given, Map) else Map(protocol.spot)
+        checksums = section_of(link.node, "checksums") or unread()
         used: set[str] = set()
         for part, row in link.rows:
             if row["role"] != "checksum":
@@ -210,15 +205,14 @@ def checksums_of_links(ctx: Context) -> Iterator[Fault]:
             if known is None:
                 message = f"no checksum is called {quote(name)}" if name else "it does not say which checksum it is"
                 names = listing(f"`{key}`" for key in checksums) if checksums else "there are none"
-                yield Fault(row, row.at("role"), message, f"say in `checksum:` which of `checksums` it is: {names}")
+                yield Fault.at(row, "role", message, f"say in `checksum:` which of `checksums` it is: {names}")
             elif _is_known(known):
                 yield from _checksum(ctx, link, part, row, known)
         for name in checksums:
             if name not in used:
                 message = f"no field of the envelope holds the checksum {quote(name)}"
-                yield Fault(
-                    protocol, checksums.key_at(name), message, "add a field of the role `checksum`, or remove it"
-                )
+                help = "add a field of the role `checksum`, or remove it"
+                yield Fault(section_of(link.node), checksums.key_at(name), message, help)
 
 
 def _is_known(known: object) -> bool:
@@ -235,20 +229,18 @@ def _checksum(ctx: Context, link: Link, part: str, row: Map, known: Map) -> Iter
     demanded = BITS_OF.get(known["kind"])
     if demanded and width != demanded:
         message = f"a checksum of kind `{known['kind']}` has {demanded} bits, not {width}"
-        yield Fault(known, known.at("width"), message, "correct `width` or `kind`")
+        yield Fault.at(known, "width", message, "correct `width` or `kind`")
     elif width != row["bits"]:
         message = f"the checksum has {width} bits, its field {row['bits']}"
-        yield Fault(row, row.at("bits"), message, "make them agree")
+        yield Fault.at(row, "bits", message, "make them agree")
     for key in ("polynomial", "init", "xor_out", "empty"):
         if isinstance(known.get(key), int) and known[key] >> width > 0:
-            yield Fault(
-                known, known.at(key), f"`{key}` does not fit {count(width, 'bit')}", f"correct `{key}` or `width`"
-            )
+            yield Fault.at(known, key, f"`{key}` does not fit {count(width, 'bit')}", f"correct `{key}` or `width`")
     if known["kind"] != "crc":
         for key in ("polynomial", "reflect_in", "reflect_out", "empty"):
             if key in known:
                 message = f"`{key}` says something of a CRC, not of a checksum of kind `{known['kind']}`"
-                yield Fault(known, known.key_at(key), message, "remove it, or correct `kind`")
+                yield Fault.at_key(known, key, message, "remove it, or correct `kind`")
     yield from _covered(link, part, row, known)
     yield from _seeds(ctx, link, known)
 
@@ -256,29 +248,29 @@ def _checksum(ctx: Context, link: Link, part: str, row: Map, known: Map) -> Iter
 def _covered(link: Link, part: str, row: Map, known: Map) -> Iterator[Fault]:
     """The fields that it covers: in one piece, from the header through the data, and without itself."""
     covers = known["covers"]
-    bounds: dict[str, tuple[str, Map] | None] = {}
+    bounds: dict[str, Map | None] = {}
     for key, where in (("from", "header"), ("to", "trailer")):
         role = covers[key]
         found = [one for one in link.rows if one[1]["role"] == role]
         if role != DATA and not found:
             message = f"no field has the role `{role}`"
-            yield Fault(covers, covers.at(key), message, "name the role of a field of the envelope, or `data`")
+            yield Fault.at(covers, key, message, "name the role of a field of the envelope, or `data`")
             return
         if role != DATA and found[0][0] != where:
             message = f"it covers one piece through the data, and the {role} stands in the {found[0][0]}"
             help = "`from` names a field of the header or `data`, `to` one of the trailer or `data`"
-            yield Fault(covers, covers.at(key), message, help)
+            yield Fault.at(covers, key, message, help)
             return
-        bounds[key] = None if role == DATA else found[0 if key == "from" else -1]
+        bounds[key] = None if role == DATA else found[0 if key == "from" else -1][1]
     first, last = bounds["from"], bounds["to"]
-    begin = first[1]["at"] if first else None
-    end = last[1]["at"] + last[1]["bits"] if last else 0
+    begin = first["at"] if first else None
+    end = last["at"] + last["bits"] if last else 0
     if begin is not None and begin % 8:
-        yield Fault(covers, covers.at("from"), "it begins within a byte", "begin with a field at a whole byte")
+        yield Fault.at(covers, "from", "it begins within a byte", "begin with a field at a whole byte")
     inside = part == "header" and begin is not None and row["at"] + row["bits"] > begin // 8 * 8
     if inside or (part == "trailer" and row["at"] // 8 < -(-end // 8)):
         message = "the checksum covers itself"
-        yield Fault(covers, covers.at("from" if inside else "to"), message, "cover what stands behind or before it")
+        yield Fault.at(covers, "from" if inside else "to", message, "cover what stands behind or before it")
 
 
 def _seeds(ctx: Context, link: Link, known: Map) -> Iterator[Fault]:
@@ -288,34 +280,32 @@ def _seeds(ctx: Context, link: Link, known: Map) -> Iterator[Fault]:
     names, broken = {one.name: one for one in ctx.messages_of(link.node)}, ctx.broken_messages(link.node)
     for name in seeds:
         if name not in names and name not in broken:
-            message = f"there is no message {quote(name)}"
-            help = f"did you mean {quote(near)}?" if (near := close_to(name, names)) else "correct the name"
-            yield Fault(seeds, seeds.key_at(name), message, help)
+            help = suggestion(name, names, "correct the name")
+            yield Fault.at_key(seeds, name, f"there is no message {quote(name)}", help)
     lacking = [name for name in names if name not in seeds]
     if lacking:
         message = f"{quote(lacking[0])} has no seed" + (f", nor have {len(lacking) - 1} others" if lacking[1:] else "")
-        yield Fault(known, known.key_at("seeds"), message, "give every message one, or none")
+        yield Fault.at_key(known, "seeds", message, "give every message one, or none")
 
 
 @rule("ICD174")
 def alike_under_an_id(ctx: Context) -> Iterator[Fault]:
     """Messages that share an id are told apart by their data, which the envelope is around."""
     for link in links(ctx):
-        given = link.node.source["protocol"].get("checksums")
-        checksums = [one for one in given.values() if isinstance(one, Map)] if isinstance(given, Map) else []
-        seeds = [found for one in checksums if isinstance(found := one.get("seeds"), Map)]
-        for direction in ("telecommand", "telemetry"):
+        checksums = section_of(link.node, "checksums") or unread()
+        seeds = [found for one in checksums.values() if isinstance(found := at_path(one, ["seeds"]), Map)]
+        for direction in DIRECTIONS:
             first: dict[int, Message] = {}
             for id, one in _ids(ctx, link.node, direction):
                 other = first.setdefault(id, one)
                 if bool(one.may_end_early) != bool(other.may_end_early):
                     whose = one if one.may_end_early else other
                     message = f"zeros of {quote(whose.name)} may be cut off, and those of another message of its id not"
-                    yield Fault(whose.source, whose.source.at("may_end_early"), message, "let both end early, or none")
+                    yield Fault.at(whose.source, "may_end_early", message, "let both end early, or none")
                 for known in seeds:
                     if one.name in known and other.name in known and known[one.name] != known[other.name]:
                         message = f"{quote(one.name)} has another seed than {quote(other.name)}, which has the same id"
-                        yield Fault(known, known.at(one.name), message, "give both the same seed, or other ids")
+                        yield Fault.at(known, one.name, message, "give both the same seed, or other ids")
 
 
 @rule("ICD176")
@@ -326,12 +316,8 @@ def replies_that_can_come(ctx: Context) -> Iterator[Fault]:
             continue
         broken = ctx.broken_messages(link.node)
         for sent, came in replies.items():
-            for direction, name, place in (
-                ("telecommand", sent, replies.key_at(sent)),
-                ("telemetry", came, replies.at(sent)),
-            ):
+            for direction, name, fault in ((TELECOMMAND, sent, Fault.at_key), (TELEMETRY, came, Fault.at)):
                 names = {one.name for _, one in _ids(ctx, link.node, direction)}
                 if isinstance(name, str) and name not in names and name not in broken:
-                    message = f"there is no {direction} {quote(name)}"
-                    help = f"did you mean {quote(near)}?" if (near := close_to(name, names)) else "correct the name"
-                    yield Fault(replies, place, message, help)
+                    help = suggestion(name, names, "correct the name")
+                    yield fault(replies, sent, f"there is no {direction} {quote(name)}", help)

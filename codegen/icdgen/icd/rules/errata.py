@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.diagnostics import Place
+from icdgen.icd.fault import Fault
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import REGISTERED, elsewhere, rule
 from icdgen.icd.rules.wording import count, line_of
 from icdgen.suggest import close_to

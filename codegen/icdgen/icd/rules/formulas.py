@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.icd import curve, exact, formula
+from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 from icdgen.icd.model import Field, Node
 from icdgen.icd.paths import has_struct
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, quote
 
@@ -31,7 +31,7 @@ def formula_reads(ctx: Context) -> Iterator[Fault]:
             except formula.FormulaError as error:
                 message = f"the formula {quote(text)} cannot be used: {error}"
                 help = "a formula is a line or a polynomial: `raw*0.01`, `raw/10 - 40`, `raw = value*1000`, `3e-6*raw^2 + raw*2^-9`"
-                yield Fault(field.source, field.source.at("formula"), message, help)
+                yield Fault.at(field.source, "formula", message, help)
 
 
 @rule("ICD061")
@@ -40,7 +40,7 @@ def formula_has_number(ctx: Context) -> Iterator[Fault]:
         for field, _, _ in ctx.having[key]:
             if field.type not in SCALED:
                 message = f"{quote(field.name)} is `{field.type}`, which takes no {what}"
-                yield Fault(field.source, field.source.at(key), message, "only numbers have one: uint, int and float")
+                yield Fault.at(field.source, key, message, "only numbers have one: uint, int and float")
 
 
 @rule("ICD067")
@@ -49,13 +49,13 @@ def points_read(ctx: Context) -> Iterator[Fault]:
         source = field.source
         if "formula" in source:
             message = f"{quote(field.name)} has a formula and a table of points"
-            yield Fault(source, source.at("points"), message, "remove one of them")
+            yield Fault.at(source, "points", message, "remove one of them")
         elif field.type in SCALED and field.curve is None:
             try:
                 curve.table(curve.doubles(source["points"]), "")
             except formula.FormulaError as error:
                 message = f"the points of {quote(field.name)} cannot be used: {error}"
-                yield Fault(source, source.at("points"), message, _POINTS)
+                yield Fault.at(source, "points", message, _POINTS)
 
 
 @rule("ICD068")
@@ -68,11 +68,11 @@ def outside_is_said(ctx: Context) -> Iterator[Fault]:
             ends = "any number" if field.type == "float" else f"{field.raw_min:,} to {field.raw_max:,}"
             said = " to ".join(f"{raw:g}" for raw in (line.points[0][0], line.points[-1][0]))
             message = f"raw values of {quote(field.name)} are {ends}, its points go from {said}: what is outside?"
-            yield Fault(source, source.at("points"), message, _BEYOND)
+            yield Fault.at(source, "points", message, _BEYOND)
     for field, _, _ in ctx.having["outside"]:
         if "points" not in field.source:
             message = f"{quote(field.name)} has `outside` and no points"
-            yield Fault(field.source, field.source.at("outside"), message, "add `points`, or remove it")
+            yield Fault.at(field.source, "outside", message, "add `points`, or remove it")
 
 
 @rule("ICD069", severity="warning")
@@ -88,7 +88,7 @@ def points_are_in_reach(ctx: Context) -> Iterator[Fault]:
                 f"the points of {quote(field.name)} go from {first:g} to {last:g}, "
                 f"its raw values from {field.raw_min:,} to {field.raw_max:,}: each of them has {what}"
             )
-            yield Fault(source, source.at("points"), message, "correct the points, or `bits` or `type`")
+            yield Fault.at(source, "points", message, "correct the points, or `bits` or `type`")
 
 
 @rule("ICD062")
@@ -128,7 +128,7 @@ def _stated(stated: Map, node: Node) -> Iterator[Fault]:
         else:
             message = f"no formula of a {kind} message gives anything but the {said} value: nothing contradicts it"
             help = f"remove `{kind}`"
-        yield Fault(stated, stated.at(kind), message, help)
+        yield Fault.at(stated, kind, message, help)
 
 
 def _gives(field: Field) -> str:
@@ -140,7 +140,7 @@ def unit_has_number(ctx: Context) -> Iterator[Fault]:
     for field, _, _ in ctx.having["unit"]:
         if field.type in ("bool", "enum") or field.is_bytes:
             message = f"{quote(field.name)} is `{field.type}`, which has no unit"
-            yield Fault(field.source, field.source.at("unit"), message, "remove `unit`, or correct `type`")
+            yield Fault.at(field.source, "unit", message, "remove `unit`, or correct `type`")
 
 
 @rule("ICD064")
@@ -152,7 +152,7 @@ def formula_computable(ctx: Context) -> Iterator[Fault]:
         if line is not None and field.type != "float" and not curve.is_finite(line, field.raw_min, field.raw_max):
             key, what = _calibration(field)
             message = f"the {what} of {quote(field.name)} leads beyond what a double holds"
-            yield Fault(field.source, field.source.at(key), message, "correct an exponent, or `bits`")
+            yield Fault.at(field.source, key, message, "correct an exponent, or `bits`")
         if scale is None:
             continue
         if field.formula not in checked:
@@ -161,7 +161,7 @@ def formula_computable(ctx: Context) -> Iterator[Fault]:
             p, c, q = (_shown(n) for n in exact.terms(scale))
             message = f"the formula of {quote(field.name)} needs numbers that are too large: (raw*{p} + {c}) / {q}"
             help = "factor and divisor go up to 2^180, the offset up to 2^240, over their common denominator"
-            yield Fault(field.source, field.source.at("formula"), message, help)
+            yield Fault.at(field.source, "formula", message, help)
 
 
 @rule("ICD066", severity="warning")
@@ -184,7 +184,7 @@ def formula_leads_back(ctx: Context) -> Iterator[Fault]:
             why = "its values do not rise, or fall, from each raw value to the next"
         key, what = _calibration(field)
         text = f"the {what} of {quote(field.name)} does not lead back, and {quote(message.name)} is sent: {why}"
-        yield Fault(field.source, field.source.at(key), text, "its raw value can be set all the same")
+        yield Fault.at(field.source, key, text, "its raw value can be set all the same")
 
 
 def _calibration(field: Field) -> tuple[str, str]:

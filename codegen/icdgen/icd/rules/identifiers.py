@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from itertools import chain, filterfalse
 
 from icdgen.diagnostics import Place
+from icdgen.icd.fault import Fault
 from icdgen.icd.identifiers import Identifier
 from icdgen.icd.located import Map
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.declarations import TWINS, declared
-from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, listing, quote
 

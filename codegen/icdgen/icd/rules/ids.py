@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from icdgen.icd import variants, wire_ids
+from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Message, Node
 from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.duplicates import is_news, together
-from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, line_of, listing, quote
 
@@ -59,23 +59,17 @@ def _is_id(value: object) -> bool:
 @rule("ICD055")
 def ids_told_apart(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
-        is_linked = _goes_by_ids(ctx, node)
+        is_linked = ctx.is_linked(node)  # an envelope tells an id and the data
         seen: dict[tuple[str, int], list[Use]] = {}
         for use in (u for n in ctx.scope(node) for u in _uses(n)):
             before = seen.setdefault((use.direction, use.id), [])
             for first in before:
                 if not is_linked and _are_told_apart(first, use):
                     continue
-                if is_news(ctx, node, first.node, use.node) or (is_linked and not _goes_by_ids(ctx, use.node)):
+                if is_news(ctx, node, first.node, use.node) or (is_linked and not ctx.is_linked(use.node)):
                     yield _same_id(node, first, use, is_linked)
                     break
             before.append(use)
-
-
-def _goes_by_ids(ctx: Context, node: Node) -> bool:
-    """Whether its link tells a message by its id alone: an envelope tells an id and the data."""
-    protocol = ctx.protocol_of(node)
-    return bool(protocol) and "stream" not in protocol
 
 
 def _are_told_apart(one: Use, other: Use) -> bool:
@@ -86,8 +80,7 @@ def _are_told_apart(one: Use, other: Use) -> bool:
 
 
 def _same_id(node: Node, first: Use, use: Use, is_linked: bool) -> Fault:
-    place = use.source.at(use.key)
-    other = f"{quote(first.source.get('name'))} ({line_of(first.source.at(first.key), place)})"
+    other = f"{quote(first.source.get('name'))} ({line_of(first.source.at(first.key), use.source.at(use.key))})"
     message = f"{use.direction} id {use.id} already belongs to {other}{together(node, use.node)}"
     help = f"correct one `{use.key}`"
     if first.message is not None and use.message is not None:
@@ -96,7 +89,7 @@ def _same_id(node: Node, first: Use, use: Use, is_linked: bool) -> Fault:
             help += ", or give each a field with another `const` at the same place"
         elif _are_told_apart(first, use):
             message += ", and the links that `protocol` describes tell a message by its id alone"
-    return Fault(use.source, place, message, help)
+    return Fault.at(use.source, use.key, message, help)
 
 
 @rule("ICD056")
@@ -108,7 +101,7 @@ def ids_in_range(ctx: Context) -> Iterator[Fault]:
             if not first <= use.id <= last and _has_its_bytes(use):
                 help = _remedy(use, ranges)
                 message = f"{use.direction} ids go from {first} to {last}: {use.id} is not one of them"
-                yield Fault(use.source, use.source.at(use.key), message, help)
+                yield Fault.at(use.source, use.key, message, help)
 
 
 def _remedy(use: Use, ranges: dict[str, tuple[int, int]]) -> str:
@@ -136,26 +129,24 @@ def bytes_of_ids(ctx: Context) -> Iterator[Fault]:
                 given = count(len(use.source[use.key]), "byte")
                 message = f"{has}: {quote(use.source.get('name'))} has an id of {given}"
                 help = f"write {count(size, 'byte')}, or correct `id_bits` in `node`"
-                yield Fault(use.source, use.source.at(use.key), message, help)
+                yield Fault.at(use.source, use.key, message, help)
 
 
 @rule("ICD112")
 def ids_that_links_carry(ctx: Context) -> Iterator[Fault]:
-    for node in ctx.icd.nodes:
-        protocol = ctx.protocol_of(node)
-        if node.id_bits > LINKED_BITS and protocol and "stream" not in protocol:
-            head = node.source["node"]
+    for node in filter(ctx.is_linked, ctx.icd.nodes):
+        if node.id_bits > LINKED_BITS:
             message = f"ids have {node.id_bits} bits, but the links that `protocol` describes carry ids of one byte"
             help = "describe the link as a `stream`, or leave `protocol` out; or correct `id_bits`"
-            yield Fault(head, head.at("id_bits"), message, help)
+            yield Fault.at(node.source["node"], "id_bits", message, help)
 
 
 @rule("ICD114")
 def ids_that_tell_the_direction(ctx: Context) -> Iterator[Fault]:
     told: set[int] = set()
     for node in ctx.icd.nodes:
-        uart, declared = ctx.protocol_of(node).get("uart"), _ranges(ctx, node)
-        if not isinstance(uart, dict) or "framing" not in uart or len(declared) == 2:  # ICD056 and ICD103 see to ranges
+        declared = _ranges(ctx, node)
+        if ctx.fact(node, "uart", "framing") is None or len(declared) == 2:  # ICD056 and ICD103 see to ranges
             continue
         uses = [use for one in ctx.scope(node) for use in _used(one)]
         ids = [use.id for use in uses if use.direction == TELEMETRY]
@@ -166,7 +157,7 @@ def ids_that_tell_the_direction(ctx: Context) -> Iterator[Fault]:
                 among = f"telecommand id {use.id} lies among those of telemetry, {first} to {last}"
                 message = f"{among}: on a UART only the id tells the direction, so an acknowledge is taken for a reply"
                 help = "give each direction ids of its own, one range before the other; or leave `uart: framing` out"
-                yield Fault(use.source, use.source.at(use.key), message, help)
+                yield Fault.at(use.source, use.key, message, help)
 
 
 @rule("ICD059")
@@ -177,7 +168,7 @@ def ids_of_kind(ctx: Context) -> Iterator[Fault]:
             if key in message.source and key not in own:
                 text = f"a {message.kind} message has no `{key}`"
                 names = listing(f"`{k}`" for k in own)
-                yield Fault(message.source, message.source.at(key), text, f"remove it: {message.kind} has {names}")
+                yield Fault.at(message.source, key, text, f"remove it: {message.kind} has {names}")
 
 
 @rule("ICD065")
@@ -187,15 +178,14 @@ def only_what_is_sent(ctx: Context) -> Iterator[Fault]:
             for key in ("acknowledge", "hazard"):
                 if key in message.source:
                     text = f"`{key}` says something of what is sent, and {quote(message.name)} is telemetry"
-                    yield Fault(message.source, message.source.at(key), text, "remove it, or correct `kind`")
+                    yield Fault.at(message.source, key, text, "remove it, or correct `kind`")
 
 
 def _ranges(ctx: Context, node: Node) -> dict[str, tuple[int, int]]:
     """First and last id of each direction, where the protocol section `message_id` gives them."""
-    section = ctx.protocol_of(node).get("message_id")
     found = {}
     for direction in (TELECOMMAND, TELEMETRY):
-        rule_ = section.get(direction) if isinstance(section, dict) else None
-        if isinstance(rule_, dict) and isinstance(rule_.get("first"), int) and isinstance(rule_.get("last"), int):
-            found[direction] = (rule_["first"], rule_["last"])
+        first, last = (ctx.fact(node, "message_id", direction, key) for key in ("first", "last"))
+        if isinstance(first, int) and isinstance(last, int):
+            found[direction] = first, last
     return found

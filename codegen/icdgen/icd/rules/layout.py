@@ -7,10 +7,10 @@ from itertools import chain
 
 from icdgen.icd.conditions import are_understood, exclude
 from icdgen.icd.division import obstacles
+from icdgen.icd.fault import Fault
 from icdgen.icd.model import Field, Message, Node
 from icdgen.icd.paths import placed
 from icdgen.icd.rules.context import Context, Owner
-from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, line_of, quote
 
@@ -174,16 +174,16 @@ def width(ctx: Context) -> Iterator[Fault]:
         if not fits:
             article = "an" if field.type[0] in "aeio" else "a"
             message = f"{article} `{field.type}` field takes {words}, not {field.bits:,}"
-            yield Fault(field.source, field.source.at("bits"), message, "correct `bits` or `type`")
+            yield Fault.at(field.source, "bits", message, "correct `bits` or `type`")
 
 
 @rule("ICD023")
 def bytes_boundary(ctx: Context) -> Iterator[Fault]:
     for field, _, _ in ctx.fields:
         if field.is_bytes and field.at % 8:
-            yield Fault(
+            yield Fault.at(
                 field.source,
-                field.source.at("at"),
+                "at",
                 f"{quote(field.name)} is `{field.type}`, but bit {field.at:,} is not the beginning of a byte",
                 f"bytes begin at bits {field.at // 8 * 8:,} and {field.at // 8 * 8 + 8:,}",
             )
@@ -196,7 +196,7 @@ def order_of_nothing(ctx: Context) -> Iterator[Fault]:
             if field.is_bytes or (field.type == "bool" and key == "byte_order"):
                 what = f"{_ORDERLY[field.type]} stand as they come" if field.is_bytes else "it is one bit"
                 message = f"{quote(field.name)} is `{field.type}`: {what}, so there is no `{key}`"
-                yield Fault(field.source, field.source.at(key), message, f"remove `{key}`")
+                yield Fault.at(field.source, key, message, f"remove `{key}`")
 
 
 @rule("ICD029")
@@ -209,22 +209,22 @@ def view_of_fields(ctx: Context) -> Iterator[Fault]:
         source, name = field.source, quote(field.name)
         if field.count:
             help = "write a view for each element that is asked for"
-            yield Fault(source, source.at("view"), f"{name} is an array: a view reads one number", help)
+            yield Fault.at(source, "view", f"{name} is an array: a view reads one number", help)
             continue
         if field.is_bytes:
-            yield Fault(source, source.at("view"), f"{name} is `{field.type}`: a view reads a number", "remove `view`")
+            yield Fault.at(source, "view", f"{name} is `{field.type}`: a view reads a number", "remove `view`")
             continue
         if field.const is not None:
             help = "remove it: the fields that have the bits may have one"
-            yield Fault(source, source.at("const"), f"{name} is a view, which is never set, so it has no `const`", help)
+            yield Fault.at(source, "const", f"{name} is a view, which is never set, so it has no `const`", help)
         free = _mask(field, node)
         for owner in message.owners:
             free &= ~0 if owner.when else ~_mask(owner, node)
         if free and is_read(message):
             help = "describe what has them as a field, or correct `at` or `bits`"
-            yield Fault(
+            yield Fault.at(
                 source,
-                source.at("at"),
+                "at",
                 f"{name} is a view of {_bits_of(free)} that no field {'always ' * message.has_conditions}has",
                 help,
             )
@@ -259,9 +259,9 @@ def undescribed_end(ctx: Context) -> Iterator[Fault]:
             left = message.length - covered - message.reserved
             what = "the fields describe" if message.fields else "there are no fields:"
             rest = f"{what} {covered:,}" if message.fields else f"{what} what stands in them is unknown"
-            yield Fault(
+            yield Fault.at(
                 message.source,
-                message.source.at("length"),
+                "length",
                 f"{quote(message.name)} has {count(message.length, 'byte')}, {rest}",
                 f"describe {'the last ' if not message.reserved else ''}{count(left, 'byte')} or correct `length`; "
                 f"if the manual calls them reserved: `reserved: {left + message.reserved}`",
@@ -271,5 +271,4 @@ def undescribed_end(ctx: Context) -> Iterator[Fault]:
 @rule("ICD025")
 def bitfields(ctx: Context) -> Iterator[Fault]:
     for field, _, node in ctx.having["bitfields"]:
-        for item, key, message, help in obstacles(field.source, *field.orders(node)):
-            yield Fault(item, item.at(key), message, help)
+        yield from obstacles(field.source, *field.orders(node))

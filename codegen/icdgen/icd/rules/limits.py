@@ -7,9 +7,9 @@ from fractions import Fraction
 from math import ceil, floor
 from typing import NamedTuple
 
+from icdgen.icd.fault import Fault
 from icdgen.icd.model import Field, Limits
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.values import NUMBERS
 from icdgen.icd.rules.wording import quote
@@ -71,10 +71,10 @@ def limits_in_order(ctx: Context) -> Iterator[Fault]:
         source = field.source
         if field.type == "bool" or field.is_bytes:
             key = _first(field, *LIMITS)
-            yield Fault(source, source.at(key), f"`{key}` has no meaning for type `{field.type}`", f"remove `{key}`")
+            yield Fault.at(source, key, f"`{key}` has no meaning for type `{field.type}`", f"remove `{key}`")
         elif bounds(field).is_empty:
             message = f"{_shown(field, *LIMITS)} leave no value for {quote(field.name)}"
-            yield Fault(source, source.at(_first(field, "max", "below")), message, "are they exchanged?")
+            yield Fault.at(source, _first(field, "max", "below"), message, "are they exchanged?")
 
 
 @rule("ICD034")
@@ -90,13 +90,13 @@ def limits_in_range(ctx: Context) -> Iterator[Fault]:
             key = _first(field, *(("min", "above") if within.low is not None else ("max", "below")))
             message = f"no value of {quote(field.name)} is within {_shown(field, *LIMITS)}"
             help = f"its values go from {_number(min(low, high))} to {_number(max(low, high))}"
-            yield Fault(source, source.at(key), message, help)
+            yield Fault.at(source, key, message, help)
         elif field.const is not None and field.raw_min <= field.const <= field.raw_max:
             value = _physical(field, field.const)
             if not within.holds(value):
                 message = f"`const: {field.const}` of {quote(field.name)} is outside {_shown(field, *LIMITS)}"
                 help = f"its physical value is {_number(value)}" if field.scale else "correct one of them"
-                yield Fault(source, source.at("const"), message, help)
+                yield Fault.at(source, "const", message, help)
 
 
 def _physical(field: Field, raw: int) -> Fraction:

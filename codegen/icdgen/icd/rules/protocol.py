@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TypeGuard
 
+from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Node
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, quote
 
@@ -40,7 +40,7 @@ def i2c_addresses(ctx: Context) -> Iterator[Fault]:
             one, other = write.get("address_8bit"), read.get("address_8bit")
             if _is_byte(one) and _is_byte(other) and not one & 1 and other != one | 1:
                 message = f"the read address {_hex(other)} does not follow the write address {_hex(one)}"
-                yield Fault(read, read.at("address_8bit"), message, f"the read address is {_hex(one | 1)}")
+                yield Fault.at(read, "address_8bit", message, f"the read address is {_hex(one | 1)}")
 
 
 def _forms_agree(address: Map, key: str, bit: int) -> Iterator[Fault]:
@@ -49,13 +49,13 @@ def _forms_agree(address: Map, key: str, bit: int) -> Iterator[Fault]:
         return
     if eight & 1 != bit:
         message = f"{_hex(eight)} is no {key} address"
-        yield Fault(address, address.at("address_8bit"), message, f"its last bit is {bit}")
+        yield Fault.at(address, "address_8bit", message, f"its last bit is {bit}")
     elif isinstance(seven, int) and seven << 1 | bit != eight:
         message = f"the 7-bit address {_hex(seven)} gives the {key} address {_hex(seven << 1 | bit)}, not {_hex(eight)}"
-        yield Fault(address, address.at("address_7bit"), message, f"{_hex(eight)} is {_hex(eight >> 1)} with 7 bits")
+        yield Fault.at(address, "address_7bit", message, f"{_hex(eight)} is {_hex(eight >> 1)} with 7 bits")
     if isinstance(binary, str) and _binary(binary) != eight:
         message = f"the binary form {quote(binary)} is {_hex(_binary(binary))}, not {_hex(eight)}"
-        yield Fault(address, address.at("binary"), message, f"{_hex(eight)} is 0b{eight:08b}")
+        yield Fault.at(address, "binary", message, f"{_hex(eight)} is 0b{eight:08b}")
 
 
 def _is_byte(value: object) -> TypeGuard[int]:
@@ -88,7 +88,7 @@ def crc_checks(ctx: Context) -> Iterator[Fault]:
             got = crc(CHECKED, width, polynomial, init, reflect_in, reflect_out, xor_out)
             if got != wanted:
                 message = f"these parameters give {_hex(got)} over 123456789, not the check value {_hex(wanted)}"
-                yield Fault(section, section.at("check"), message, "correct the parameters or `check`")
+                yield Fault.at(section, "check", message, "correct the parameters or `check`")
 
 
 def _is_wide(value: object, width: int) -> bool:
@@ -138,12 +138,12 @@ def _rows(section: Map, key: str, rows: Seq, at: str, size: str) -> Iterator[Fau
         if last is not None and row[at] < last[at] + last[size]:
             other = f"{_called(last, 'another row')} ({line_of(last.place, row.place)})"
             message = f"{name} overlaps {other} in {size[:-1]} {row[at]}"
-            yield Fault(row, row.at(at), message, f"correct `{at}` or `{size}`")
+            yield Fault.at(row, at, message, f"correct `{at}` or `{size}`")
         if isinstance(room, int) and end > room:
             message = f"{name} ends at {end}, but `{named}` is {room}"
-            yield Fault(
+            yield Fault.at(
                 row,
-                row.at(size),
+                size,
                 message,
                 f"correct `{at}`, " + (f"`{size}` or `{named}`" if named != size else f"or a `{size}`"),
             )

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from itertools import product
 
-from icdgen.icd.located import Map, Seq
+from icdgen.icd.fault import Fault
+from icdgen.icd.located import Map, Seq, unread
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Field, Message, Node
-from icdgen.icd.rules.context import Context, mappings, section_of
-from icdgen.icd.rules.fault import Fault
+from icdgen.icd.rules.context import Context, at_path, mappings, named, section_of
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.protocol_limits import roles_stand_once
 from icdgen.icd.rules.protocol_names import FIELDS
@@ -43,7 +44,7 @@ def _acknowledges(node: Node) -> Iterator[Fault]:
         if section is not None and section.get("required_before_next") is False:
             message = "a client waits for each acknowledge before it sends the next telecommand, whatever stands here"
             help = "remove it; a telecommand without acknowledge says so itself: `acknowledge: false`"
-            yield Fault(section, section.at("required_before_next"), message, help)
+            yield Fault.at(section, "required_before_next", message, help)
 
 
 def _can_data(node: Node) -> Iterator[Fault]:
@@ -54,7 +55,7 @@ def _can_data(node: Node) -> Iterator[Fault]:
         section = section_of(node, "can", direction)
         if section is not None and section.get(key, 0) != 0:
             help = "correct it to 0, or leave `can` out: such a bus cannot be talked to"
-            yield Fault(section, section.at(key), what, help)
+            yield Fault.at(section, key, what, help)
 
 
 def _unsolicited(node: Node) -> Iterator[Fault]:
@@ -63,7 +64,7 @@ def _unsolicited(node: Node) -> Iterator[Fault]:
         return
     if log.get("framed") is False:
         message = "a log that comes unasked is taken out of its framing like any message, whatever stands here"
-        yield Fault(log, log.at("framed"), message, "remove it, or `unsolicited_log`")
+        yield Fault.at(log, "framed", message, "remove it, or `unsolicited_log`")
     buses = log.get("buses")
     for bus, place in buses.placed() if isinstance(buses, Seq) else ():
         if bus in BUSES and bus != "uart":
@@ -75,30 +76,26 @@ def parts_can_be_played(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         messages = {one.name: one for one in ctx.messages_of(node)}
         for section in sections(node):
-            message = messages.get(section.get("message", "")) if isinstance(section.get("message"), str) else None
+            message = named(messages, section.get("message"))
             if message is not None:
                 fields = section.get("fields")
-                owner, keys = (fields, tuple(fields)) if isinstance(fields, Map) else (section, FIELDS)
-                yield from _fields(owner, keys, message)
+                yield from _fields(section, FIELDS, message) if fields is None else _fields(fields, fields, message)
         yield from _telecommands_once(node)
 
 
-def _fields(owner: Map, keys: tuple[str, ...], message: Message) -> Iterator[Fault]:
+def _fields(owner: Map, keys: Iterable[str], message: Message) -> Iterator[Fault]:
     """Fields that play two parts, or one that they cannot play."""
     known = {field.name: field for field in message.owners}
     seen: dict[str, str] = {}
     for key in keys:
-        name = owner.get(key)
-        field = known.get(name) if isinstance(name, str) else None
+        field = named(known, owner.get(key))
         if field is None:
             continue
         other = seen.setdefault(field.name, key)
         if other != key:
-            yield Fault(
-                owner, owner.at(key), f"{quote(field.name)} is `{other}` already", "name the field of each part"
-            )
+            yield Fault.at(owner, key, f"{quote(field.name)} is `{other}` already", "name the field of each part")
         elif problem := _unfit(key, field):
-            yield Fault(owner, owner.at(key), f"{quote(field.name)} cannot be `{key}`: {problem}", "name another field")
+            yield Fault.at(owner, key, f"{quote(field.name)} cannot be `{key}`: {problem}", "name another field")
 
 
 def _unfit(role: str, field: Field) -> str:
@@ -112,17 +109,13 @@ def _unfit(role: str, field: Field) -> str:
 
 def _telecommands_once(node: Node) -> Iterator[Fault]:
     """A telecommand that begins two steps of the transfer of files: its receiver could not tell which."""
-    files = section_of(node, "file_transfer")
+    files = section_of(node, "file_transfer") or unread()
     seen: dict[str, str] = {}
-    for procedure, section in files.items() if files is not None else ():
-        for key in STEPS if isinstance(section, Map) else ():
-            step = section.get(key)
-            name = step.get("message") if isinstance(step, Map) else None
-            if isinstance(step, Map) and isinstance(name, str):
-                other = seen.setdefault(name, f"{procedure}.{key}")
-                if other != f"{procedure}.{key}":
-                    message = f"{quote(name)} is the telecommand of `{other}` already"
-                    yield Fault(step, step.at("message"), message, "name that of each step")
+    for procedure, key in product(files, STEPS):
+        name, step = at_path(files, (procedure, key, "message")), f"{procedure}.{key}"
+        if name is not None and seen.setdefault(name, step) != step:
+            message = f"{quote(name)} is the telecommand of `{seen[name]}` already"
+            yield Fault.at(files[procedure][key], "message", message, "name that of each step")
 
 
 @rule("ICD117", whole=True)
@@ -138,13 +131,12 @@ def packets_have_their_message(ctx: Context) -> Iterator[Fault]:
             if section is None:
                 continue
             for key in ("packet", "id_of"):
-                name = section.get(key)
-                message = messages.get(name) if isinstance(name, str) else None
+                message = named(messages, section.get(key))
                 if message is None or (key == "id_of" and bus == "uart"):
                     continue  # on the UART any id can head the packets
                 if message.telemetry_id is None or message.length != sum(sizes):
                     text = f"a packet has {count(sizes[1], 'byte')} of counter and {sizes[0]} of the file, which "
-                    yield Fault(section, section.at(key), f"{text}{quote(message.name)} has not", "name its frame")
+                    yield Fault.at(section, key, f"{text}{quote(message.name)} has not", "name its frame")
 
 
 @rule("ICD118")
@@ -157,7 +149,7 @@ def rows_are_read_as_they_are(ctx: Context) -> Iterator[Fault]:
                     wanted = ("bytes",) if role in ROWS_AS_BYTES else ("uint", "enum")
                     if type not in wanted:
                         message = f"the {role} is read as {' or '.join(wanted)}, not as {type}"
-                        yield Fault(row, row.at("type"), message, "correct `type` or `role`")
+                        yield Fault.at(row, "type", message, "correct `type` or `role`")
     for index in ctx.sections("index_file"):
         if any("role" in row for row in mappings(index.get("entry"))):
             yield from roles_stand_once(index, "entry", INDEX_ROLES, "an entry of the index has no part for")

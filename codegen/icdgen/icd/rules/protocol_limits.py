@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from math import ceil
 
+from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, Message, Node
-from icdgen.icd.rules.context import Context, mappings, section_of
-from icdgen.icd.rules.fault import Fault
+from icdgen.icd.rules.context import Context, at_path, mappings, said, section_of
 from icdgen.icd.rules.ids import KEYS
-from icdgen.icd.rules.protocol_sizes import numbers
+from icdgen.icd.rules.protocol_sizes import numbers, of_one_number
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, listing, quote
 
@@ -29,7 +29,6 @@ def in_force(ctx: Context, node: Node, *path: str) -> Map | None:
 
 @rule("ICD099")
 def packets_can_be_counted(ctx: Context) -> Iterator[Fault]:
-    seen: set[tuple[int, int]] = set()
     for node in ctx.icd.nodes:
         can, extended = in_force(ctx, node, "can"), in_force(ctx, node, "can", "extended")
         size = extended.get("data_bytes") if extended is not None else None
@@ -40,49 +39,34 @@ def packets_can_be_counted(ctx: Context) -> Iterator[Fault]:
         if not isinstance(last, int) or not isinstance(most, int):
             continue
         if ("max_packets" in extended or last > BYTE) and last + most - 1 > BYTE:
-            if (id(extended), 0) not in seen:
-                seen.add((id(extended), 0))
-                key = "max_packets" if "max_packets" in extended else "packets_left_in_last"
-                message = (
-                    f"the first of {count(most, 'packet')} would count {last + most - 1} left, a byte holds {BYTE}"
-                )
-                help = f"correct `packets_left_in_last`, or `max_packets`: at most {max(BYTE + 1 - last, 0)}"
-                yield Fault(extended, extended.at(key), message, help)
+            key = "max_packets" if "max_packets" in extended else "packets_left_in_last"
+            text = f"the first of {count(most, 'packet')} would count {last + most - 1} left, a byte holds {BYTE}"
+            help = f"correct `packets_left_in_last`, or `max_packets`: at most {max(BYTE + 1 - last, 0)}"
+            yield Fault.at(extended, key, text, help)
             continue
-        for message_ in _extended(ctx, node, can):
-            packets = ceil(message_.length / size)
-            if last + packets - 1 > BYTE and (id(extended), id(message_.source)) not in seen:
-                seen.add((id(extended), id(message_.source)))
-                message = (
-                    f"{quote(message_.name)} takes {count(packets, 'CAN packet')}, the first with {last + packets - 1} left: "
-                    f"a byte holds {BYTE}"
-                )
+        for message in _extended(ctx, node, can):
+            packets = ceil(message.length / size)
+            if last + packets - 1 > BYTE:
+                takes = f"{quote(message.name)} takes {count(packets, 'CAN packet')}"
+                text = f"{takes}, the first with {last + packets - 1} left: a byte holds {BYTE}"
                 help = f"{count((BYTE + 1 - last) * size, 'byte')} can be sent: correct `length` or `can.extended`"
-                yield Fault(message_.source, message_.source.at("length"), message, help)
+                yield Fault.at(message.source, "length", text, help)
 
 
 def _extended(ctx: Context, node: Node, can: Map) -> Iterator[Message]:
     """Messages that are sent as several packets."""
     room = can.get("max_data_bytes", CAN_DATA_BYTES)
-    named = {
-        direction: isinstance(can.get(direction), Map) and key in can[direction]
-        for direction, key in (("telecommand", "extended_request"), ("telemetry", "extended_response"))
-    }
-    for message in ctx.messages_of(node):
-        ways = {direction for _, direction in KEYS[message.kind] if named[direction]}
-        if ways and isinstance(room, int) and message.length > room:
+    types = (("telecommand", "extended_request"), ("telemetry", "extended_response"))
+    able = {direction for direction, key in types if at_path(can, (direction, key)) is not None}
+    for message in ctx.messages_of(node) if isinstance(room, int) else ():
+        if message.length > room and any(direction in able for _, direction in KEYS[message.kind]):
             yield message
 
 
 @rule("ICD100")
 def numbers_fit(ctx: Context) -> Iterator[Fault]:
-    seen: set[tuple[int, str, int]] = set()
     for node in ctx.icd.nodes:
-        for fault in _on_can(ctx, node):
-            key = (id(fault.owner), fault.message, fault.place.line)
-            if key not in seen:
-                seen.add(key)
-                yield fault
+        yield from _on_can(ctx, node)
     for errors in ctx.sections("errors"):
         yield from _codes(errors)
     for name in ("crc8", "crc16"):
@@ -97,8 +81,7 @@ def _on_can(ctx: Context, node: Node) -> Iterator[Fault]:
     can = in_force(ctx, node, "can")
     bits = _widths(can) if can is not None else {}
     if own is not None:
-        types = section_of(node, "can", "message_types")
-        for row in mappings(types.get("values") if types is not None else None):
+        for row in mappings(said(node, "can", "message_types", "values")):
             yield from _fits(row, "value", bits.get("type"), "a message type")
         for role in ("source", "destination"):
             yield from _fits(own, "node_address", bits.get(role), f"a {role} address")
@@ -116,18 +99,12 @@ def _fits(owner: Map, key: str, bits: int | None, what: str) -> Iterator[Fault]:
     value = owner.get(key)
     if bits is not None and isinstance(value, int) and value >= 1 << bits:
         message = f"{what} has {count(bits, 'bit')}: 0 to {(1 << bits) - 1}, not {value}"
-        yield Fault(owner, owner.at(key), message, f"correct `{key}`, or `bits` of the identifier")
+        yield Fault.at(owner, key, message, f"correct `{key}`, or `bits` of the identifier")
 
 
 def _codes(errors: Map) -> Iterator[Fault]:
-    roles: dict[int, str] = {}
-    for role in ("none", "unknown_id", "length", "parameter", "checksum"):
-        code = errors.get(role)
-        if isinstance(code, int) and code in roles:
-            message = f"{code} means both `{roles[code]}` and `{role}`"
-            yield Fault(errors, errors.at(role), message, "each has its own code")
-        elif isinstance(code, int):
-            roles[code] = role
+    for first, role, code in of_one_number(errors, "none", "unknown_id", "length", "parameter", "checksum"):
+        yield Fault.at(errors, role, f"{code} means both `{first}` and `{role}`", "each has its own code")
 
 
 def _checksum(crc: Map) -> Iterator[Fault]:
@@ -137,59 +114,52 @@ def _checksum(crc: Map) -> Iterator[Fault]:
     for key in ("polynomial", "init", "xor_out", "empty", "check"):
         value = crc.get(key)
         if isinstance(value, int) and value >= 1 << width:
-            yield Fault(crc, crc.at(key), f"`{key}` does not fit {width} bits", f"correct `{key}` or `width`")
+            yield Fault.at(crc, key, f"`{key}` does not fit {width} bits", f"correct `{key}` or `width`")
     for direction in ("telecommand", "telemetry"):
-        form = crc.get(direction)
-        if not isinstance(form, Map):
-            continue
-        extra = form.get("extra_bytes")
+        extra = at_path(crc, (direction, "extra_bytes"))
         if isinstance(extra, int) and extra * 8 < width:
             message = f"a CRC of {width} bits does not fit {count(extra, 'byte')}"
-            yield Fault(form, form.at("extra_bytes"), message, "correct `extra_bytes` or `width`")
+            yield Fault.at(crc[direction], "extra_bytes", message, "correct `extra_bytes` or `width`")
 
 
 def _counter(files: Map) -> Iterator[Fault]:
-    found = numbers(files, "packet_counter_bytes", "block_packets")
-    if found is None:
+    found, first = numbers(files, "packet_counter_bytes", "block_packets"), files.get("first_packet", 0)
+    if found is None or not isinstance(first, int):
         return
-    first = files.get("first_packet", 0)
     size, packets = found
-    if isinstance(first, int) and first + packets > 256**size:
-        message = (
-            f"the last packet of a block has number {first + packets - 1}, which does not fit {count(size, 'byte')}"
-        )
-        yield Fault(files, files.at("packet_counter_bytes"), message, "correct it, `block_packets` or `first_packet`")
+    if first + packets > 256**size:
+        last = f"the last packet of a block has number {first + packets - 1}"
+        message = f"{last}, which does not fit {count(size, 'byte')}"
+        yield Fault.at(files, "packet_counter_bytes", message, "correct it, `block_packets` or `first_packet`")
 
 
 def roles_stand_once(
     section: Map, key: str, roles: Sequence[str], lacks: str, help: str = "give the parts their `role`"
 ) -> Iterator[Fault]:
-    """Faults of a list of parts, of which each has a role, or the name of one."""
+    """Faults of a list of parts, if there is one, of which each has a role, or the name of one."""
+    if not isinstance(section.get(key), Seq):
+        return
     seen: set[object] = set()
     for row in mappings(section[key]):
         named = "role" if "role" in row else "name"
         role = row.get(named)
         if role in roles and role in seen:
-            yield Fault(row, row.at(named), f"a second {role}", "each role stands once")
+            yield Fault.at(row, named, f"a second {role}", "each role stands once")
         seen.add(role)
     missing = [f"`{role}`" for role in roles if role not in seen]
     if missing:
-        yield Fault(section, section.at(key), f"{lacks} {listing(missing)}", help)
+        yield Fault.at(section, key, f"{lacks} {listing(missing)}", help)
 
 
 @rule("ICD101")
 def identifier_is_whole(ctx: Context) -> Iterator[Fault]:
     for can in ctx.sections("can"):
-        parts = can.get("identifier")
-        if not isinstance(parts, Seq) or not {"message_types", "telecommand", "telemetry"} & set(can):
-            continue
-        yield from roles_stand_once(can, "identifier", ROLES, "the identifier has no part for")
+        if {"message_types", "telecommand", "telemetry"} & can.keys():
+            yield from roles_stand_once(can, "identifier", ROLES, "the identifier has no part for")
 
 
 @rule("ICD102")
 def times_are_whole(ctx: Context) -> Iterator[Fault]:
     for time in ctx.sections("msdos_time"):
-        if not isinstance(time.get("parts"), Seq):
-            continue
         help = "it has all parts from `year` to `second`"
         yield from roles_stand_once(time, "parts", TIME_PARTS, "the packed time has no", help)

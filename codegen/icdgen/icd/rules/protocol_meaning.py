@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen.icd.located import Map, Seq
-from icdgen.icd.model import CAN_DATA_BYTES, TELECOMMAND, TELEMETRY, Node
-from icdgen.icd.rules.context import Context, mappings, section_of
-from icdgen.icd.rules.fault import Fault
+from icdgen.icd.fault import Fault
+from icdgen.icd.located import Map
+from icdgen.icd.model import CAN_DATA_BYTES, TELECOMMAND, TELEMETRY
+from icdgen.icd.rules.context import Context, at_path, mappings, said, section_of
 from icdgen.icd.rules.ids import KEYS
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.protocol_limits import in_force, roles_stand_once
@@ -33,7 +33,7 @@ def directions_differ(ctx: Context) -> Iterator[Fault]:
             ranges[direction] = section
             if found[0] > found[1]:
                 message = f"the last id, {found[1]}, comes before the first, {found[0]}"
-                yield Fault(section, section.at("last"), message, "correct `first` or `last`")
+                yield Fault.at(section, "last", message, "correct `first` or `last`")
             yield from _bit(ids, section, direction, *found)
         if len(ranges) == 2:
             yield from _overlap(ranges[TELECOMMAND], ranges[TELEMETRY])
@@ -48,7 +48,7 @@ def _bit(ids: Map, section: Map, direction: str, first: int, last: int) -> Itera
     if other is not None:
         message = f"bit {bit} of {other} is {1 - wanted}, but {wanted} in a {direction} id"
         key = "first" if other == first else "last"
-        yield Fault(section, section.at(key), message, "correct the range, `direction` or `direction_bit`")
+        yield Fault.at(section, key, message, "correct the range, `direction` or `direction_bit`")
 
 
 def _overlap(one: Map, other: Map) -> Iterator[Fault]:
@@ -56,7 +56,7 @@ def _overlap(one: Map, other: Map) -> Iterator[Fault]:
     if least <= most:
         which = f"ids {least} to {most} are" if least < most else f"id {least} is"
         message = f"{which} in the range of telecommands, too"
-        yield Fault(other, other.at("first"), message, "the ranges of the two directions have no id in common")
+        yield Fault.at(other, "first", message, "the ranges of the two directions have no id in common")
 
 
 @rule("ICD104")
@@ -70,21 +70,18 @@ def message_types_differ(ctx: Context) -> Iterator[Fault]:
                 if first is not row:
                     other = f"{quote(first.get('name'))} ({line_of(first.at(key), row.at(key))})"
                     message = f"the value {value} already belongs to {other}" if key == "value" else f"a second {other}"
-                    yield Fault(row, row.at(key), message, f"correct one `{key}`")
+                    yield Fault.at(row, key, message, f"correct one `{key}`")
 
 
 @rule("ICD105")
 def acknowledge_is_whole(ctx: Context) -> Iterator[Fault]:
     for section in ctx.sections("uart", "acknowledge"):
-        rows = section.get("data")
-        if not isinstance(rows, Seq):
-            continue
         yield from roles_stand_once(section, "data", ACKNOWLEDGE_ROLES, "the acknowledge has no part for")
-        for row in mappings(rows):
+        for row in mappings(section.get("data")):
             role, size = row.get("role"), row.get("bytes")
             if role in ACKNOWLEDGE_ROLES and isinstance(size, int) and size > 1:
                 message = f"the {role} has {count(size, 'byte')}, but one is read"
-                yield Fault(row, row.at("bytes"), message, "correct `bytes`, or leave the section out")
+                yield Fault.at(row, "bytes", message, "correct `bytes`, or leave the section out")
 
 
 @rule("ICD106", whole=True)
@@ -92,17 +89,11 @@ def named_buses_exist(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         users = [one for one in ctx.icd.nodes if node in ctx.scope(one)]
         for path in (("crc8", TELECOMMAND), ("crc8", TELEMETRY), ("unsolicited_log",)):
-            section = section_of(node, *path)
-            buses = section.get("buses") if section is not None else None
-            if section is None or not isinstance(buses, Seq):
-                continue
-            for bus, place in buses.placed():
-                if isinstance(bus, str) and not any(_has(ctx, one, bus) for one in users):
-                    yield Fault(section, place, f"the protocol has no section `{bus}`", f"add it, or remove `{bus}`")
-
-
-def _has(ctx: Context, node: Node, bus: str) -> bool:
-    return in_force(ctx, node, bus) is not None
+            buses = said(node, *path, "buses")
+            for bus, place in buses.placed() if buses is not None else ():
+                if not any(bus in ctx.protocol_of(one) for one in users):
+                    text, help = f"the protocol has no section `{bus}`", f"add it, or remove `{bus}`"
+                    yield Fault(section_of(node, *path), place, text, help)
 
 
 @rule("ICD107", whole=True)
@@ -110,32 +101,29 @@ def messages_can_be_sent(ctx: Context) -> Iterator[Fault]:
     seen: set[int] = set()
     for node in ctx.icd.nodes:
         can = in_force(ctx, node, "can")
-        room = can.get("max_data_bytes", CAN_DATA_BYTES) if can is not None else None
         # What does not go over CAN may go over another bus.
-        if can is None or not isinstance(room, int) or _has(ctx, node, "uart") or _has(ctx, node, "i2c"):
+        if can is None or not {"uart", "i2c"}.isdisjoint(ctx.protocol_of(node)):
             continue
+        room = can.get("max_data_bytes", CAN_DATA_BYTES)
         short = {direction for direction in CAN_TYPES if _is_short(can, direction)}
         for message in ctx.messages_of(node):
-            if message.length > room and id(message.source) not in seen:
-                if any(direction in short for _, direction in KEYS[message.kind]):
-                    seen.add(id(message.source))
-                    text = f"{quote(message.name)} has {count(message.length, 'byte')}, a packet up to {room}"
-                    help = (
-                        "correct `length`, or say how CAN sends several packets: `can.extended` and its message types"
-                    )
-                    yield Fault(message.source, message.source.at("length"), text, help)
+            is_short = any(direction in short for _, direction in KEYS[message.kind])
+            if is_short and message.length > room and id(message.source) not in seen:
+                seen.add(id(message.source))
+                text = f"{quote(message.name)} has {count(message.length, 'byte')}, a packet up to {room}"
+                help = "correct `length`, or say how CAN sends several packets: `can.extended` and its message types"
+                yield Fault.at(message.source, "length", text, help)
 
 
 @rule("ICD110")
 def progress_comes_to_an_end(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         for section in sections(node):
-            progress = section.get("progress")
-            fields = progress.get("fields") if isinstance(progress, Map) else None
-            if isinstance(progress, Map) and isinstance(fields, Map) and not {"busy", "ready"} & fields.keys():
+            fields = at_path(section, ("progress", "fields"))
+            if isinstance(fields, Map) and not {"busy", "ready"} & fields.keys():
                 message = "no field tells when it is done"
                 help = "name the field that is set meanwhile, `busy`, or the one that is set afterwards, `ready`"
-                yield Fault(progress, progress.at("fields"), message, help)
+                yield Fault.at(section["progress"], "fields", message, help)
 
 
 def _is_short(can: Map, direction: str) -> bool:

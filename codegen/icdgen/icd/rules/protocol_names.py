@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
 from icdgen.diagnostics import Place
+from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Message, Node
-from icdgen.icd.rules.context import Context, mappings
-from icdgen.icd.rules.fault import Fault
+from icdgen.icd.rules.context import Context, at_path, mappings, named
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import quote
-from icdgen.suggest import close_to
+from icdgen.icd.rules.wording import VERBATIM, quote, suggestion
 
 T = TypeVar("T")
 
@@ -23,10 +23,7 @@ MESSAGES = ("message", "packet", "id_of", "stop_request", "set_by", "names", "re
 FIELDS = ("id", "until", "error", "parameter", "field")  # keys that, beside `message`, name fields of it
 # keys that name an enumeration, and the keys beside them that give its values
 MEMBERS = (
-    (
-        "enum",
-        ("value", "none", "unknown_id", "length", "parameter", "checksum", "selected", "success", "failed"),
-    ),
+    ("enum", ("value", "none", "unknown_id", "length", "parameter", "checksum", "selected", "success", "failed")),
     ("failure_enum", ("failure",)),
     ("destination_enum", ("destinations",)),
     ("program_enum", ("programs", "destination")),
@@ -44,16 +41,16 @@ def named_things_exist(ctx: Context) -> Iterator[Fault]:
             for key in MESSAGES:
                 for name, place in _values(section, key, str):
                     if name not in messages:
-                        yield Fault(section, place, f"there is no message {quote(name)}", _verbatim(name, messages))
+                        help = suggestion(name, messages, VERBATIM)
+                        yield Fault(section, place, f"there is no message {quote(name)}", help)
             for name, keys in MEMBERS:
-                enum = section.get(name)
-                known = enums.get(enum) if isinstance(enum, str) else None
+                known = named(enums, section.get(name))
                 if known is None:
                     continue
                 for key in keys:
                     for value, place in _values(section, key, int):
                         if known.member_of(value) is None:
-                            message = f"the enumeration {quote(enum)} has no member {value}"
+                            message = f"the enumeration {quote(known.name)} has no member {value}"
                             yield Fault(section, place, message, f"correct `{key}` or `{name}`")
 
 
@@ -68,17 +65,15 @@ class _Named(NamedTuple):
 def _named_fields(ctx: Context, node: Node) -> Iterator[_Named]:
     messages = {m.name: m for m in ctx.messages_of(node)}
     for section in sections(node):
-        named: list[tuple[Map, str, object]] = []
-        if isinstance(section.get("message"), str):
-            named = [(section, key, section["message"]) for key in FIELDS if key in section]
-            fields = section.get("fields")
-            if isinstance(fields, Map):
-                named += [(fields, key, section["message"]) for key in fields]
-        if isinstance(section.get("names"), Seq) and isinstance(section.get("field"), str):
-            named += [(section, "field", name) for name in section["names"]]
-        for owner, key, name in named:
-            if isinstance(name, str) and name in messages and isinstance(owner[key], str):
-                yield _Named(owner, key, messages[name])
+        found = [(section, key, section.get("message")) for key in FIELDS if key in section]
+        if isinstance(fields := section.get("fields"), Map):
+            found += [(fields, key, section.get("message")) for key in fields]
+        if isinstance(names := section.get("names"), Seq) and "field" in section:
+            found += [(section, "field", name) for name in names]
+        for owner, key, name in found:
+            message = named(messages, name)
+            if message is not None and isinstance(owner[key], str):
+                yield _Named(owner, key, message)
 
 
 @rule("ICD094", whole=True)
@@ -88,10 +83,10 @@ def named_fields_exist(ctx: Context) -> Iterator[Fault]:
             known = {field.name for field in message.owners}
             if any(field.name == owner[key] for field in message.views):
                 text = f"{quote(owner[key])} of {quote(message.name)} is a view, and links read what has bits"
-                yield Fault(owner, owner.at(key), text, "name the field that has the bits")
+                yield Fault.at(owner, key, text, "name the field that has the bits")
             elif owner[key] not in known:
                 text = f"{quote(message.name)} has no field {quote(owner[key])}"
-                yield Fault(owner, owner.at(key), text, _verbatim(owner[key], known))
+                yield Fault.at(owner, key, text, suggestion(owner[key], known, VERBATIM))
 
 
 @rule("ICD113", whole=True)
@@ -104,26 +99,21 @@ def named_fields_in_the_order_of_the_node(ctx: Context) -> Iterator[Fault]:
                 if field.name == owner[key] and not field.is_bytes and field.orders(home) != orders:
                     text = f"{quote(field.name)} is {' '.join(field.orders(home))}, the links of `{node.name}` read fields as"
                     help = f"give it the orders of the node, or leave `{key}` out"
-                    yield Fault(owner, owner.at(key), f"{text} {' '.join(orders)}", help)
+                    yield Fault.at(owner, key, f"{text} {' '.join(orders)}", help)
 
 
 @rule("ICD095")
 def message_types_exist(ctx: Context) -> Iterator[Fault]:
     for can in ctx.sections("can"):
-        types = can.get("message_types")
-        values = types.get("values") if isinstance(types, Map) else None
+        values = at_path(can, ("message_types", "values"))
         if not isinstance(values, Seq):
             continue
         known = {row["name"] for row in mappings(values) if isinstance(row.get("name"), str)}
-        for direction in ("telecommand", "telemetry"):
-            section = can.get(direction)
-            if not isinstance(section, Map):
-                continue
-            for key in TYPES:
-                name = section.get(key)
-                if isinstance(name, str) and name not in known:
-                    message = f"there is no message type {quote(name)}"
-                    yield Fault(section, section.at(key), message, _verbatim(name, known))
+        for direction, key in product(("telecommand", "telemetry"), TYPES):
+            name = at_path(can, (direction, key))
+            if isinstance(name, str) and name not in known:
+                message = f"there is no message type {quote(name)}"
+                yield Fault.at(can[direction], key, message, suggestion(name, known, VERBATIM))
 
 
 @rule("ICD109", whole=True)
@@ -134,14 +124,8 @@ def named_nodes_exist(ctx: Context) -> Iterator[Fault]:
             for name, place in _values(section, "nodes", str):
                 # A node that was not asked for is not loaded, but its file lies beside this one.
                 if name not in known and not Path(place.file).with_name(f"{name}.yaml").exists():
-                    close = close_to(name, known)
-                    help = f"did you mean {quote(close)}?" if close else "correct it, or load the node's file too"
+                    help = suggestion(name, known, "correct it, or load the node's file too")
                     yield Fault(section, place, f"there is no node {quote(name)}", help)
-
-
-def _verbatim(name: str, known: set[str]) -> str:
-    close = close_to(name, known)
-    return f"did you mean {quote(close)}?" if close else "names are the manual's, to the letter"
 
 
 def _values(section: Map, key: str, kind: type[T]) -> Iterator[tuple[T, Place]]:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Node
-from icdgen.icd.rules.context import Context, mappings, section_of
-from icdgen.icd.rules.fault import Fault
+from icdgen.icd.rules.context import Context, mappings, said
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count as counted
@@ -21,22 +21,26 @@ def numbers(section: Map, *keys: str) -> tuple[int, ...] | None:
     return found if all(isinstance(value, int) for value in found) else None  # type: ignore[return-value]
 
 
+def of_one_number(section: Map, *keys: str) -> Iterator[tuple[str, str, int]]:
+    """Each key that has the number of one before it: that one, itself, and the number."""
+    seen: dict[int, str] = {}
+    for key in keys:
+        value = section.get(key)
+        if isinstance(value, int) and seen.setdefault(value, key) != key:
+            yield seen[value], key, value
+
+
 @rule("ICD096")
 def markers_differ(ctx: Context) -> Iterator[Fault]:
     for framing in ctx.sections("uart", "framing"):
-        seen: dict[int, str] = {}
-        escape = framing.get("escape")
-        for key in ("start_of_message", "end_of_message", "escaped_data"):
-            value = framing.get(key)
-            if isinstance(value, int) and value in seen:
-                message = f"after the escape byte 0x{value:02X} means both `{seen[value]}` and `{key}`"
-                yield Fault(framing, framing.at(key), message, "each has a byte of its own")
-            elif isinstance(value, int):
-                seen[value] = key
-            if isinstance(value, int) and value == escape and key != "escaped_data":
+        for first, key, value in of_one_number(framing, "start_of_message", "end_of_message", "escaped_data"):
+            message = f"after the escape byte 0x{value:02X} means both `{first}` and `{key}`"
+            yield Fault.at(framing, key, message, "each has a byte of its own")
+        for _, key, value in of_one_number(framing, "escape", "start_of_message", "end_of_message"):
+            if value == framing["escape"]:
                 message = f"the escape byte 0x{value:02X} is also `{key}`"
                 help = "with one byte lost, nothing would tell where a message begins or ends"
-                yield Fault(framing, framing.at(key), message, help)
+                yield Fault.at(framing, key, message, help)
 
 
 @rule("ICD097")
@@ -61,58 +65,50 @@ def _product(section: Map, whole: str, count: str, part: str) -> Iterator[Fault]
     found = numbers(section, whole, count, part)
     if found and found[0] != found[1] * found[2]:
         message = f"`{whole}` is {found[0]}, but `{count}` times `{part}` is {found[1] * found[2]}"
-        yield Fault(section, section.at(whole), message, f"correct `{whole}`, `{count}` or `{part}`")
+        yield Fault.at(section, whole, message, f"correct `{whole}`, `{count}` or `{part}`")
 
 
 def _identifier(can: Map) -> Iterator[Fault]:
     parts = can.get("identifier")
     if not isinstance(parts, Seq):
         return
-    widths = [part.get("bits") for part in parts if isinstance(part, Map)]
+    widths = [part.get("bits") for part in mappings(parts)]
     known = [width for width in widths if isinstance(width, int)]
     if len(known) == len(widths) and sum(known) != CAN_IDENTIFIER_BITS:
         message = f"the parts of the identifier have {sum(known)} bits in all, not {CAN_IDENTIFIER_BITS}"
-        yield Fault(can, can.at("identifier"), message, "correct `bits` of a part")
+        yield Fault.at(can, "identifier", message, "correct `bits` of a part")
 
 
 def _packets_left(can: Map, extended: Map) -> Iterator[Fault]:
     data, left, room = extended.get("data_bytes"), extended.get("packets_left_byte"), can.get("max_data_bytes")
     if isinstance(data, int) and isinstance(left, int) and left < data:
         message = f"byte {left} counts packets, but the data take bytes 0 to {data - 1}"
-        yield Fault(extended, extended.at("packets_left_byte"), message, f"the count stands behind the data: {data}")
+        yield Fault.at(extended, "packets_left_byte", message, f"the count stands behind the data: {data}")
     elif isinstance(left, int) and isinstance(room, int) and left >= room:
         message = f"byte {left} is outside a packet of {room} bytes"
-        yield Fault(extended, extended.at("packets_left_byte"), message, "correct it or `max_data_bytes`")
+        yield Fault.at(extended, "packets_left_byte", message, "correct it or `max_data_bytes`")
 
 
 def _log_mask(ctx: Context, node: Node) -> Iterator[Fault]:
     """Where logs carry their mask it has the mask's size: readers take so many bytes of it."""
-    mask = ctx.protocol_of(node).get("log_mask")
-    size = mask.get("bytes") if isinstance(mask, dict) else None
-    for section, key in (("telemetry_log", "header"), ("unsolicited_log", "message")):
-        rows = section_of(node, section)
-        for row in mappings(rows.get(key) if rows is not None else None):
+    size = ctx.fact(node, "log_mask", "bytes")
+    for path in (("telemetry_log", "header"), ("unsolicited_log", "message")):
+        for row in mappings(said(node, *path)) if isinstance(size, int) else ():
             given = row.get("bytes")
-            if (
-                row.get("role", row.get("name")) == "mask"
-                and isinstance(size, int)
-                and isinstance(given, int)
-                and given != size
-            ):
+            if row.get("role", row.get("name")) == "mask" and isinstance(given, int) and given != size:
                 message = f"the mask has {counted(given, 'byte')} here, {size} by `log_mask`"
-                yield Fault(row, row.at("bytes"), message, "correct one of them")
+                yield Fault.at(row, "bytes", message, "correct one of them")
 
 
 def _hole_map(files: Map, hole_map: Map) -> Iterator[Fault]:
-    size, packets, count, names = (
-        hole_map.get("bytes"), files.get("block_packets"), hole_map.get("messages"), hole_map.get("names"),
-    )  # fmt: skip
+    size, packets = hole_map.get("bytes"), files.get("block_packets")
     if isinstance(size, int) and isinstance(packets, int) and packets > size * 8:
         message = f"a hole map of {size} bytes has {size * 8} bits, a block {packets} packets"
-        yield Fault(hole_map, hole_map.at("bytes"), message, "correct `bytes` or `block_packets`")
+        yield Fault.at(hole_map, "bytes", message, "correct `bytes` or `block_packets`")
+    count, names = hole_map.get("messages"), hole_map.get("names")
     if isinstance(count, int) and isinstance(names, Seq) and len(names) != count:
         message = f"`names` has {counted(len(names), 'message')}, `messages` says {count}"
-        yield Fault(hole_map, hole_map.at("names"), message, "correct `names` or `messages`")
+        yield Fault.at(hole_map, "names", message, "correct `names` or `messages`")
 
 
 @rule("ICD098")

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 from icdgen.icd.model import Node
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import quote
+from icdgen.icd.rules.wording import quote, suggestion
 from icdgen.icd.units import SPELLINGS, meant
 from icdgen.suggest import close_to
 
@@ -22,28 +22,29 @@ def enum_known(ctx: Context) -> Iterator[Fault]:
         if field.type != "enum":
             if "enum" in source:
                 message = f"{quote(field.name)} names an enumeration, but its type is `{field.type}`"
-                yield Fault(source, source.at("enum"), message, "write `type: enum` or remove `enum:`")
+                yield Fault.at(source, "enum", message, "write `type: enum` or remove `enum:`")
         elif "enum" not in source:
             message = f"{quote(field.name)} is of type `enum` and does not say which"
-            yield Fault(source, source.at("type"), message, "add `enum:`, the name of an enumeration")
+            yield Fault.at(source, "type", message, "add `enum:`, the name of an enumeration")
         elif field.enum is None and ctx.complete:
-            yield Fault(source, source.at("enum"), *_unknown_enum(ctx, node, source["enum"]))
+            yield Fault.at(source, "enum", *undeclared(ctx, node, "enumeration", "enums", source["enum"]))
     if ctx.complete:
         for node in ctx.icd.nodes:
             known = {e.name for n in ctx.scope(node) for e in n.enums}
             for owner, key in _protocol_enums(node):
                 if owner[key] not in known:
-                    yield Fault(owner, owner.at(key), *_unknown_enum(ctx, node, owner[key]))
+                    yield Fault.at(owner, key, *undeclared(ctx, node, "enumeration", "enums", owner[key]))
 
 
-def _unknown_enum(ctx: Context, node: Node, name: str) -> tuple[str, str]:
-    elsewhere = next((n for n in ctx.icd.nodes for e in n.enums if e.name == name), None)
+def undeclared(ctx: Context, node: Node, what: str, section: str, name: str) -> tuple[str, str]:
+    """What is wrong with the name of what no ``section`` within reach of the node declares, and what to do."""
+    elsewhere = next((n for n in ctx.icd.nodes for one in getattr(n, section) if one.name == name), None)
     if elsewhere is not None:
         help = f"`{elsewhere.name}` declares it: include {elsewhere.file}"
     else:
-        close = close_to(name, (e.name for n in ctx.scope(node) for e in n.enums))
-        help = f"did you mean {quote(close)}?" if close else "declare it in `enums:`"
-    return f"there is no enumeration {quote(name)}", help
+        known = (one.name for n in ctx.scope(node) for one in getattr(n, section))
+        help = suggestion(name, known, f"declare it in `{section}:`")
+    return f"there is no {what} {quote(name)}", help
 
 
 @rule("ICD041", severity="warning", whole=True)
@@ -62,8 +63,8 @@ def enum_used(ctx: Context) -> Iterator[Fault]:
         names = [e.name for e in node.enums]
         for enum in node.enums:
             if id(enum) not in used and (id(node), enum.name) not in named and names.count(enum.name) == 1:
-                place = enum.source.at("name")
-                yield Fault(enum.source, place, f"no field uses the enumeration {quote(enum.name)}", "use or remove it")
+                text = f"no field uses the enumeration {quote(enum.name)}"
+                yield Fault.at(enum.source, "name", text, "use or remove it")
 
 
 def _protocol_enums(node: Node) -> Iterator[tuple[Map, str]]:
@@ -83,4 +84,4 @@ def unit_known(ctx: Context) -> Iterator[Fault]:
             if close := meant(unit, (u.symbol for n in ctx.scope(node) for u in n.units)):
                 otherwise = "" if unit in SPELLINGS else " If not, declare it in `units:`"
                 help = f"did you mean {quote(close)}?{otherwise}"
-            yield Fault(field.source, field.source.at("unit"), f"the unit {quote(unit)} is unknown", help)
+            yield Fault.at(field.source, "unit", f"the unit {quote(unit)} is unknown", help)

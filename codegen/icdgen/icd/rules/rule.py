@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
-from icdgen.icd.rules.fault import Fault
+from icdgen.icd.fault import Fault
 
 if TYPE_CHECKING:
     from icdgen.icd.rules.context import Context

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.icd import division, tails
+from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 from icdgen.icd.model import Node
 from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.duplicates import names_twice
-from icdgen.icd.rules.fault import Fault
+from icdgen.icd.rules.references import undeclared
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, quote
 from icdgen.suggest import close_to
@@ -31,16 +32,8 @@ def _uses(ctx: Context) -> Iterator[tuple[Map, Map, Node]]:
 @rule("ICD140")
 def struct_known(ctx: Context) -> Iterator[Fault]:
     for row, _, node in _uses(ctx) if ctx.complete else ():
-        name = row["struct"]
-        known = [one.name for n in ctx.scope(node) for one in n.structs]
-        if name in known:
-            continue
-        elsewhere = next((n for n in ctx.icd.nodes for one in n.structs if one.name == name), None)
-        close = close_to(name, known)
-        help = f"did you mean {quote(close)}?" if close else "declare it in `structs:`"
-        if elsewhere is not None:
-            help = f"`{elsewhere.name}` declares it: include {elsewhere.file}"
-        yield Fault(row, row.at("struct"), f"there is no struct {quote(name)}", help)
+        if all(one.name != row["struct"] for n in ctx.scope(node) for one in n.structs):
+            yield Fault.at(row, "struct", *undeclared(ctx, node, "struct", "structs", row["struct"]))
 
 
 @rule("ICD141")
@@ -57,9 +50,8 @@ def struct_in_itself(ctx: Context) -> Iterator[Fault]:
                 if way is not None:
                     there = " -> ".join((name, *way))
                     message = f"the struct {quote(name)} would have itself in it: {there}"
-                    yield Fault(
-                        row, row.at("struct"), message, "a struct has an end: write what it holds in fields of its own"
-                    )
+                    help = "a struct has an end: write what it holds in fields of its own"
+                    yield Fault.at(row, "struct", message, help)
 
 
 def _way(first: str, last: str, within: dict[str, list[Map]]) -> list[str] | None:
@@ -82,7 +74,7 @@ def struct_at_byte(ctx: Context) -> Iterator[Fault]:
         if field.struct is not None and field.at % 8:
             message = f"{quote(field.name)} is a struct, but bit {field.at:,} is not the beginning of a byte"
             help = f"structs begin at bits {field.at // 8 * 8:,} and {field.at // 8 * 8 + 8:,}"
-            yield Fault(field.source, field.source.at("at"), message, help)
+            yield Fault.at(field.source, "at", message, help)
 
 
 @rule("ICD143")
@@ -91,17 +83,17 @@ def struct_says(ctx: Context) -> Iterator[Fault]:
         for key in row:
             if key not in _OF_MEMBERS:
                 message = f"{quote(row['name'])} is a struct, which has no `{key}`: its fields have"
-                yield Fault(row, row.at(key), message, f"move it to the fields of {quote(row['struct'])}, or remove it")
+                yield Fault.at(row, key, message, f"move it to the fields of {quote(row['struct'])}, or remove it")
     for struct, _ in ctx.structs:
         for row in mappings(struct.source.get("fields")):
             if tails.is_open(row) and isinstance(row.get("name"), str):
                 message = f"{quote(row['name'])} has no fixed size, and a struct has no open end"
                 key = "size" if "size" in row else "count"
-                yield Fault(row, row.at(key), message, "only the last part of a message may be open")
+                yield Fault.at(row, key, message, "only the last part of a message may be open")
         for field in struct.lines:
             if field.view:
                 message = f"{quote(field.name)} is a view, and a struct has none: there is no frame that it would read"
-                yield Fault(field.source, field.source.at("view"), message, "write the view in the message")
+                yield Fault.at(field.source, "view", message, "write the view in the message")
 
 
 @rule("ICD049")
@@ -127,7 +119,7 @@ def struct_used(ctx: Context) -> Iterator[Fault]:
     for struct, _ in ctx.structs:
         if struct.name not in used and names.count(struct.name) == 1:
             message = f"no message uses the struct {quote(struct.name)}"
-            yield Fault(struct.source, struct.source.at("name"), message, "use or remove it")
+            yield Fault.at(struct.source, "name", message, "use or remove it")
 
 
 @rule("ICD145")
@@ -147,7 +139,7 @@ def struct_divided(ctx: Context) -> Iterator[Fault]:
                     f"({there}), which is divided, would lie elsewhere"
                 )
                 help = f"give {quote(whole['name'])} a `byte_order` and a `bit_order`, or make its parts fields"
-                yield Fault(member.source, member.source.at("struct"), message, help)
+                yield Fault.at(member.source, "struct", message, help)
 
 
 def _divided(struct: Map) -> Iterator[Map]:

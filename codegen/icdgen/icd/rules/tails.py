@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.icd import tails
-from icdgen.icd.located import Map
+from icdgen.icd.fault import Fault
 from icdgen.icd.model import Message, Node
-from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.fault import Fault
+from icdgen.icd.rules.context import Context, mappings, named
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, quote
 
@@ -17,12 +16,12 @@ from icdgen.icd.rules.wording import count, quote
 def counted(ctx: Context) -> Iterator[Fault]:
     for message, _ in ctx.messages:
         for item in tails.open_parts(message.source):
-            yield from (_fault(one) for one in tails.faults_of_count(message.source, item))
+            yield from tails.faults_of_count(message.source, item)
     for field, _, _ in ctx.members:
         if "up_to" in field.source and not tails.is_open(field.source):
             text = f"{quote(field.name)} is as large as its {'`count`' if field.count else '`bits`'} says, so there is no `up_to`"
             help = "remove `up_to`; the largest value that it may have is `max`"
-            yield Fault(field.source, field.source.at("up_to"), text, help)
+            yield Fault.at(field.source, "up_to", text, help)
 
 
 def _lengths(ctx: Context, node: Node) -> dict[str, int]:
@@ -35,10 +34,10 @@ def at_the_end(ctx: Context) -> Iterator[Fault]:
         if "after" in field.source and not tails.is_open(field.source):
             text = f"{quote(field.name)} has a fixed size, so it has a fixed place, too"
             help = "remove `after`; behind what is open only more that is open can stand"
-            yield Fault(field.source, field.source.at("after"), text, help)
+            yield Fault.at(field.source, "after", text, help)
     for message, node in ctx.messages:
         for item in tails.open_parts(message.source):
-            yield from (_fault(one) for one in tails.faults_of_place(message.source, item, _lengths(ctx, node)))
+            yield from tails.faults_of_place(message.source, item, _lengths(ctx, node))
         if message.tail is None:
             continue
         for field in (one for one in message.views if one.derived is None):
@@ -46,26 +45,23 @@ def at_the_end(ctx: Context) -> Iterator[Fault]:
             if end > 8 * (message.fixed if message.inner else message.least):
                 part = next(one for one in reversed(message.open_parts) if end > 8 * (one.begin or message.begin))
                 text = f"{quote(field.name)} is a view of {quote(part.name)}, which is not always there"
-                yield Fault(field.source, field.source.at("at"), text, "view what every frame of the message has")
+                yield Fault.at(field.source, "at", text, "view what every frame of the message has")
 
 
 @rule("ICD122")
 def carried(ctx: Context) -> Iterator[Fault]:
     """Links, logs and composites know each message by one length."""
-    for node in ctx.icd.nodes:
-        protocol = ctx.protocol_of(node)
-        linked = bool(protocol) and "stream" not in protocol
+    for node in filter(ctx.is_linked, ctx.icd.nodes):
         for message in ctx.messages_of(node):
-            if message.tail is not None and linked:
+            if message.tail is not None:
                 longest = f"{message.least} to {count(message.length, 'byte')}"
                 text = f"{quote(message.name)} has {longest}, and the links of `protocol` carry messages of one length each"
                 help = "leave `protocol` out of this ICD, or give the message a fixed `count`"
-                yield Fault(message.source, message.source.at("length"), text, help)
-    named = {message.name: message for message, _ in ctx.messages if message.tail is not None}
+                yield Fault.at(message.source, "length", text, help)
+    longer = {message.name: message for message, _ in ctx.messages if message.tail is not None}
     for message, node in ctx.messages:
-        for part in message.source.get("contains") or ():
-            name = part.get("message") if isinstance(part, Map) else None
-            known = named.get(name) if isinstance(name, str) else None
+        for part in mappings(message.source.get("contains")):
+            known = named(longer, part.get("message"))
             if known is not None and known in ctx.messages_of(node):
                 text = f"{quote(known.name)} has no fixed length, so {quote(message.name)} cannot repeat it"
                 yield Fault(message.source, part.at("message"), text, "remove it from `contains`")
@@ -74,13 +70,11 @@ def carried(ctx: Context) -> Iterator[Fault]:
 @rule("ICD150")
 def ends_early(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
-        protocol = ctx.protocol_of(node)
-        linked = bool(protocol) and "stream" not in protocol
         for message in ctx.messages_of(node):
-            why = _never_early(message, linked) if message.may_end_early else ""
+            why = _never_early(message, ctx.is_linked(node)) if message.may_end_early else ""
             if why:
-                place = message.source.at("may_end_early")
-                yield Fault(message.source, place, f"{quote(message.name)} {why}", "remove `may_end_early`")
+                text = f"{quote(message.name)} {why}"
+                yield Fault.at(message.source, "may_end_early", text, "remove `may_end_early`")
 
 
 def _never_early(message: Message, linked: bool) -> str:
@@ -92,7 +86,3 @@ def _never_early(message: Message, linked: bool) -> str:
     if linked:
         return "may end early, and the links of `protocol` carry messages of one length each"
     return ""
-
-
-def _fault(one: tails.Obstacle) -> Fault:
-    return Fault(one.item, one.item.at(one.key), one.message, one.help)

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 from icdgen.icd import floats
 from icdgen.icd.build import float_bits
+from icdgen.icd.fault import Fault
 from icdgen.icd.model import Field, Member
 from icdgen.icd.rules.context import Context, mappings
-from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, quote
 
@@ -24,9 +24,9 @@ def member_fits(ctx: Context) -> Iterator[Fault]:
             unfit = sum(not _holds(field, m) for m in field.enum.members)
             others = f" (nor do {unfit - 1} others)" if unfit > 2 else " (nor does another)" if unfit == 2 else ""
             member = f"{quote(top.name)} = {top.values} of {quote(field.enum.name)}"
-            yield Fault(
+            yield Fault.at(
                 field.source,
-                field.source.at("bits"),
+                "bits",
                 f"{member} does not fit the {count(field.bits, 'bit')} of {quote(field.name)}{others}",
                 f"it takes {count(max(map(field.enum.bits_for, (top.value, top.last))), 'bit')}"
                 + (", as others of the enumeration are negative" if field.signed and top.value >= 0 else ""),
@@ -47,7 +47,7 @@ def range_has_more_than_one_value(ctx: Context) -> Iterator[Fault]:
             what = "is no range" if member.to == member.value else "ends before it begins"
             message = f"{quote(member.name)}, {member.values}, {what}"
             help = "leave `to` out" if member.to == member.value else f"`value: {member.to}, to: {member.value}`?"
-            yield Fault(member.source, member.source.at("to"), message, help)
+            yield Fault.at(member.source, "to", message, help)
 
 
 @rule("ICD031")
@@ -55,7 +55,7 @@ def const_fits(ctx: Context) -> Iterator[Fault]:
     for field, _, _ in ctx.having["const"]:
         problem = _misfit(field, field.const)
         if problem:
-            yield Fault(field.source, field.source.at("const"), f"`const` {problem[0]}", problem[1])
+            yield Fault.at(field.source, "const", f"`const` {problem[0]}", problem[1])
 
 
 @rule("ICD032")

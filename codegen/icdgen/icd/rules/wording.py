@@ -5,14 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from icdgen.diagnostics import Place
+from icdgen.suggest import close_to
 
 LONGEST = 60
+VERBATIM = "names are the manual's, to the letter"
 
 
 def quote(text: object) -> str:
     """The text in back-ticks, cut where it is longer than a line can bear."""
     words = str(text)
     return f"`{words if len(words) <= LONGEST else words[: LONGEST - 3] + '...'}`"
+
+
+def suggestion(name: str, known: Iterable[str], otherwise: str) -> str:
+    """The question whether another of the known names is meant; what to do ``otherwise``, if none comes near."""
+    close = close_to(name, known)
+    return f"did you mean {quote(close)}?" if close else otherwise
 
 
 def line_of(other: Place, here: Place) -> str:
