@@ -32,19 +32,20 @@ from icdgen.icd.rules import (  # noqa: F401  (importing a theme registers its r
     protocol_meaning,
     protocol_names,
     protocol_sizes,
-    reading,
     references,
     structs,
     tails,
     values,
 )
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.rule import REGISTERED, Rule
+from icdgen.icd.rules.rule import REGISTERED, Rule, elsewhere
 from icdgen.suggest import close_to
 
 if TYPE_CHECKING:
     from icdgen.icd.identifiers import Language
 
+elsewhere("reading", "ICD001", "ICD002", "ICD003", "ICD004", "ICD010")  # before there is a model
+elsewhere("errata", "ICD080", "ICD081", "ICD082", "ICD083")  # while overlays are laid over
 ALL: dict[str, Rule] = dict(sorted(REGISTERED.items()))
 _RUN = sorted(ALL.values(), key=lambda r: r.last)
 

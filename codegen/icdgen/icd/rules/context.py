@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from icdgen.icd.identifiers import Language
 
 # Keys of a field that only few fields have.
-RARE = ("enum", "unit", "formula", "formula_for", "points", "outside", "const", "special", "min", "max", "above", "below",
-    "bitfields", "byte_order", "bit_order", "count", "view", "after", "up_to", "when",
+RARE = ("enum", "unit", "formula", "formula_for", "points", "outside", "const", "special", "bitfields", "byte_order",
+    "bit_order", "view", "when",
 )  # fmt: skip
 
 T = TypeVar("T")

@@ -1,4 +1,4 @@
-"""Errata overlays: codes that are raised while they are laid over, and what their `accept` keys say."""
+"""Errata overlays: what their `accept` keys say."""
 
 from __future__ import annotations
 
@@ -7,11 +7,9 @@ from collections.abc import Iterator
 from icdgen.diagnostics import Place
 from icdgen.icd.fault import Fault
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.rule import REGISTERED, elsewhere, rule
+from icdgen.icd.rules.rule import REGISTERED, rule
 from icdgen.icd.rules.wording import count, line_of
 from icdgen.suggest import close_to
-
-elsewhere("errata", "ICD080", "ICD081", "ICD082", "ICD083")
 
 
 @rule("ICD084", whole=True, last=True)

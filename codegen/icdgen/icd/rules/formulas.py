@@ -84,9 +84,9 @@ def points_are_in_reach(ctx: Context) -> Iterator[Fault]:
         first, last = line.points[0][0], line.points[-1][0]
         if last < field.raw_min or field.raw_max < first:
             what = "the same physical value" if line.outside == curve.CLAMP else "no physical value"
+            values = f"its raw values from {field.raw_min:,} to {field.raw_max:,}"
             message = (
-                f"the points of {quote(field.name)} go from {first:g} to {last:g}, "
-                f"its raw values from {field.raw_min:,} to {field.raw_max:,}: each of them has {what}"
+                f"the points of {quote(field.name)} go from {first:g} to {last:g}, {values}: each of them has {what}"
             )
             yield Fault.at(source, "points", message, "correct the points, or `bits` or `type`")
 
@@ -95,21 +95,18 @@ def points_are_in_reach(ctx: Context) -> Iterator[Fault]:
 def formula_direction(ctx: Context) -> Iterator[Fault]:
     for field, _, _ in ctx.having["formula_for"]:
         source, said = field.source, field.source["formula_for"]
-        place = source.at("formula_for")
         if "formula" not in source or "points" in source:
             message = f"{quote(field.name)} has `formula_for` and no formula"
-            yield Fault(source, place, message, "add `formula` or remove it")
-            continue
-        gives = _gives(field)
-        if said != gives:
+            help = "add `formula` or remove it"
+        elif said != (gives := _gives(field)):
             message = f"the formula of {quote(field.name)} is announced for the {said} value and gives the {gives} one"
             help = "decide in the errata: hold `formula_for: null` if the formula is right, or hold the other formula"
         else:
             message = f"the formula of {quote(field.name)} does give the {said} value: nothing contradicts it"
             help = "remove `formula_for`"
-        yield Fault(source, place, message, help)
+        yield Fault.at(source, "formula_for", message, help)
     for node in ctx.icd.nodes:
-        stated = node.source.get("formula_for") if node.source else None
+        stated = node.source.get("formula_for")
         if isinstance(stated, Map):
             yield from _stated(stated, node)
 
@@ -120,10 +117,10 @@ def _stated(stated: Map, node: Node) -> Iterator[Fault]:
         fields = [f for m in node.messages if m.kind == kind for f in m.fields if "formula_for" not in f.source]
         against = [f for f in fields if "formula" in f.source and _gives(f) != said]
         if against:
-            message = (
-                f"the formulas of {kind} messages are announced for the {said} value, "
-                f"and that of {quote(against[0].name)} gives the other one, as in {count(len(against), 'field')} altogether"
+            other = (
+                f"that of {quote(against[0].name)} gives the other one, as in {count(len(against), 'field')} altogether"
             )
+            message = f"the formulas of {kind} messages are announced for the {said} value, and {other}"
             help = f"decide in the errata: hold `{kind}: null` if the formulas are right"
         else:
             message = f"no formula of a {kind} message gives anything but the {said} value: nothing contradicts it"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import chain
 
 from icdgen.icd.conditions import are_understood, exclude
@@ -37,15 +37,10 @@ def past_the_end(ctx: Context) -> Iterator[Fault]:
             source = field.source
             whole = "struct" if field.struct else "bits"
             key = "at" if field.at >= room else "count" if field.count else whole
-            place = source.at(key)
             has = f"{quote(message.name)} has {count(room, 'bit')} ({count(message.length, 'byte')})"
-            length = line_of(message.source.at("length"), place)
-            yield Fault(
-                source,
-                place,
-                f"{quote(field.name)} ends at bit {end:,}, but {has}",
-                f"correct `at`{', `count`' if field.count else ''} or `{whole}`, or the `length` in {length}",
-            )
+            length = line_of(message.source.at("length"), source.at(key))
+            help = f"correct `at`{', `count`' if field.count else ''} or `{whole}`, or the `length` in {length}"
+            yield Fault.at(source, key, f"{quote(field.name)} ends at bit {end:,}, but {has}", help)
 
 
 @rule("ICD021")
@@ -60,12 +55,8 @@ def overlap(ctx: Context) -> Iterator[Fault]:
 def _overlaps(ctx: Context) -> Iterator[Overlap]:
     for message, node in ctx.owners:
         fields = _standing(message)
-        if any("when" in field.source for field in fields):
-            known = tuple(field for field in fields if are_understood(field))
-            yield from _overlaps_of_alternatives(message, node, known)
-            continue
-        if any(field.bit_order not in ("", node.bit_order) for field in fields):
-            yield from _overlaps_among(message, node, fields)
+        if any("when" in field.source or field.bit_order not in ("", node.bit_order) for field in fields):
+            yield from _overlaps_among(message, node, filter(are_understood, fields))
             continue
         reached, widest = -1, -1
         for index in sorted(range(len(fields)), key=lambda i: fields[i].at):
@@ -94,22 +85,11 @@ def _standing(owner: Owner) -> tuple[Field, ...]:
     return tuple(place for member in members if not member.view for place in member.places)
 
 
-def _overlaps_among(message: Owner, node: Node, fields: tuple[Field, ...]) -> Iterator[Overlap]:
-    """`_overlaps` where fields count bits in different ways."""
-    seen: list[tuple[Field, int]] = []
-    for field in fields:
-        if field.at + field.bits > message.length * 8:
-            continue  # a finding already
-        mask = _mask(field, node)
-        clash = next(((one, shared) for one, other in seen if (shared := mask & other)), None)
-        if clash is not None:
-            first, shared = clash
-            yield _overlap(first, field, _bits_of(shared))
-        seen.append((field, mask))
+def _overlaps_among(message: Owner, node: Node, fields: Iterable[Field]) -> Iterator[Overlap]:
+    """`_overlaps` where fields count bits in different ways, or are not always there.
 
-
-def _overlaps_of_alternatives(message: Owner, node: Node, fields: tuple[Field, ...]) -> Iterator[Overlap]:
-    """`_overlaps` where fields are not always there: those that are never there together may have the same bits."""
+    Those that are never there together may have the same bits.
+    """
     seen: list[tuple[Field, int]] = []
     for field in fields:
         if field.at + field.bits > message.length * 8:
@@ -149,18 +129,12 @@ def _help(first: Field, second: Field) -> str:
 
 
 def _overlap(first: Field, second: Field, bits: str = "") -> Overlap:
-    place = second.source.at("at")
     start, end = max(first.at, second.at), min(first.at + first.bits, second.at + second.bits)
     bits = bits or (f"bit {start:,}" if end - start == 1 else f"bits {start:,} to {end - 1:,}")
-    other = f"{quote(first.name)} ({line_of(first.source.place, place)})"
-    fault = Fault(
-        second.source,
-        place,
-        f"{quote(second.name)} overlaps {other} in {bits}"
-        + (", and both can be there" if first.when or second.when else ""),
-        _help(first, second),
-    )
-    return fault, (id(first.source), id(second.source))
+    other = f"{quote(first.name)} ({line_of(first.source.place, second.source.at('at'))})"
+    text = f"{quote(second.name)} overlaps {other} in {bits}"
+    text += ", and both can be there" if first.when or second.when else ""
+    return Fault.at(second.source, "at", text, _help(first, second)), (id(first.source), id(second.source))
 
 
 @rule("ICD022")
@@ -181,12 +155,9 @@ def width(ctx: Context) -> Iterator[Fault]:
 def bytes_boundary(ctx: Context) -> Iterator[Fault]:
     for field, _, _ in ctx.fields:
         if field.is_bytes and field.at % 8:
-            yield Fault.at(
-                field.source,
-                "at",
-                f"{quote(field.name)} is `{field.type}`, but bit {field.at:,} is not the beginning of a byte",
-                f"bytes begin at bits {field.at // 8 * 8:,} and {field.at // 8 * 8 + 8:,}",
-            )
+            text = f"{quote(field.name)} is `{field.type}`, but bit {field.at:,} is not the beginning of a byte"
+            help = f"bytes begin at bits {field.at // 8 * 8:,} and {field.at // 8 * 8 + 8:,}"
+            yield Fault.at(field.source, "at", text, help)
 
 
 @rule("ICD026")
@@ -221,13 +192,8 @@ def view_of_fields(ctx: Context) -> Iterator[Fault]:
         for owner in message.owners:
             free &= ~0 if owner.when else ~_mask(owner, node)
         if free and is_read(message):
-            help = "describe what has them as a field, or correct `at` or `bits`"
-            yield Fault.at(
-                source,
-                "at",
-                f"{name} is a view of {_bits_of(free)} that no field {'always ' * message.has_conditions}has",
-                help,
-            )
+            text = f"{name} is a view of {_bits_of(free)} that no field {'always ' * message.has_conditions}has"
+            yield Fault.at(source, "at", text, "describe what has them as a field, or correct `at` or `bits`")
 
 
 def is_read(message: Message) -> bool:
@@ -246,9 +212,8 @@ def reserved_end(ctx: Context) -> Iterator[Fault]:
     for message, _ in ctx.messages:
         free = max(message.length - covered_bytes(message), 0) if message.reserved else 0
         if message.reserved > free:
-            place = message.source.at("reserved")
             text = f"{quote(message.name)} has {count(free, 'byte')} after its last field, {message.reserved} are called reserved"
-            yield Fault(message.source, place, text, "correct `reserved` or `length`, or the fields")
+            yield Fault.at(message.source, "reserved", text, "correct `reserved` or `length`, or the fields")
 
 
 @rule("ICD024", whole=True)
@@ -257,15 +222,12 @@ def undescribed_end(ctx: Context) -> Iterator[Fault]:
         covered = covered_bytes(message)
         if covered + message.reserved < message.length and is_read(message):
             left = message.length - covered - message.reserved
-            what = "the fields describe" if message.fields else "there are no fields:"
-            rest = f"{what} {covered:,}" if message.fields else f"{what} what stands in them is unknown"
-            yield Fault.at(
-                message.source,
-                "length",
-                f"{quote(message.name)} has {count(message.length, 'byte')}, {rest}",
-                f"describe {'the last ' if not message.reserved else ''}{count(left, 'byte')} or correct `length`; "
-                f"if the manual calls them reserved: `reserved: {left + message.reserved}`",
-            )
+            unknown = "there are no fields: what stands in them is unknown"
+            rest = f"the fields describe {covered:,}" if message.fields else unknown
+            text = f"{quote(message.name)} has {count(message.length, 'byte')}, {rest}"
+            help = f"describe {'' if message.reserved else 'the last '}{count(left, 'byte')} or correct `length`"
+            reserve = f"if the manual calls them reserved: `reserved: {left + message.reserved}`"
+            yield Fault.at(message.source, "length", text, f"{help}; {reserve}")
 
 
 @rule("ICD025")

@@ -31,11 +31,6 @@ class Bounds(NamedTuple):
             return False
         return self.low > self.high or (self.low == self.high and (self.above or self.below))
 
-    def holds(self, value: Fraction) -> bool:
-        if self.low is not None and (value < self.low or (self.above and value == self.low)):
-            return False
-        return self.high is None or not (value > self.high or (self.below and value == self.high))
-
 
 def bounds(field: Field) -> Bounds:
     """The narrowest interval that the limits of the field describe."""
@@ -48,13 +43,8 @@ def bounds(field: Field) -> Bounds:
 
 
 def _limited(ctx: Context) -> Iterator[Field]:
-    """Fields with limits, each once."""
-    seen = set()
-    for key in LIMITS:
-        for field, _, _ in ctx.having[key]:
-            if field.limits is not None and id(field) not in seen:
-                seen.add(id(field))
-                yield field
+    """Fields with limits."""
+    return (field for field, _, _ in ctx.fields if field.limits is not None)
 
 
 def _shown(field: Field, *keys: str) -> str:
@@ -85,26 +75,25 @@ def limits_in_range(ctx: Context) -> Iterator[Fault]:
         within, source = bounds(field), field.source
         if within.is_empty:
             continue
-        low, high = _physical(field, field.raw_min), _physical(field, field.raw_max)
-        if not _holds_raw(field, within):
+        held = _raw_values(field, within)
+        if not held:
             key = _first(field, *(("min", "above") if within.low is not None else ("max", "below")))
             message = f"no value of {quote(field.name)} is within {_shown(field, *LIMITS)}"
-            help = f"its values go from {_number(min(low, high))} to {_number(max(low, high))}"
-            yield Fault.at(source, key, message, help)
-        elif field.const is not None and field.raw_min <= field.const <= field.raw_max:
-            value = _physical(field, field.const)
-            if not within.holds(value):
-                message = f"`const: {field.const}` of {quote(field.name)} is outside {_shown(field, *LIMITS)}"
-                help = f"its physical value is {_number(value)}" if field.scale else "correct one of them"
-                yield Fault.at(source, "const", message, help)
+            low, high = sorted(_physical(field, raw) for raw in (field.raw_min, field.raw_max))
+            yield Fault.at(source, key, message, f"its values go from {_number(low)} to {_number(high)}")
+        elif field.const is not None and field.raw_min <= field.const <= field.raw_max and field.const not in held:
+            message = f"`const: {field.const}` of {quote(field.name)} is outside {_shown(field, *LIMITS)}"
+            value = _number(_physical(field, field.const))
+            help = f"its physical value is {value}" if field.scale else "correct one of them"
+            yield Fault.at(source, "const", message, help)
 
 
 def _physical(field: Field, raw: int) -> Fraction:
     return field.scale.physical(raw) if field.scale else Fraction(raw)
 
 
-def _holds_raw(field: Field, within: Bounds) -> bool:
-    """Whether any raw value of the field lies within the (physical) bounds."""
+def _raw_values(field: Field, within: Bounds) -> range:
+    """The raw values of the field that lie within the (physical) bounds."""
     low, high, above, below = within
     if field.scale:
         low = None if low is None else field.scale.raw(low)
@@ -113,7 +102,7 @@ def _holds_raw(field: Field, within: Bounds) -> bool:
             low, high, above, below = high, low, below, above
     first = field.raw_min if low is None else max(field.raw_min, floor(low) + 1 if above else ceil(low))
     last = field.raw_max if high is None else min(field.raw_max, ceil(high) - 1 if below else floor(high))
-    return first <= last
+    return range(first, last + 1)
 
 
 def _number(value: Fraction) -> str:

@@ -8,7 +8,7 @@ from typing import TypeGuard
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Node
-from icdgen.icd.rules.context import Context
+from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, quote
 
@@ -117,8 +117,7 @@ def rows_apart(ctx: Context) -> Iterator[Fault]:
         for section in sections(node):
             for key, rows in section.items():
                 for at, size in (("byte", "bytes"), ("at", "bits")):
-                    if isinstance(rows, Seq) and any(isinstance(r, Map) and at in r and size in r for r in rows):
-                        yield from _rows(section, key, rows, at, size)
+                    yield from _rows(section, key, rows, at, size)
 
 
 def _called(row: Map, otherwise: str) -> str:
@@ -127,10 +126,10 @@ def _called(row: Map, otherwise: str) -> str:
     return quote(known) if isinstance(known, str) else otherwise
 
 
-def _rows(section: Map, key: str, rows: Seq, at: str, size: str) -> Iterator[Fault]:
+def _rows(section: Map, key: str, rows: object, at: str, size: str) -> Iterator[Fault]:
     named = f"{key}_{size}" if f"{key}_{size}" in section else size
     room = section.get(named)
-    placed = [r for r in rows if isinstance(r, Map) and isinstance(r.get(at), int) and isinstance(r.get(size), int)]
+    placed = [r for r in mappings(rows) if isinstance(r.get(at), int) and isinstance(r.get(size), int)]
     last: Map | None = None
     for row in sorted(placed, key=lambda r: r[at]):
         end = row[at] + row[size]
@@ -141,11 +140,7 @@ def _rows(section: Map, key: str, rows: Seq, at: str, size: str) -> Iterator[Fau
             yield Fault.at(row, at, message, f"correct `{at}` or `{size}`")
         if isinstance(room, int) and end > room:
             message = f"{name} ends at {end}, but `{named}` is {room}"
-            yield Fault.at(
-                row,
-                size,
-                message,
-                f"correct `{at}`, " + (f"`{size}` or `{named}`" if named != size else f"or a `{size}`"),
-            )
+            sizes = f"`{size}` or `{named}`" if named != size else f"or a `{size}`"
+            yield Fault.at(row, size, message, f"correct `{at}`, {sizes}")
         if last is None or end > last[at] + last[size]:
             last = row

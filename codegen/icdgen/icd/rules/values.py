@@ -17,20 +17,17 @@ NUMBERS = ("uint", "int", "enum")
 
 @rule("ICD030")
 def member_fits(ctx: Context) -> Iterator[Fault]:
-    largest = {id(e): e.widest for n in ctx.icd.nodes for e in n.enums}
+    largest = {id(e): e.widest for e in ctx.enums}
     for field, _, _ in ctx.having["enum"]:
         top = largest.get(id(field.enum)) if field.enum else None
         if field.enum and top is not None and not _holds(field, top):
             unfit = sum(not _holds(field, m) for m in field.enum.members)
             others = f" (nor do {unfit - 1} others)" if unfit > 2 else " (nor does another)" if unfit == 2 else ""
             member = f"{quote(top.name)} = {top.values} of {quote(field.enum.name)}"
-            yield Fault.at(
-                field.source,
-                "bits",
-                f"{member} does not fit the {count(field.bits, 'bit')} of {quote(field.name)}{others}",
-                f"it takes {count(max(map(field.enum.bits_for, (top.value, top.last))), 'bit')}"
-                + (", as others of the enumeration are negative" if field.signed and top.value >= 0 else ""),
-            )
+            text = f"{member} does not fit the {count(field.bits, 'bit')} of {quote(field.name)}{others}"
+            help = f"it takes {count(max(map(field.enum.bits_for, (top.value, top.last))), 'bit')}"
+            help += ", as others of the enumeration are negative" if field.signed and top.value >= 0 else ""
+            yield Fault.at(field.source, "bits", text, help)
 
 
 def _holds(field: Field, member: Member) -> bool:
@@ -40,7 +37,7 @@ def _holds(field: Field, member: Member) -> bool:
 
 @rule("ICD035")
 def range_has_more_than_one_value(ctx: Context) -> Iterator[Fault]:
-    for enum in (e for n in ctx.icd.nodes for e in n.enums):
+    for enum in ctx.enums:
         for member in enum.members:
             if member.to is None or member.to > member.value:
                 continue
