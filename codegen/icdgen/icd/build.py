@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
-from functools import partial
 from itertools import chain
-from typing import TypeVar
+from typing import Any
 
 from icdgen.icd import annex, conditions, curve, derived, division, floats, formula, model, tails, wire_ids
 from icdgen.icd.errata import Applied
 from icdgen.icd.implied import implied_count
-from icdgen.icd.located import Map, plain
+from icdgen.icd.located import Map, plain, unread
 from icdgen.icd.paths import members_of
+from icdgen.icd.trees import mappings
 from icdgen.icd.units import STANDARD, Unit
-
-T = TypeVar("T")
 
 Orders = tuple[str, str]
 
@@ -52,9 +50,9 @@ class Builder:
         if not isinstance(head, Map) or id(head) in self.broken:
             return None
         self.name = head["name"]
-        units = tuple(self.each("units", self.unit))
+        units = tuple(map(unit, self.items("units")))
         self.scope.units.update((u.symbol, u) for u in units)
-        enums = tuple(self.each("enums", self.enum))
+        enums = tuple(map(self.enum, self.items("enums")))
         self.scope.enums.update((e.name, e) for e in enums)
         structs = self.structs()
         listed, protocol = self.tree.get("vocabulary"), self.tree.get("protocol")
@@ -66,7 +64,7 @@ class Builder:
             byte_order=head["byte_order"],
             bit_order=head["bit_order"],
             id_bits=head.get("id_bits", wire_ids.DEFAULT_BITS),
-            messages=tuple(self.each("messages", self.message)),
+            messages=tuple(map(self.message, self.items("messages"))),
             enums=enums,
             structs=structs,
             node_type=head.get("node_type"),
@@ -76,56 +74,46 @@ class Builder:
             vocabulary=tuple(dict.fromkeys((*self.scope.vocabulary, *words))),
             units=units,
             protocol=plain(protocol) if isinstance(protocol, Map) else {},
-            loggable=tuple(self.each("loggable", self.loggable)),
-            missing=tuple(self.each("missing", self.missing)),
+            loggable=tuple(map(self.loggable, self.items("loggable"))),
+            missing=tuple(map(missing, self.items("missing"))),
             errata=(*self.applied.entries, *self.applied.notes),
             digest=digest,
             file=self.tree.place.file,
             source=self.tree,
         )
 
-    def each(self, key: str, make: Callable[[Map], T], owner: Map | None = None) -> Iterable[T]:
-        items = (self.tree if owner is None else owner).get(key)
-        for item in items if isinstance(items, list) else ():
-            if isinstance(item, Map) and id(item) not in self.broken:
-                yield make(item)
+    def items(self, key: str, owner: Map | None = None) -> Iterator[Map]:
+        """What is listed under a key, of the file or a mapping in it, but for what is broken."""
+        found = mappings((self.tree if owner is None else owner).get(key))
+        return (item for item in found if id(item) not in self.broken)
 
-    def unit(self, item: Map) -> Unit:
-        return Unit(item["symbol"], item["identifier"], item["quantity"], item.get("summary", ""))
+    def named(self, item: Map) -> dict[str, Any]:
+        """What is said in the same way of all that has a name."""
+        return {
+            "name": item["name"],
+            "identifier": item.get("identifier"),
+            "summary": item.get("summary", ""),
+            "errata": self.applied.about(item),
+            "source": item,
+        }
 
     def enum(self, item: Map) -> model.Enum:
-        return model.Enum(
-            name=item["name"],
-            members=tuple(self.each("members", self.member, item)),
-            identifier=item.get("identifier"),
-            summary=item.get("summary", ""),
-            table=(item.get("source") or {}).get("table"),
-            node=self.name,
-            errata=self.applied.about(item),
-            source=item,
-        )
+        members = tuple(map(self.member, self.items("members", item)))
+        return model.Enum(members=members, table=_printed(item).get("table"), node=self.name, **self.named(item))
 
     def member(self, item: Map) -> model.Member:
-        return model.Member(
-            value=item["value"],
-            name=item["name"],
-            identifier=item.get("identifier"),
-            summary=item.get("summary", ""),
-            to=item.get("to"),
-            errata=self.applied.about(item),
-            source=item,
-        )
+        return model.Member(value=item["value"], to=item.get("to"), **self.named(item))
 
     def structs(self) -> tuple[model.Struct, ...]:
         """Those of the node, each after what it has in it. Of a circle, none has the next in it: it is a finding."""
-        listed = list(self.each("structs", lambda item: item))
+        listed = list(self.items("structs"))
         items = {item["name"]: item for item in reversed(listed)}
         made: list[model.Struct] = []
         begun: set[str] = set()
 
         def make(name: str) -> None:
             begun.add(name)
-            for row in self.each("fields", lambda row: row, items[name]):
+            for row in self.items("fields", items[name]):
                 if row.get("struct") in items and row["struct"] not in begun:
                     make(row["struct"])
             made.append(self.struct(items[name]))
@@ -139,55 +127,46 @@ class Builder:
 
     def struct(self, item: Map) -> model.Struct:
         return model.Struct(
-            name=item["name"],
             length=item["length"],
-            fields=tuple(chain.from_iterable(self.each("fields", partial(self.fields, item), item))),
-            identifier=item.get("identifier"),
-            summary=item.get("summary", ""),
-            table=(item.get("source") or {}).get("table"),
+            fields=self.all_fields(item),
+            table=_printed(item).get("table"),
             node=self.name,
-            errata=self.applied.about(item),
-            source=item,
+            **self.named(item),
         )
 
     def message(self, item: Map) -> model.Message:
-        where = item.get("source") or {}
-        fields = tuple(chain.from_iterable(self.each("fields", partial(self.fields, item), item)))
+        fields = self.all_fields(item)
         parts, ends = self.open_parts(item)
         for part in parts:
             fields = part.counted_in(fields)
         fields += ends
         length = item["length"] + sum(part.most * part.step for part in parts)
         return model.Message(
-            name=item["name"],
             kind=item["kind"],
             length=length,
             fields=self.with_derived(fields, length, item) if "derived" in item else fields,
             id=_id(item, "id"),
             set_id=_id(item, "set_id"),
             get_id=_id(item, "get_id"),
-            identifier=item.get("identifier"),
             group=item.get("group", ""),
-            table=where.get("table"),
-            page=where.get("page"),
-            summary=item.get("summary", ""),
+            table=_printed(item).get("table"),
+            page=_printed(item).get("page"),
             acknowledge=item.get("acknowledge", True) is True,
             expects_reset=item.get("acknowledge") == "reset",
             hazard=item.get("hazard", ""),
             assumptions=tuple((key, str(why)) for key, why in (item.get("assumptions") or {}).items()),
-            contains=tuple(self.each("contains", lambda p: model.Part(p["message"], p["at"]), item)),
+            contains=tuple(model.Part(part["message"], part["at"]) for part in self.items("contains", item)),
             reserved=item.get("reserved", 0),
             tail=parts[-1] if parts else None,
             inner=parts[:-1],
             may_end_early=item.get("may_end_early", ""),
             node=self.name,
-            errata=self.applied.about(item),
-            source=item,
+            **self.named(item),
         )
 
     def with_derived(self, fields: tuple[model.Field, ...], length: int, message: Map) -> tuple[model.Field, ...]:
         """The fields, then what is derived from them, but for what cannot be."""
-        for item in self.each("derived", lambda item: item, message):
+        for item in self.items("derived", message):
             with suppress(formula.FormulaError):
                 how = derived.of_fields(item["formula"], members_of(fields))
                 unit = self.scope.units.get(item.get("unit", ""))
@@ -226,6 +205,10 @@ class Builder:
             return end.elements
         return (*end.elements, implied_count(end, begin + most * (end.bits // 8 if "size" not in item else 1)))
 
+    def all_fields(self, owner: Map) -> tuple[model.Field, ...]:
+        """Those of a message or a struct, but for what is open."""
+        return tuple(chain.from_iterable(self.fields(owner, item) for item in self.items("fields", owner)))
+
     def fields(self, message: Map, item: Map) -> tuple[model.Field, ...]:
         """The field, the elements of an array, the fields of a struct, or the parts that it is divided into."""
         around = orders(message)
@@ -259,18 +242,14 @@ class Builder:
     def standing(self, item: Map, struct: model.Struct, around: Orders) -> model.Field:
         """A struct where it stands."""
         return model.Field(
-            name=item["name"],
             at=item["at"],
             bits=struct.length * 8,
             type="struct",
-            identifier=item.get("identifier"),
-            summary=item.get("summary", ""),
             byte_order=around[0],
             bit_order=around[1],
             count=count if isinstance(count := item.get("count", 0), int) else 0,
             struct=struct,
-            errata=self.applied.about(item),
-            source=item,
+            **self.named(item),
         )
 
     def field(self, item: Map, around: Orders) -> model.Field:
@@ -279,11 +258,9 @@ class Builder:
         byte_order, bit_order = orders(item, around)
         scale, line = calibration(get("formula"), kind) if "points" not in item else (None, table(item, kind))
         return model.Field(
-            name=item["name"],
             at=item["at"],
             bits=get("bits", 0),  # open bytes and text: `tail` knows
             type=kind,
-            identifier=get("identifier"),
             enum=self.scope.enums.get(get("enum", "")) if kind == "enum" else None,
             unit=self.scope.units.get(get("unit", "")),
             formula=get("formula", ""),
@@ -292,26 +269,36 @@ class Builder:
             const=get("const"),
             special=self.special(item, kind) if "special" in item else (),
             limits=limits(item),
-            summary=get("summary", ""),
             byte_order=byte_order,
             bit_order=bit_order,
             view=get("view", False),
-            errata=self.applied.about(item),
-            source=item,
+            **self.named(item),
         )
 
     def special(self, item: Map, kind: str) -> tuple[model.Special, ...]:
         """The values with a meaning of a field of a type, but what it cannot hold."""
         bits = item.get("bits", 0)
-        found = self.each("special", lambda one: special(kind, bits, one["value"], one["meaning"]), item)
+        found = (special(kind, bits, one["value"], one["meaning"]) for one in self.items("special", item))
         return tuple(one for one in found if one is not None)
 
     def loggable(self, item: Map) -> annex.Loggable:
         errata = self.applied.about(item)
         return annex.Loggable(item["bit"], wire_ids.number(item["id"]), item.get("name", ""), errata, item)
 
-    def missing(self, item: Map) -> annex.Missing:
-        return annex.Missing(item["kind"], wire_ids.number(item["id"]), item["name"], item["why"])
+
+def unit(item: Map) -> Unit:
+    """A unit that the file declares."""
+    return Unit(item["symbol"], item["identifier"], item["quantity"], item.get("summary", ""))
+
+
+def missing(item: Map) -> annex.Missing:
+    """A message that the manual does not describe."""
+    return annex.Missing(item["kind"], wire_ids.number(item["id"]), item["name"], item["why"])
+
+
+def _printed(item: Map) -> Map:
+    """Where the manual prints it."""
+    return item.get("source") or unread()
 
 
 def derived_field(how: derived.Derivation, length: int, item: Map, unit: Unit | None) -> model.Field:

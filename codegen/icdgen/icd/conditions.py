@@ -5,35 +5,34 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from icdgen.icd.fault import Fault
-from icdgen.icd.located import Map
+from icdgen.icd.located import Map, unread
 from icdgen.icd.model import Condition, Enum, Field
+from icdgen.icd.trees import mappings
 from icdgen.suggest import close_to
 
 _LEAST = "`when` names a field that is always there: an unsigned number without a formula, a value of an enumeration, or a flag"
 _PLAIN = ("uint", "enum", "bool")
 _TYPES = (*_PLAIN, "int", "float", "bytes", "text")
+_ODD = {"when": "is not always there itself", "count": "is an array", "size": "is open", "bitfields": "is divided",
+    "formula": "is scaled", "points": "is scaled",
+}  # fmt: skip
 
 
-def given(item: Map) -> Map | None:
-    """What a field says under `when`; None where that is nothing, or no mapping."""
+def _given(item: Map) -> Map:
+    """What a field says under `when`; nothing where that is no mapping."""
     found = item.get("when")
-    return found if isinstance(found, Map) else None
+    return found if isinstance(found, Map) else unread()
 
 
 def of(message: Map, item: Map, enums: Mapping[str, Enum]) -> tuple[Condition, ...]:
     """The conditions of a field; of what is wrong with one, nothing."""
-    when = given(item)
-    if when is None:
-        return ()
     known = _fields(message)
     found = []
-    for name in when:
+    for name, said in _given(item).items():
         one = known.get(name)
-        values = (
-            []
-            if one is None or not _is_sound(one) or _odd(one)
-            else [_value(one, said, enums) for said in _listed(when[name])]
-        )
+        if one is None or not _decides(one):
+            continue
+        values = [_value(one, each, enums) for each in _listed(said)]
         if values and None not in values:
             found.append(Condition(name, tuple(dict.fromkeys(value for value in values if value is not None))))
     return tuple(found)
@@ -41,47 +40,32 @@ def of(message: Map, item: Map, enums: Mapping[str, Enum]) -> tuple[Condition, .
 
 def are_understood(field: Field) -> bool:
     """Whether a field has all the conditions that it is given: what is wrong with one is a finding, and no more follows."""
-    when = given(field.source)
-    return when is None or len(when) == len(field.when)
+    return len(_given(field.source)) == len(field.when)
 
 
 def faults_of_names(message: Map, item: Map) -> Iterator[Fault]:
     """What is wrong with the fields that it depends on."""
-    when, known = given(item), _fields(message)
-    for name in when or ():
-        assert when is not None
+    when, known = _given(item), _fields(message)
+    for name in when:
         if name not in known:
             text = f"`{name}`, on which `{item['name']}` depends, is no field of `{message['name']}`"
-            yield Fault.at_key(when, name, text, _meant(name, item, known) or _LEAST)
+            near = close_to(name, (other for other, one in known.items() if one is not item and _decides(one)))
+            yield Fault.at_key(when, name, text, f"did you mean `{near}`?" if near else _LEAST)
         elif not _is_sound(known[name]):
             continue  # a finding already
         elif why := "is the field itself" if name == item["name"] else _odd(known[name]):
             yield Fault.at_key(when, name, f"`{name}`, on which `{item['name']}` depends, {why}", _LEAST)
 
 
-def _meant(name: str, item: Map, known: Mapping[str, Map]) -> str:
-    """The question whether another field is meant, of those that ``item`` can depend on; empty if none comes near."""
-    near = close_to(
-        name, (other for other, one in known.items() if one is not item and _is_sound(one) and not _odd(one))
-    )
-    return f"did you mean `{near}`?" if near else ""
-
-
 def faults_of_values(message: Map, item: Map, enums: Mapping[str, Enum]) -> Iterator[Fault]:
     """What is wrong with the values that others must have."""
-    when, known = given(item), _fields(message)
-    for name in when or ():
-        assert when is not None
+    when, known = _given(item), _fields(message)
+    for name, listed in when.items():
         one = known.get(name)
-        if (
-            one is None
-            or not _is_sound(one)
-            or _odd(one)
-            or (one["type"] == "enum" and one.get("enum", "") not in enums)
-        ):
+        if one is None or not _decides(one) or (one["type"] == "enum" and one.get("enum", "") not in enums):
             continue  # a finding already
-        values = [_value(one, said, enums) for said in _listed(when[name])]
-        for said, value in zip(_listed(when[name]), values, strict=True):
+        values = [_value(one, said, enums) for said in _listed(listed)]
+        for said, value in zip(_listed(listed), values, strict=True):
             if value is None and _is_range(one, said, enums):
                 text = f"{_shown(said)} is a range of values of `{one['enum']}`"
                 yield Fault.at_key(when, name, text, "write the values as numbers, each that is meant")
@@ -109,9 +93,8 @@ def _value(field: Map, said: object, enums: Mapping[str, Enum]) -> int | None:
     if kind == "enum":
         enum = enums.get(field.get("enum", ""))
         if isinstance(said, str):
-            return (
-                next((one.value for one in enum.members if one.name == said and one.to is None), None) if enum else None
-            )
+            members = enum.members if enum else ()
+            return next((one.value for one in members if one.name == said and one.to is None), None)
         if type(said) is not int:
             return None
         low, high = (-(1 << bits - 1), (1 << bits - 1) - 1) if enum and enum.signed else (0, (1 << bits) - 1)
@@ -138,20 +121,16 @@ def _allowed(field: Map, enums: Mapping[str, Enum]) -> str:
 
 def _odd(field: Map) -> str:
     """Why nothing can depend on a field, as the end of a sentence; empty if something can."""
-    if "when" in field:
-        return "is not always there itself"
-    for key, words in (
-        ("count", "is an array"),
-        ("size", "is open"),
-        ("bitfields", "is divided"),
-        ("formula", "is scaled"),
-        ("points", "is scaled"),
-    ):
-        if key in field:
-            return words
+    if odd := next((words for key, words in _ODD.items() if key in field), ""):
+        return odd
     if field.get("view"):
         return "is a view"
     return "" if field.get("type") in _PLAIN else f"is `{field.get('type')}`"
+
+
+def _decides(field: Map) -> bool:
+    """Whether something can depend on a field."""
+    return _is_sound(field) and not _odd(field)
 
 
 def _is_sound(field: Map) -> bool:
@@ -164,11 +143,8 @@ def _is_sound(field: Map) -> bool:
 
 def _fields(message: Map) -> dict[str, Map]:
     """The fields by name, but for structs."""
-    items = message.get("fields")
-    found = [item for item in items if isinstance(item, Map)] if isinstance(items, list) else []
-    return {
-        item["name"]: item for item in reversed(found) if isinstance(item.get("name"), str) and "struct" not in item
-    }
+    found = [item for item in mappings(message.get("fields")) if isinstance(item.get("name"), str)]
+    return {item["name"]: item for item in reversed(found) if "struct" not in item}
 
 
 def exclude(one: tuple[Condition, ...], other: tuple[Condition, ...]) -> bool:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
+from icdgen.icd.trees import mappings
 
 OF_A_WHOLE = ("unit", "formula", "points", "outside", "const", "special", "min", "max", "above", "below")
 """Keys that say what a value means: of a divided field its parts say so."""
@@ -13,8 +14,7 @@ OF_A_WHOLE = ("unit", "formula", "points", "outside", "const", "special", "min",
 
 def parts_of(field: Map) -> list[Map]:
     """The parts that can be read."""
-    items = field.get("bitfields")
-    return [item for item in items if isinstance(item, Map)] if isinstance(items, list) else []
+    return list(mappings(field.get("bitfields")))
 
 
 def obstacles(field: Map, byte_order: str, bit_order: str) -> Iterator[Fault]:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Set
 from icdgen.diagnostics import Finding, Place
 from icdgen.icd.erratum import Erratum
 from icdgen.icd.located import Map, Seq, unread
+from icdgen.icd.trees import mappings
 from icdgen.suggest import close_to
 
 _AGAIN = "look at the manual again, then update or remove the entry"
@@ -39,22 +40,19 @@ def apply(tree: Map, overlay: Map | None, broken: Set[int] = frozenset()) -> App
         return applied
     name = (tree.get("node") or {}).get("name")
     if overlay.get("node") != name:
-        applied.findings.append(
-            Finding(OTHER_NODE, f"this overlay is for node `{overlay.get('node')}`, but lies beside `{name}`",
-                    overlay.at("node"), "rename the file after its node, or correct `node:`")
-        )  # fmt: skip
+        message = f"this overlay is for node `{overlay.get('node')}`, but lies beside `{name}`"
+        help = "rename the file after its node, or correct `node:`"
+        applied.findings.append(Finding(OTHER_NODE, message, overlay.at("node"), help))
         return applied
     seen: dict[str, Place] = {}
     named = _ByName()
-    notes = list(_maps(overlay.get("notes")))  # first: what they speak of is what the vendor prints
-    for entry in (*notes, *_maps(overlay.get("entries"))):
+    notes = mappings(overlay.get("notes"))  # first: what they speak of is what the vendor prints
+    for entry in (*notes, *mappings(overlay.get("entries"))):
         if broken and _is_broken(entry, broken):
             continue
         if entry["id"] in seen:
-            applied.findings.append(
-                Finding(DOUBLE_ID, f"the id `{entry['id']}` is used twice, first in line {seen[entry['id']].line}",
-                        entry.at("id"), "give this entry an id of its own")
-            )  # fmt: skip
+            message = f"the id `{entry['id']}` is used twice, first in line {seen[entry['id']].line}"
+            applied.findings.append(Finding(DOUBLE_ID, message, entry.at("id"), "give this entry an id of its own"))
         seen[entry["id"]] = entry.at("id")
         _apply_entry(tree, entry, applied, named)
     return applied
@@ -76,7 +74,7 @@ def _apply_entry(tree: Map, entry: Map, applied: Applied, named: _ByName) -> Non
         if wild:
             targets = [t for t in targets if _matches(t, printed)]
         if not targets and not wild:
-            applied.findings.append(_nowhere(tree, one))
+            applied.findings.append(_nowhere(tree, one, named))
         for target in targets:
             if not wild and not _matches(target, printed):
                 applied.findings.append(_stale(entry, target, printed))
@@ -88,17 +86,11 @@ def _apply_entry(tree: Map, entry: Map, applied: Applied, named: _ByName) -> Non
             applied.of.setdefault(id(target), []).append(erratum)
             for code, place in entry["accept"].placed() if "accept" in entry else ():
                 applied.accepts.append((code, place, target, erratum.id, target.place))
-    if wildcard and matched != entry.get("places"):
-        expected = entry.get("places")
-        message = f"`printed` matches {matched} places" + (f", not {expected}" if expected is not None else "")
-        applied.findings.append(
-            Finding(STALE, message, entry.at("places" if expected is not None else "where"),
-                    f"check the places, then write `places: {matched}`" if matched else _AGAIN)
-        )  # fmt: skip
-
-
-def _maps(items: object) -> Iterator[Map]:
-    return (item for item in items if isinstance(item, Map)) if isinstance(items, list) else iter(())
+    expected = entry.get("places")
+    if wildcard and matched != expected:
+        message = f"`printed` matches {matched} places" + (f", not {expected}" if expected else "")
+        help = f"check the places, then write `places: {matched}`" if matched else _AGAIN
+        applied.findings.append(Finding(STALE, message, entry.at("places" if expected else "where"), help))
 
 
 def _is_broken(value: object, broken: Set[int]) -> bool:
@@ -131,9 +123,9 @@ def _targets(tree: Map, where: Map, named: _ByName) -> Iterator[Map]:
             if "member" not in where:
                 yield enum
             else:
-                yield from (m for m in _maps(enum.get("members")) if m.get("value") == where["member"])
+                yield from (m for m in mappings(enum.get("members")) if m.get("value") == where["member"])
     elif "loggable" in where:
-        yield from (row for row in _maps(tree.get("loggable")) if row.get("bit") == where["loggable"])
+        yield from (row for row in mappings(tree.get("loggable")) if row.get("bit") == where["loggable"])
     elif "message" in where or "struct" in where:
         names = where.get("fields") or ([where["field"]] if "field" in where else None)
         what = "message" if "message" in where else "struct"
@@ -150,13 +142,14 @@ class _ByName:
     def __init__(self) -> None:
         self._rows: dict[tuple[int, str], dict[str, list[Map]]] = {}
 
-    def of(self, owner: Map, key: str, name: object) -> Iterable[Map]:
-        if not isinstance(name, str) or name == "*":
-            return _named(owner, key, name)
+    def of(self, owner: Map, key: str, name: str) -> Iterable[Map]:
+        """What a key lists under the name; all of it under ``*``."""
+        if name == "*":
+            return mappings(owner.get(key))
         rows = self._rows.get((id(owner), key))
         if rows is None:
             rows = self._rows[id(owner), key] = {}
-            for item in _maps(owner.get(key)):
+            for item in mappings(owner.get(key)):
                 if isinstance(item.get("name"), str):
                     rows.setdefault(item["name"], []).append(item)
         return rows.get(name, ())
@@ -164,12 +157,6 @@ class _ByName:
     def forget(self) -> None:
         """A name was changed, or a list."""
         self._rows.clear()
-
-
-def _named(owner: Map, key: str, name: object) -> Iterator[Map]:
-    for item in _maps(owner.get(key)):
-        if name == "*" or item.get("name") == name:
-            yield item
 
 
 def section(tree: Map, path: str) -> Iterator[Map]:
@@ -206,35 +193,29 @@ def _change(target: Map, held: Map, entry: Map) -> None:
 
 
 def _stale(entry: Map, target: Map, printed: Map) -> Finding:
-    for key, value in printed.items():
-        if not _same(target.get(key), value):
-            now = target.get(key)
-            place = target.at(key)
-            message = (
-                f"stale {_erratum(entry).label.lower()} {entry['id']}: it was written for `{key}: {_show(value)}`, "
-                f"the ICD now has `{key}: {_show(now)}` ({place})"
-            )
-            return Finding(STALE, message, printed.at(key), _AGAIN)
-    raise AssertionError("the target matches")
+    key, value = next((key, value) for key, value in printed.items() if not _same(target.get(key), value))
+    stale = f"stale {_erratum(entry).label.lower()} {entry['id']}: it was written for `{key}: {_show(value)}`"
+    now = f"the ICD now has `{key}: {_show(target.get(key))}` ({target.at(key)})"
+    return Finding(STALE, f"{stale}, {now}", printed.at(key), _AGAIN)
 
 
-def _nowhere(tree: Map, where: Map) -> Finding:
+def _nowhere(tree: Map, where: Map, named: _ByName) -> Finding:
     wanted, known = "", []
     if "section" in where:
         wanted = f"section `{where['section']}`"
     elif "enum" in where:
         wanted = f"enumeration `{where['enum']}`" + (f" with value {where['member']}" if "member" in where else "")
-        known = [e.get("name") for e in _maps(tree.get("enums"))]
+        known = [e.get("name") for e in mappings(tree.get("enums"))]
     elif "loggable" in where:
         wanted = f"loggable bit {where['loggable']}"
     elif "message" in where or "struct" in where:
         what = "message" if "message" in where else "struct"
         wanted = f"{what} `{where[what]}`"
-        known = [m.get("name") for m in _maps(tree.get(f"{what}s"))]
-        messages = list(_named(tree, f"{what}s", where[what]))
+        known = [m.get("name") for m in mappings(tree.get(f"{what}s"))]
+        messages = list(named.of(tree, f"{what}s", where[what]))
         if messages:
             wanted = f"field `{where.get('field') or where.get('fields')}` in {wanted}"
-            known = [f.get("name") for m in messages for f in _maps(m.get("fields"))]
+            known = [f.get("name") for m in messages for f in mappings(m.get("fields"))]
     target = str(where.get("field") or where.get("message") or where.get("struct") or where.get("enum") or "")
     close = close_to(target, (k for k in known if isinstance(k, str)))
     help = f"did you mean `{close}`?" if close else "names are the manual's, to the letter"

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
+from icdgen.icd.trees import mappings
 from icdgen.suggest import close_to
 
 REST = "rest"
@@ -68,11 +69,9 @@ def counter_of(message: Map, item: Map) -> Map | None:
 
 def _fields(message: Map, wanted: Callable[[Map], bool] | None = None) -> list[Map]:
     """Those, or the wanted ones, whose place can be read: what is wrong with the others is the schema's business."""
-    items = message.get("fields")
-    found = filter(wanted, (item for item in items if isinstance(item, Map))) if isinstance(items, list) else ()
     return [
         item
-        for item in found
+        for item in filter(wanted, mappings(message.get("fields")))
         if isinstance(item.get("name"), str)
         and all(type(item.get(key)) is int for key in ("at", "bits")[: 1 if _is_sized(item) else 2])
         and (_is_sized(item) or item["bits"] > 0)

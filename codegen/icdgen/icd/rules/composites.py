@@ -8,9 +8,10 @@ from icdgen.diagnostics import Place
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 from icdgen.icd.model import Field, Message, Node, Part
-from icdgen.icd.rules.context import Context, mappings
+from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import VERBATIM, line_of, listing, quote, suggestion
+from icdgen.icd.trees import mappings
 from icdgen.icd.wire_ids import number
 
 _KEYS = ("bits", "type", "enum", "unit", "formula", "points", "outside")

@@ -7,9 +7,10 @@ from collections.abc import Iterator
 from icdgen.icd import conditions, tails
 from icdgen.icd.fault import Fault
 from icdgen.icd.model import Struct
-from icdgen.icd.rules.context import Context, mappings
+from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import quote
+from icdgen.icd.trees import mappings
 
 _NEVER = (("count", "an array"), ("size", "open"), ("bitfields", "divided"), ("view", "a view"))
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, TypeVar
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any
 
 from icdgen.icd.errata import Applied
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 from icdgen.icd.model import Enum, Field, Icd, Message, Node, Struct
+from icdgen.icd.trees import at_path, mappings
 
 if TYPE_CHECKING:
     from icdgen.icd.identifiers import Language
@@ -18,7 +19,6 @@ RARE = ("enum", "unit", "formula", "formula_for", "points", "outside", "const", 
     "bit_order", "view", "when",
 )  # fmt: skip
 
-T = TypeVar("T")
 Owner = Message | Struct
 Row = tuple[Field, Owner, Node]
 
@@ -32,23 +32,6 @@ def section_of(node: Node, *path: str) -> Map | None:
     """A section of the node's own protocol."""
     found = said(node, *path)
     return found if isinstance(found, Map) else None
-
-
-def at_path(tree: Any, path: Iterable[str]) -> Any:
-    """What stands at a path of keys; None if nothing, or if there are no mappings on the way."""
-    for key in path:
-        tree = tree.get(key) if isinstance(tree, dict) else None
-    return tree
-
-
-def mappings(items: object) -> Iterator[Map]:
-    """The mappings of a list as it was read: nothing where it is no list."""
-    return (item for item in items if isinstance(item, Map)) if isinstance(items, list) else iter(())
-
-
-def named(known: Mapping[str, T], name: object) -> T | None:
-    """What is known by a name; None if it is no name, for anything may stand in a tree where one should."""
-    return known.get(name) if isinstance(name, str) else None
 
 
 class Context:

@@ -9,10 +9,11 @@ from icdgen.icd.fault import Fault
 from icdgen.icd.formula import FormulaError
 from icdgen.icd.located import Map
 from icdgen.icd.model import Message
-from icdgen.icd.rules.context import Context, mappings
+from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.layout import is_read
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import quote
+from icdgen.icd.trees import mappings
 
 _HELP = "a formula is made of numbers, the names of fields, + - * / and powers: `Lon + Lon HP`, `Voltage*Current/1000`, `W*10^W_SF`"
 

@@ -8,9 +8,10 @@ from typing import TypeVar
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 from icdgen.icd.model import Enum, Member, Message, Node, Struct
-from icdgen.icd.rules.context import Context, mappings
+from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, quote
+from icdgen.icd.trees import mappings
 from icdgen.icd.units import STANDARD
 
 T = TypeVar("T")

@@ -8,9 +8,10 @@ from typing import Any, NamedTuple
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq, unread
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node
-from icdgen.icd.rules.context import Context, at_path, mappings, section_of
+from icdgen.icd.rules.context import Context, section_of
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, listing, quote, suggestion
+from icdgen.icd.trees import at_path, mappings
 
 DIRECTIONS = (TELECOMMAND, TELEMETRY)
 PARTS = ("header", "trailer")

@@ -9,10 +9,11 @@ from icdgen.icd import variants, wire_ids
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Message, Node
-from icdgen.icd.rules.context import Context, mappings
+from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.duplicates import is_news, together
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, line_of, listing, quote
+from icdgen.icd.trees import mappings
 
 # kind -> the keys of its ids and the direction each belongs to
 KEYS = {

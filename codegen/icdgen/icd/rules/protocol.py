@@ -8,9 +8,10 @@ from typing import TypeGuard
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Node
-from icdgen.icd.rules.context import Context, mappings
+from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, quote
+from icdgen.icd.trees import mappings
 
 CHECKED = b"123456789"  # what the check value of a CRC is computed over, by convention
 MAX_WIDTH = 64
@@ -116,8 +117,9 @@ def rows_apart(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         for section in sections(node):
             for key, rows in section.items():
-                for at, size in (("byte", "bytes"), ("at", "bits")):
-                    yield from _rows(section, key, rows, at, size)
+                if isinstance(rows, Seq):
+                    yield from _rows(section, key, rows, "byte", "bytes")
+                    yield from _rows(section, key, rows, "at", "bits")
 
 
 def _called(row: Map, otherwise: str) -> str:
@@ -126,7 +128,7 @@ def _called(row: Map, otherwise: str) -> str:
     return quote(known) if isinstance(known, str) else otherwise
 
 
-def _rows(section: Map, key: str, rows: object, at: str, size: str) -> Iterator[Fault]:
+def _rows(section: Map, key: str, rows: Seq, at: str, size: str) -> Iterator[Fault]:
     named = f"{key}_{size}" if f"{key}_{size}" in section else size
     room = section.get(named)
     placed = [r for r in mappings(rows) if isinstance(r.get(at), int) and isinstance(r.get(size), int)]

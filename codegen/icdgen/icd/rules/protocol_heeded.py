@@ -8,13 +8,14 @@ from itertools import product
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq, unread
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Field, Message, Node
-from icdgen.icd.rules.context import Context, at_path, mappings, named, section_of
+from icdgen.icd.rules.context import Context, section_of
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.protocol_limits import roles_stand_once
 from icdgen.icd.rules.protocol_names import FIELDS
 from icdgen.icd.rules.protocol_sizes import numbers
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, quote
+from icdgen.icd.trees import at_path, mappings, named
 
 BUSES = ("uart", "i2c", "can")
 LEAST_BITS = {"id": 8, "parameter": 2, "type": 2, "counter": 8, "offset": 16, "length": 8, "size": 16, "number": 8,

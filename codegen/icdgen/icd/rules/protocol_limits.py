@@ -8,11 +8,12 @@ from math import ceil
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, Message, Node
-from icdgen.icd.rules.context import Context, at_path, mappings, said, section_of
+from icdgen.icd.rules.context import Context, said, section_of
 from icdgen.icd.rules.ids import KEYS
 from icdgen.icd.rules.protocol_sizes import numbers, of_one_number
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, listing, quote
+from icdgen.icd.trees import at_path, mappings
 
 BYTE = 255
 TIME_PARTS = ("year", "month", "day", "hour", "minute", "second")

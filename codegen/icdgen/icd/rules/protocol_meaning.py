@@ -7,13 +7,14 @@ from collections.abc import Iterator
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 from icdgen.icd.model import CAN_DATA_BYTES, TELECOMMAND, TELEMETRY
-from icdgen.icd.rules.context import Context, at_path, mappings, said, section_of
+from icdgen.icd.rules.context import Context, said, section_of
 from icdgen.icd.rules.ids import KEYS
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.protocol_limits import in_force, roles_stand_once
 from icdgen.icd.rules.protocol_sizes import numbers
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, line_of, quote
+from icdgen.icd.trees import at_path, mappings
 
 ACKNOWLEDGE_ROLES = ("id", "error")
 # what is sent in each direction with data -> the keys of its message types, and those of messages of several packets

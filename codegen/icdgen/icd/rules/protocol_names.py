@@ -11,10 +11,11 @@ from icdgen.diagnostics import Place
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Message, Node
-from icdgen.icd.rules.context import Context, at_path, mappings, named
+from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import VERBATIM, quote, suggestion
+from icdgen.icd.trees import at_path, mappings, named
 
 T = TypeVar("T")
 

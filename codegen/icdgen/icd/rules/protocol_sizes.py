@@ -7,10 +7,11 @@ from collections.abc import Iterator
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Node
-from icdgen.icd.rules.context import Context, mappings, said
+from icdgen.icd.rules.context import Context, said
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count as counted
+from icdgen.icd.trees import mappings
 
 CAN_IDENTIFIER_BITS = 29  # of an extended CAN frame
 

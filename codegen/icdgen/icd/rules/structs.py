@@ -8,11 +8,12 @@ from icdgen.icd import division, tails
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 from icdgen.icd.model import Node
-from icdgen.icd.rules.context import Context, mappings
+from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.duplicates import names_twice
 from icdgen.icd.rules.references import undeclared
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, quote
+from icdgen.icd.trees import mappings
 from icdgen.suggest import close_to
 
 _OF_MEMBERS = frozenset({"at", "name", "identifier", "struct", "count", "after", "up_to", "summary"})

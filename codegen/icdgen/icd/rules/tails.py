@@ -7,9 +7,10 @@ from collections.abc import Iterator
 from icdgen.icd import tails
 from icdgen.icd.fault import Fault
 from icdgen.icd.model import Message, Node
-from icdgen.icd.rules.context import Context, mappings, named
+from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, quote
+from icdgen.icd.trees import mappings, named
 
 
 @rule("ICD120")

@@ -8,9 +8,10 @@ from icdgen.icd import floats
 from icdgen.icd.build import float_bits
 from icdgen.icd.fault import Fault
 from icdgen.icd.model import Field, Member
-from icdgen.icd.rules.context import Context, mappings
+from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, quote
+from icdgen.icd.trees import mappings
 
 NUMBERS = ("uint", "int", "enum")
 
