@@ -46,21 +46,31 @@ def _schema() -> dict[str, Any]:
     return schema
 
 
+def definition(name: str) -> dict[str, Any]:
+    """A form that is defined under a name."""
+    found: dict[str, Any] = _schema()["$defs"][name]
+    return found
+
+
+def referred(form: dict[str, Any]) -> str:
+    """The name of the definition that a form refers to."""
+    return str(form["$ref"]).rpartition("/")[2]
+
+
 def protocol() -> dict[str, Any]:
     """The form of the protocol section."""
-    found: dict[str, Any] = _schema()["$defs"]["protocol"]
-    return found
+    return definition("protocol")
 
 
 def inside(form: dict[str, Any], key: str) -> dict[str, Any]:
     """The form of a key of a mapping; empty if any name may stand there, or nothing."""
-    found: dict[str, Any] = (_follow(form) if "$ref" in form else form).get("properties", {}).get(key, {})
+    found: dict[str, Any] = _follow(form).get("properties", {}).get(key, {})
     return found
 
 
 def meaning(form: dict[str, Any]) -> str:
     """What a key means, in the words of the format."""
-    return str(form.get("description", "") or ("$ref" in form and _follow(form).get("description", "")) or "")
+    return str(form.get("description") or _follow(form).get("description", ""))
 
 
 @cache
@@ -95,7 +105,7 @@ def _explain(error: Any, tree: Map, path: list[Any], owner: Map, place: Place) -
     help = f"{what} is {about}" if about and what != "this" else about
     if name == "required":
         missing = kind.property
-        hint = _about(rule, missing)
+        hint = meaning(inside(rule, missing))
         message = f"`{missing}` is missing" + (f" from {what}" if path else "")
         return [Finding(CODE, message, place, f"add `{missing}:`" + (f", {hint}" if hint else ""))]
     if name == "additionalProperties":
@@ -154,24 +164,15 @@ def _rule_at(path: list[Any]) -> dict[str, Any]:
     """The sub-schema that failed: the path without its last keyword, references followed."""
     node: Any = _schema()
     for step in path[:-1]:
-        if isinstance(node, dict) and step not in node and "$ref" in node:
+        if step == "$ref" or (isinstance(node, dict) and step not in node):
             node = _follow(node)
-        if step == "$ref":
-            node = _follow(node)
-        elif (isinstance(node, dict) and step in node) or isinstance(node, list):
+        if step != "$ref" and (isinstance(node, list) or step in node):
             node = node[step]
-    if isinstance(node, dict) and "$ref" in node:
-        node = _follow(node)
-    return node if isinstance(node, dict) else {}
+    return _follow(node) if isinstance(node, dict) else {}
 
 
-def _follow(node: dict[str, Any]) -> dict[str, Any]:
-    found: dict[str, Any] = _schema()["$defs"][node["$ref"].rsplit("/", 1)[1]]
-    return found
-
-
-def _about(rule: dict[str, Any], key: str) -> str:
-    return meaning(inside(rule, key))
+def _follow(form: dict[str, Any]) -> dict[str, Any]:
+    return definition(referred(form)) if "$ref" in form else form
 
 
 def _describe(value: object) -> str:

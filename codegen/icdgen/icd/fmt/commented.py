@@ -39,12 +39,7 @@ class Branch:
 
     def commented(self) -> bool:
         """Whether a comment stands anywhere inside."""
-        if self.tail:
-            return True
-        for child in self.children:
-            if child.before or child.trailing or (isinstance(child.value, Branch) and child.value.commented()):
-                return True
-        return False
+        return bool(self.comments())
 
     def comments(self) -> list[str]:
         """All comments inside, in order."""

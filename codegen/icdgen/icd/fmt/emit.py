@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from icdgen.icd import source
 from icdgen.icd.fmt import format_text, kinds, write
 from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
 
@@ -22,18 +21,16 @@ class Spelled(int):
         return made
 
 
-def text(tree: dict[str, Any], header: list[str] | None = None) -> str:
+def text(tree: dict[str, Any]) -> str:
     """The canonical YAML of a tree."""
     root = branch(tree)
-    root.header = header if header is not None else [SCHEMA_LINE]
+    root.header = [SCHEMA_LINE]
     return of(root)
 
 
 def of(root: Branch) -> str:
-    """The text of a tree with comments; read back, so that nothing is written that does not load."""
-    made = write.write(root, kinds.root("icd"))
-    source.parse(made.encode("utf-8"), "the result")
-    return format_text(made, "the result")
+    """The text of a tree with comments; it is read back, so that nothing is written that does not load."""
+    return format_text(write.write(root, kinds.root("icd")), "the result")
 
 
 def branch(value: dict[str, Any] | list[Any]) -> Branch:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from functools import cache
 from typing import Any
 
@@ -44,17 +43,11 @@ class Kind:
 @cache
 def root(document: str) -> Kind:
     """The kind of a whole file: "icd" or "errata"."""
-    return Kind(document, _definitions()[document])
-
-
-@cache
-def _definitions() -> dict[str, Any]:
-    definitions: dict[str, Any] = json.loads(schema.PATH.read_text(encoding="utf-8"))["$defs"]
-    return definitions
+    return Kind(document, schema.definition(document))
 
 
 def _follow(name: str, rule: dict[str, Any]) -> tuple[str, dict[str, Any]]:
     while "$ref" in rule:
-        name = rule["$ref"].rsplit("/", 1)[1]
-        rule = _definitions()[name]
+        name = schema.referred(rule)
+        rule = schema.definition(name)
     return name, rule

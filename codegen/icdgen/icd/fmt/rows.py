@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import takewhile
+
 WIDEST = 40  # a wider cell takes no part in the alignment of its column
 
 
@@ -26,11 +28,5 @@ def _width(rows: list[dict[str, str]], key: str, position: int) -> int:
 
 
 def _common_keys(rows: list[dict[str, str]]) -> list[str]:
-    common = list(rows[0])
-    for row in rows:
-        keys = list(row)
-        matching = 0
-        while matching < min(len(common), len(keys)) and common[matching] == keys[matching]:
-            matching += 1
-        del common[matching:]
-    return common
+    columns = zip(*rows, strict=False)  # as far as the shortest row goes
+    return [keys[0] for keys in takewhile(lambda keys: len(set(keys)) == 1, columns)]

@@ -127,7 +127,7 @@ def _items(lines: list[str], branch: Branch, kind: Kind, indent: int) -> None:
 
 def _rows(branch: Branch, kind: Kind, indent: int) -> list[str] | None:
     """The aligned rows of a table; None if the sequence is none or its rows are better read in block style."""
-    items = [c.value for c in branch.children if isinstance(c.value, Branch) and c.value.mapping and c.value.children]
+    items = [one for one in _branches(branch) if one.mapping and one.children]
     if len(items) < len(branch.children):
         return None
     inner = kind.child(None, True)
@@ -143,11 +143,12 @@ def _rows(branch: Branch, kind: Kind, indent: int) -> list[str] | None:
 
 def _simple(branch: Branch) -> bool:
     """Whether its values are scalars or lists of scalars."""
-    for child in branch.children:
-        value = child.value
-        if isinstance(value, Branch) and (value.mapping or any(isinstance(c.value, Branch) for c in value.children)):
-            return False
-    return True
+    return not any(one.mapping or _branches(one) for one in _branches(branch))
+
+
+def _branches(branch: Branch) -> list[Branch]:
+    """The mappings and sequences directly in it."""
+    return [child.value for child in branch.children if isinstance(child.value, Branch)]
 
 
 def _one_line(branch: Branch, kind: Kind, column: int) -> str | None:
@@ -172,22 +173,15 @@ def _small(branch: Branch, kind: Kind) -> bool:
 
 def _inline(branch: Branch, kind: Kind) -> bool:
     """Whether a sequence may stand on one line: scalars, lists of scalars, or small mappings of the right kind."""
-    for child in branch.children:
-        value = child.value
-        if isinstance(value, Branch):
-            if value.mapping and kind.child(None, True).name not in INLINE:
-                return False
-            if not _simple(value):
-                return False
-    return True
+    can_be_mappings = kind.child(None, True).name in INLINE
+    return all(_simple(one) and (can_be_mappings or not one.mapping) for one in _branches(branch))
 
 
 def _wrapped(branch: Branch, column: int) -> list[str] | None:
     """A list of short scalars over several lines, hanging from its bracket."""
-    texts = [child.value for child in branch.children if isinstance(child.value, Text)]
-    if branch.mapping or branch.commented() or len(texts) < len(branch.children):
+    if branch.mapping or branch.commented() or _branches(branch):
         return None
-    items = [scalars.flow(text) for text in texts]
+    items = [scalars.flow(child.value) for child in branch.children if isinstance(child.value, Text)]
     if any(len(item) > SHORT_ITEM for item in items):
         return None
     lines = ["["]
