@@ -23,9 +23,8 @@ _WHAT = {
 def readings(speakers: Sequence[Speaker], packets: Sequence[Printed], asked: Asked) -> list[Reading]:
     """The messages that the packets make, in their order. Raises `NotFound`, `BadLength` or `Ambiguous`."""
     if not all(packet.extended for packet in packets):
-        raise NotFound(
-            "a packet has an 11-bit identifier, those of the ICD have 29 bits", "candump prints them with 8 digits"
-        )
+        text = "a packet has an 11-bit identifier, those of the ICD have 29 bits"
+        raise NotFound(text, "candump prints them with 8 digits")
     sent = [CanPacket(packet.id, packet.data) for packet in packets]
     able = [speaker for speaker in speakers if speaker.facts.can]
     found = [_of_speaker(speaker, sent) for speaker in able]
@@ -35,11 +34,8 @@ def readings(speakers: Sequence[Speaker], packets: Sequence[Printed], asked: Ask
     complete = [one for one in found if len(one) == most]
     chosen = [_chosen([one[number] for one in complete], asked) for number in range(most)]
     left = _left_out(complete[0][0].speaker, sent) - most
-    return (
-        [chosen[0].noted(f"{left} of the CAN messages are left out: no message, or not complete"), *chosen[1:]]
-        if left
-        else chosen
-    )
+    note = [f"{left} of the CAN messages are left out: no message, or not complete"] if left else []
+    return [chosen[0].noted(*note), *chosen[1:]]
 
 
 def by_identifier(speakers: Sequence[Speaker], packets: Sequence[Printed], asked: Asked) -> list[Reading]:
@@ -60,13 +56,9 @@ def _by_identifier(speakers: Sequence[Speaker], packet: Printed, asked: Asked) -
 
 
 def _of_speaker(speaker: Speaker, packets: list[CanPacket]) -> list[Reading]:
-    joiner, found = CanJoiner(speaker.link, senders=len(packets)), []
-    for packet in packets:
-        for event in joiner.feed(0, packet):
-            read = _reading(speaker, event.message) if event.message else None
-            if read:
-                found.append(read)
-    return found
+    told, _ = _told(speaker, packets)
+    read = (_reading(speaker, event.message) for event in told if event.message)
+    return [one for one in read if one is not None]
 
 
 def _reading(speaker: Speaker, told: CanMessage) -> Reading | None:
@@ -100,8 +92,7 @@ def _came(speaker: Speaker, packets: list[CanPacket]) -> int:
 
 
 def _chosen(found: list[Reading], asked: Asked) -> Reading:
-    own = [one for one in found if one.speaker.node.name == one.message.node]
-    different = {one.key: one for one in [*found, *own]}
+    different = {one.key: one for one in (*found, *(one for one in found if one.is_own))}
     return match.decided(list(different.values()), f"a CAN message with id {found[0].id}", asked)
 
 
@@ -115,8 +106,5 @@ def _why_none(speaker: Speaker, packets: list[CanPacket]) -> BadLength | NotFoun
     if event and event.message:
         return match.why_none([speaker], bytes([event.message.id]) + event.message.data)
     text = event.event.replace("_", " ") if event else "no message"
-    id = packets[0].id
-    return NotFound(
-        f"the packet with identifier 0x{id:08X} is none of {speaker.node.name}: {text}",
-        "see the `can` section of its ICD",
-    )
+    what = f"the packet with identifier 0x{packets[0].id:08X} is none of {speaker.node.name}"
+    return NotFound(f"{what}: {text}", "see the `can` section of its ICD")

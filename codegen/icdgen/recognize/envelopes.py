@@ -40,15 +40,12 @@ def readings(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> list[Rea
                 raise BadLength(_wrong(one), 0, len(data), "a byte of it is damaged, or the frame is of another node")
         return []
     found = [one for one in found if any(map(asked.fits, one.readings))] or found
-    least = min(one.lost for one in found)
-    best = [one for one in found if one.lost == least]
-    most = max(len(one.readings) for one in best)
-    best = [one for one in best if len(one.readings) == most]
+    least, fewer = min((one.lost, -len(one.readings)) for one in found)
+    most = -fewer
+    best = [one for one in found if (one.lost, len(one.readings)) == (least, most)]
     chosen = [match.decided([one.readings[at] for one in best], "a frame in an envelope", asked) for at in range(most)]
-    around = [f"{least} byte{'' if least == 1 else 's'} around the frame belong to none"] if least else []
     wrong = dict.fromkeys(event.event for event in best[0].events if event.event not in ("message", "gap"))
-    around += [f"the stream has an error: {event.replace('_', ' ')}" for event in wrong]
-    return [chosen[0].noted(*around), *chosen[1:]]
+    return [chosen[0].noted(*match.around(least, wrong)), *chosen[1:]]
 
 
 def _is_marked(speaker: Speaker) -> bool:

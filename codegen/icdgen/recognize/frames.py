@@ -9,6 +9,7 @@ from functools import partial
 
 from icdgen_runtime.wire.uart import UartDecoder, UartEvent
 
+from icdgen.describe.numbers import byte_count
 from icdgen.icd.model import Icd
 from icdgen.recognize import bus, envelopes, match
 from icdgen.recognize.asked import Asked, asked_for
@@ -63,9 +64,8 @@ def _readings(icd: Icd, speakers: Sequence[Speaker], pasted: Pasted, asked: Aske
         found = _framed(speakers, pasted.whole, asked) or _unframed(icd, speakers, pasted, asked)
     found = asked.of(found)
     if asked.messages and not any(map(asked.is_of, found)):
-        raise NotFound(
-            f"the frame is not {asked.names} but {found[0].title}", "leave the message out, or name that one"
-        )
+        text = f"the frame is not {asked.names} but {found[0].title}"
+        raise NotFound(text, "leave the message out, or name that one")
     if asked.messages:
         found = [one for one in found if asked.is_of(one)]
     note = (f"read as {pasted.form}",) if pasted.form else ()
@@ -90,11 +90,9 @@ def _framed(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> list[Read
                 raise BadLength(_broken(events), 0, len(data), "the frame is cut off, or a byte of it is damaged")
             continue
         found, wrong = match.each(bodies, partial(_of_body, talking, asked=asked))
-        lost = decoder.discarded + decoder.pending
-        around = [f"{lost} byte{'' if lost == 1 else 's'} around the frame belong to none"] if lost else []
-        around += [f"the stream has an error: {e.event.replace('_', ' ')}" for e in events if e.event != "message"]
+        errors = [event.event for event in events if event.event != "message"]
         unknown = [f"another frame of the stream is left out: {error}" for error in wrong]
-        return [found[0].noted(*unknown, *around), *found[1:]]
+        return [found[0].noted(*unknown, *match.around(decoder.discarded + decoder.pending, errors)), *found[1:]]
     return []
 
 
@@ -136,7 +134,7 @@ def _bare(icd: Icd, speakers: Sequence[Speaker], data: bytes, asked: Asked) -> R
         return of_asked(icd, speakers[0], asked.messages, data)
     if not data:
         raise BadLength("there are no bytes", 1, 0, "give a frame")
-    given = f"{len(data)} byte{'' if len(data) == 1 else 's'}"
+    given = byte_count(len(data))
     with_id, plain = match.by_id(speakers, data), match.by_length(speakers, data)
     if any(map(asked.fits, plain)) and not any(map(asked.fits, with_id)):
         with_id = []

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shlex
 from collections.abc import Sequence
 
-from icdgen.describe.numbers import length_text
+from icdgen.describe.numbers import byte_count, length_text
 from icdgen.icd.model import Icd, Message
 from icdgen.recognize import match
 from icdgen.recognize.reading import TELECOMMAND, TELEMETRY, Reading, Speaker, all_speakers
@@ -24,7 +24,7 @@ def of_asked(icd: Icd, speaker: Speaker, messages: Sequence[Message], data: byte
     if found is None and apart is not None and apart[0] in messages[0].ids:
         found = match.message_of(icd, messages, apart[1])
     if found is None:
-        raise match.none_of(messages, f"{len(data)} byte{'' if len(data) == 1 else 's'}")
+        raise match.none_of(messages, byte_count(len(data)))
     return of_message(icd, speaker, found, data)
 
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TypeVar
 
 from icdgen_runtime.wire.i2c import i2c_write
 
 from icdgen import codec
-from icdgen.describe.numbers import length_text
+from icdgen.describe.numbers import byte_count, length_text
 from icdgen.errors import UserError
 from icdgen.icd import wire_ids
 from icdgen.icd.model import Icd, Message
@@ -39,6 +39,12 @@ def each(items: Iterable[T], read: Callable[[T], Reading]) -> tuple[list[Reading
     return found, wrong
 
 
+def around(lost: int, errors: Iterable[str]) -> list[str]:
+    """Remarks about what else is in a stream: bytes that are lost, and errors of its decoder."""
+    remarks = [f"{byte_count(lost)} around the frame belong to none"] if lost else []
+    return remarks + [f"the stream has an error: {error.replace('_', ' ')}" for error in errors]
+
+
 def by_id(speakers: Sequence[Speaker], body: bytes) -> list[Reading]:
     """What an id and the bytes after it can be, each but once."""
     return _each_once(found for speaker in speakers for found in _of_speaker(speaker, body))
@@ -51,15 +57,13 @@ def of_id(speakers: Sequence[Speaker], id: int, data: bytes) -> list[Reading]:
 
 def by_length(speakers: Sequence[Speaker], data: bytes) -> list[Reading]:
     """What bytes without an id can be, by their number alone, and with a checksum if one is right."""
-    found = []
-    for speaker in speakers:
-        for what, known in _directions(speaker):
-            for id, those in known.items():
-                message = message_of(speaker.icd, [one.message for one in those], data)
-                read = _with_checksum(speaker, what, id, message, data) if message else None
-                if read:
-                    found.append(read)
-    return _each_once(found)
+    return _each_once(
+        found
+        for speaker in speakers
+        for what, known in _directions(speaker)
+        for id in known
+        for found in _with_checksum(speaker, what, id, _message(speaker, known, id, data), data)
+    )
 
 
 def _of_speaker(speaker: Speaker, body: bytes) -> Iterator[Reading]:
@@ -76,10 +80,8 @@ def _of_speaker(speaker: Speaker, body: bytes) -> Iterator[Reading]:
 
 def _with_id(speaker: Speaker, id: int, data: bytes) -> Iterator[Reading]:
     for what, known in _directions(speaker):
-        message = message_of(speaker.icd, [one.message for one in known.get(id, ())], data)
-        read = _with_checksum(speaker, what, id, message, data) if message else None
-        if read:
-            yield read
+        message = _message(speaker, known, id, data)
+        yield from _with_checksum(speaker, what, id, message, data)
         if message and what == TELEMETRY and not data and message.least:
             yield Reading(speaker, REQUEST, message, id)
 
@@ -98,14 +100,20 @@ def _directions(speaker: Speaker) -> tuple[tuple[str, dict[int, tuple[Variant, .
     return (TELECOMMAND, speaker.ids.telecommand), (TELEMETRY, speaker.ids.telemetry)
 
 
-def _with_checksum(speaker: Speaker, what: str, id: int, message: Message, data: bytes) -> Reading | None:
+def _message(speaker: Speaker, known: Mapping[int, Sequence[Variant]], id: int, data: bytes) -> Message | None:
+    return message_of(speaker.icd, [one.message for one in known.get(id, ())], data)
+
+
+def _with_checksum(speaker: Speaker, what: str, id: int, message: Message | None, data: bytes) -> Iterator[Reading]:
     """The message, if the bytes are as many as it has, or the right checksum follows them."""
+    if message is None:
+        return
     if len(data) in message.lengths and miscounted(speaker, message, data) is None:
-        return Reading(speaker, what, message, id, data)
+        yield Reading(speaker, what, message, id, data)
+        return
     right = checksum(speaker, id, message, data)
     if right is not None and data[message.length :] == right:
-        return Reading(speaker, what, message, id, data[: message.length], checked=True, remarks=("CRC is right",))
-    return None
+        yield Reading(speaker, what, message, id, data[: message.length], checked=True, remarks=("CRC is right",))
 
 
 def checksum(speaker: Speaker, id: int, message: Message, data: bytes) -> bytes | None:
@@ -173,9 +181,8 @@ def why_not(apart: Sequence[Apart], unknown: NotFound) -> BadLength | NotFound:
     _, first, id, data = next(iter(known.values()))
     if len(known) > 1 and any(len(data) in message.lengths for _, message, _, data in known.values()):
         return none_of([message for _, message, _, _ in known.values()], f"the {len(data)} bytes after the id {id}")
-    return BadLength(
-        f"{told}, {len(data)} given after the id {id}", first.length, len(data), "bytes are missing, or too many"
-    )
+    text = f"{told}, {len(data)} given after the id {id}"
+    return BadLength(text, first.length, len(data), "bytes are missing, or too many")
 
 
 def none_of(messages: Sequence[Message], data: str) -> NotFound:
@@ -204,17 +211,12 @@ def wrong_checksum(message: Message, right: bytes, data: bytes) -> BadLength:
     return BadLength(f"{text}not {data[message.length :].hex().upper()}", message.length, len(data), help)
 
 
-def _each_once(found: Iterator[Reading] | list[Reading]) -> list[Reading]:
+def _each_once(found: Iterable[Reading]) -> list[Reading]:
     """Of the same reading by several nodes the one with a checksum, else that of the node that declares the message."""
-    best: dict[tuple[str, str, str], Reading] = {}
+    alike: dict[tuple[str, str, str], list[Reading]] = {}
     for one in found:
-        known = best.get(one.key)
-        if known is None or (one.checked, one.speaker.node.name == one.message.node) > (
-            known.checked,
-            known.speaker.node.name == known.message.node,
-        ):
-            best[one.key] = one
-    return list(best.values())
+        alike.setdefault(one.key, []).append(one)
+    return [max(those, key=lambda one: (one.checked, one.is_own)) for those in alike.values()]
 
 
 def named(found: Sequence[Reading]) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import binascii
 import re
+from contextlib import suppress
 from dataclasses import dataclass
 
 from icdgen.recognize.dumps import dump
@@ -54,10 +55,8 @@ def read(text: str) -> Pasted:
     if (data := dump(text)) is not None:
         return Pasted(data, form="a dump with addresses")
     literal = _LITERAL.fullmatch(text.strip())
-    if literal:
-        data = _unescaped(literal[2])
-        if data is not None:
-            return Pasted(data)
+    if literal and (data := _unescaped(literal[2])) is not None:
+        return Pasted(data)
     try:
         return Pasted(parse_hex(text))
     except BadHex:
@@ -87,7 +86,7 @@ def _of_code(text: str) -> Pasted | None:
     text = text.strip().rstrip(";").strip()
     strings = _STRING.findall(text)
     if len(strings) == 1:
-        return _hex(strings[0][1], "")
+        return _hex(strings[0][1])
     listed = _LIST.search(text)
     if not listed or not _NUMBERS.fullmatch(listed[1]):
         return None
@@ -99,13 +98,13 @@ def _of_code(text: str) -> Pasted | None:
 
 def _labelled(text: str) -> Pasted | None:
     bare = _LABEL.sub("", text)
-    return _hex(bare, "") if bare != text else None
+    return _hex(bare) if bare != text else None
 
 
 def _marked(text: str) -> Pasted | None:
     """Each byte in quotes or angles, or followed by ``h``."""
     bare = _MARKED.sub(lambda found: f" {found[2] or found[3] or found[4]} ", text)
-    return _hex(bare, "") if bare != text else None
+    return _hex(bare) if bare != text else None
 
 
 def _decimal(text: str) -> Pasted | None:
@@ -117,20 +116,16 @@ def _decimal(text: str) -> Pasted | None:
 
 def _base64(text: str) -> Pasted | None:
     joined = "".join(text.split())
-    is_word = len(joined) < 8 or joined in (
-        joined.lower(),
-        joined.upper(),
-    )  # as many a mistyped one would be base64, too
+    # As many a mistyped word would be base64, too.
+    is_word = len(joined) < 8 or joined in (joined.lower(), joined.upper())
     if not _BASE64.fullmatch(joined) or (is_word and not joined.endswith("=")):
         return None
-    try:
+    with suppress(binascii.Error):
         return Pasted(base64.b64decode(joined, altchars=b"-_" if set("-_") & set(joined) else b"+/"), form="base64")
-    except binascii.Error:
-        return None
+    return None
 
 
-def _hex(text: str, form: str) -> Pasted | None:
-    try:
-        return Pasted(parse_hex(text), form=form)
-    except BadHex:
-        return None
+def _hex(text: str) -> Pasted | None:
+    with suppress(BadHex):
+        return Pasted(parse_hex(text))
+    return None

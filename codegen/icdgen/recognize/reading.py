@@ -80,6 +80,11 @@ class Reading:
         return self.what, self.message.node, self.message.name
 
     @property
+    def is_own(self) -> bool:
+        """Whether it is of the node that declares the message."""
+        return self.speaker.node.name == self.message.node
+
+    @property
     def title(self) -> str:
         """``request for Attitude (telemetry 146)``, for people."""
         told = f"`{self.message.name}` ({describe(self.message)}) of {self.speaker.node.name}"

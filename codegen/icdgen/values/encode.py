@@ -19,6 +19,8 @@ from icdgen.values.errors import BadValue
 from icdgen.values.find import by_name, find_array, find_field, find_message, find_node, open_part
 from icdgen.values.frame import Frame, frame, violations
 
+_EACH = "give each field as name=value"
+
 
 def encode(
     icd: Icd, node_name: str, key: str, assignments: list[str], raw: bool = False, kind: str | None = None
@@ -43,22 +45,25 @@ def encode(
                 given[field.name] = text
     misnamed = bool(wrong.messages)
     values, notes = _values(message, given, raw, wrong)
-    missing = [
-        f.name for f in message.owners if f.name not in given and f.const is None and _is_needed(f, given, values)
-    ]
+    needed = (one for one in message.owners if one.const is None and _is_needed(one, given, values))
+    missing = [one.name for one in needed if one.name not in given]
     with wrong.collect():
         _are_there(message, given, values)
     for part in message.open_parts:
         missing = _without_open(message, part, missing, given, is_empty)
         with wrong.collect():
             _count(message, part, given, values)
-    if missing and not misnamed:
+    if not misnamed:
         with wrong.collect():
-            raise BadValue(
-                "no value for " + ", ".join(f"`{name}`" for name in missing), "give each field as name=value"
-            )
+            _require(missing)
     wrong.report(f"`icdgen show {node.name} {shlex.quote(message.name)}` says what each field takes")
     return frame(icd, node, message, codec.encode(icd.node(message.node), message, values), notes)
+
+
+def _require(names: list[str]) -> None:
+    """Raises `BadValue` for fields without a value, if there are any."""
+    if names:
+        raise BadValue("no value for " + ", ".join(f"`{name}`" for name in names), _EACH)
 
 
 def _is_needed(field: Field, given: dict[str, str], values: dict[str, int | bytes]) -> bool:
@@ -119,21 +124,15 @@ def _count(message: Message, tail: Tail, given: dict[str, str], values: dict[str
     if there and there[-1] != count - 1:
         raise BadValue(f"`{tail.name}[{there[-1]}]` is given, and not all elements before it")
     left = [one.name for index, one in zip(indexes, elements, strict=True) if index < count and one.const is None]
-    left = [f"`{name}`" for name in left if name not in given]
-    if left:
-        raise BadValue(f"no value for {', '.join(left)}", "give each field as name=value")
+    _require([name for name in left if name not in given])
     if count < tail.fewest:
         least = f"{tail.fewest} element{'s' * (tail.fewest != 1)}"
-        raise BadValue(f"`{tail.name}` has at least {least}, {count} given", "give each field as name=value")
+        raise BadValue(f"`{tail.name}` has at least {least}, {count} given", _EACH)
     if tail.counter not in given:
         values[tail.counter] = count - tail.plus
     elif values[tail.counter] != count - tail.plus:
         given_text = f"{count} element{'s' * (count != 1)} of `{tail.name}` {'are' if count != 1 else 'is'} given"
         raise BadValue(f"`{tail.counter}` is {given[tail.counter]}, and {given_text}", f"leave `{tail.counter}` out")
-
-
-def _is_open(message: Message, name: str) -> bool:
-    return open_part(message, name) is not None
 
 
 def split(message: Message, assignment: str, vocabulary: tuple[str, ...]) -> list[tuple[Field, str]]:
@@ -150,18 +149,17 @@ def split(message: Message, assignment: str, vocabulary: tuple[str, ...]) -> lis
         raise BadValue(f"`{assignment}` is not of the form name=value", "for instance `speed=100`")
     elements = find_array(message, name.strip(), vocabulary)
     if elements:
-        is_open = _is_open(message, elements[0].path[0].name)
+        is_open = open_part(message, elements[0].path[0].name) is not None
         texts = listed(name.strip(), text, len(elements), is_open)
         return list(zip(elements[: len(texts)], texts, strict=True))
     structs = by_name([one for one in message.members if one.struct is not None], name, vocabulary)
     if structs:
-        is_open = _is_open(message, structs[0].name)
+        is_open = open_part(message, structs[0].name) is not None
         if is_open and text.strip() == "[]":
             return []
-        first = f"for instance `{structs[0].elements[0].name}=1`" + (
-            f", or `{name.strip()}=[]` for none" if is_open else ""
-        )
-        raise BadValue(f"`{name.strip()}` is made of structs, whose fields are given one by one", first)
+        none = f", or `{name.strip()}=[]` for none" if is_open else ""
+        help = f"for instance `{structs[0].elements[0].name}=1`{none}"
+        raise BadValue(f"`{name.strip()}` is made of structs, whose fields are given one by one", help)
     return [(find_field(message, name.strip(), vocabulary), text.strip())]
 
 
@@ -192,7 +190,8 @@ def _values(
             continue
         text = given[field.name]
         with wrong.collect(f"{field.name}: "):
-            values[field.name] = value = typed(field, text, raw, _is_open(message, field.name))
+            is_open = open_part(message, field.name) is not None
+            values[field.name] = value = typed(field, text, raw, is_open)
             if isinstance(value, bytes):
                 continue
             _fits(field, value, text, raw)

@@ -46,7 +46,7 @@ def from_physical(field: Field, text: str) -> int | bytes:
 def typed(field: Field, text: str, raw: bool = False, is_open: bool = False) -> int | bytes:
     """The raw value of either; of open bytes and text as much as is given. Raises `BadValue`."""
     if is_open and (raw or field.type == "bytes"):
-        return open_bytes(field, text)
+        return _bytes(field, text, is_open)
     value = (raw_value if raw else from_physical)(field, text)
     return value[: len(text)] if is_open and isinstance(value, bytes) else value
 
@@ -65,24 +65,16 @@ def _bool(field: Field, text: str) -> int:
     return _TRUTH[text.lower()]
 
 
-def _bytes(field: Field, text: str) -> bytes:
+def _bytes(field: Field, text: str, is_open: bool = False) -> bytes:
+    """Bytes; of what is open there may be fewer than the field has room for."""
     try:
         value = parse_hex(text)
     except BadHex as error:
         raise BadValue(str(error)) from None
-    if len(value) != field.bits // 8:
-        raise BadValue(f"{field.bits // 8} bytes are needed, {len(value)} given")
-    return value
-
-
-def open_bytes(field: Field, text: str) -> bytes:
-    """Bytes of which there may be fewer than the field has room for. Raises `BadValue`."""
-    try:
-        value = parse_hex(text) if text.strip() else b""
-    except BadHex as error:
-        raise BadValue(str(error)) from None
-    if len(value) > field.bits // 8:
-        raise BadValue(f"up to {field.bits // 8} bytes are taken, {len(value)} given")
+    room = field.bits // 8
+    if len(value) > room or (len(value) < room and not is_open):
+        wanted = f"up to {room} bytes are taken" if is_open else f"{room} bytes are needed"
+        raise BadValue(f"{wanted}, {len(value)} given")
     return value
 
 
@@ -156,9 +148,7 @@ def without_unit(field: Field, text: str) -> str:
 
 
 def _enum(field: Field, text: str) -> int:
-    if field.enum is None:
-        return _integer(field, text)
-    return _member(field, field.enum, text)
+    return _integer(field, text) if field.enum is None else _member(field, field.enum, text)
 
 
 def _member(field: Field, enum: Enum, text: str) -> int:
