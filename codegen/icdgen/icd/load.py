@@ -59,14 +59,8 @@ class _Loader:
         self.inputs[path] = fingerprints.of_path(str(path))
         files = sorted(path.glob("*.yaml"))
         if not files:
-            self.findings.append(
-                Finding(
-                    "ICD001",
-                    "the folder has no ICD: no file *.yaml",
-                    Place(str(path)),
-                    "name another folder, or a file",
-                )
-            )
+            text = "the folder has no ICD: no file *.yaml"
+            self.findings.append(Finding("ICD001", text, Place(str(path)), "name another folder, or a file"))
             self.unreadable = True
         return files
 
@@ -114,10 +108,8 @@ class _Loader:
         self.trees.append(tree)
         self.findings += treacherous
         if document == "icd" and "errata" in tree and "icdgen" not in tree:
-            self.findings.append(
-                Finding("ICD010", "this is an errata overlay, not an ICD", tree.place,
-                        "name the ICD; its overlay is found beside it")
-            )  # fmt: skip
+            text = "this is an errata overlay, not an ICD"
+            self.findings.append(Finding("ICD010", text, tree.place, "name the ICD; its overlay is found beside it"))
             self.unreadable = True
             return None
         self.check_structure(tree, document, treacherous)
@@ -150,12 +142,9 @@ class _Loader:
     def include(self, tree: Map, path: Path, stack: tuple[Path, ...]) -> list[Node]:
         nodes: list[Node] = []
         items = tree.get("include")
-        if not isinstance(items, Seq):
-            return nodes
-        for index, item in enumerate(items):
+        for item, place in items.placed() if isinstance(items, Seq) else ():
             if not isinstance(item, str):
                 continue
-            place = items.item_at(index)
             problem = self.include_problem(item, path, stack)
             if problem:
                 self.findings.append(Finding(INCLUDE, problem[0], place, problem[1]))

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
-from typing import Protocol
+from collections.abc import Callable, Iterable, Mapping
 
 from icdgen.diagnostics import Finding
 from icdgen.reports.excerpt import Lines, excerpt, printable, shown
@@ -19,29 +18,21 @@ COLOURS = {
 RESET = "\x1b[0m"
 
 
-class Paint(Protocol):
-    """Puts a text in the colour of its role."""
-
-    def __call__(self, role: str, text: str, after_blanks: bool = False) -> str: ...
+Paint = Callable[[str, str], str]
+"""Puts a text in the colour of its role, which comes first."""
 
 
 def report(findings: Iterable[Finding], texts: Mapping[str, str], colour: bool = False) -> str:
     """The findings in the order given, and a line that counts them."""
     findings = list(findings)
     paint: Paint = _painted if colour else _plain
-    lines: dict[str, Lines | None] = {}
-    parts = []
-    for finding in findings:
-        file = finding.place.file
-        if file not in lines:
-            lines[file] = Lines(texts[file]) if file in texts else None  # which could not be read
-        parts.append(_one(finding, lines[file], paint))
-    return "".join(part + "\n" for part in parts) + summary(findings) + "\n"
+    lines = {file: Lines(text) for file, text in texts.items()}  # but for those that could not be read
+    parts = (_one(finding, lines.get(finding.place.file), paint) for finding in findings)
+    return "".join(part + "\n" for part in parts) + _summary(findings) + "\n"
 
 
-def summary(findings: Iterable[Finding]) -> str:
+def _summary(findings: list[Finding]) -> str:
     """``3 errors, 1 warning in 2 files``"""
-    findings = list(findings)
     counts = Counter(f.severity for f in findings)
     if not counts:
         return "no findings"
@@ -58,10 +49,8 @@ def _one(finding: Finding, lines: Lines | None, paint: Paint) -> str:
     if found is not None:
         line, caret = found
         number, bar = paint("gutter", str(finding.place.line)), paint("gutter", "|")
-        text += (
-            f"{indent} {bar}\n{number} {bar} {line}".rstrip()
-            + f"\n{indent} {bar} {paint(finding.severity, caret, True)}\n"
-        )
+        under = caret.replace(caret.strip(), paint(finding.severity, caret.strip()))
+        text += f"{indent} {bar}\n{number} {bar} {line}".rstrip() + f"\n{indent} {bar} {under}\n"
     if finding.help:
         text += f"{indent} {paint('gutter', '=')} {paint('place', 'help:')} {shown(finding.help)}\n"
     return text
@@ -71,10 +60,9 @@ def _count(number: int, noun: str) -> str:
     return f"{number:,} {noun}" + ("" if number == 1 else "s")
 
 
-def _plain(role: str, text: str, after_blanks: bool = False) -> str:
+def _plain(role: str, text: str) -> str:
     return text
 
 
-def _painted(role: str, text: str, after_blanks: bool = False) -> str:
-    blanks = len(text) - len(text.lstrip()) if after_blanks else 0
-    return f"{text[:blanks]}{COLOURS[role]}{text[blanks:]}{RESET}"
+def _painted(role: str, text: str) -> str:
+    return f"{COLOURS[role]}{text}{RESET}"
