@@ -13,9 +13,8 @@ from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import REGISTERED
 
-TWINS = frozenset(
-    {"ICD050", "ICD051", "ICD052", "ICD053", "ICD054", "ICD057", "ICD049"}
-)  # rules about names that are there twice
+# Rules about names that are there twice.
+TWINS = frozenset({"ICD050", "ICD051", "ICD052", "ICD053", "ICD054", "ICD057", "ICD049"})
 
 _TEXT = attrgetter("text")
 

@@ -122,8 +122,7 @@ def _telecommands_once(node: Node) -> Iterator[Fault]:
 @rule("ICD117", whole=True)
 def packets_have_their_message(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
-        files = section_of(node, "file_transfer")
-        sizes = numbers(files, "packet_bytes", "packet_counter_bytes") if files is not None else None
+        sizes = numbers(section_of(node, "file_transfer"), "packet_bytes", "packet_counter_bytes")
         if sizes is None:
             continue
         messages = {one.name: one for one in ctx.messages_of(node)}

@@ -24,25 +24,24 @@ CAN_TYPES = {TELECOMMAND: ("request", "extended_request"), TELEMETRY: ("response
 @rule("ICD103")
 def directions_differ(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
-        ids = section_of(node, "message_id")
         ranges = {}
         for direction in (TELECOMMAND, TELEMETRY):
             section = section_of(node, "message_id", direction)
-            found = numbers(section, "first", "last") if section is not None else None
-            if ids is None or section is None or found is None:
+            found = numbers(section, "first", "last")
+            if section is None or found is None:
                 continue
             ranges[direction] = section
             if found[0] > found[1]:
                 message = f"the last id, {found[1]}, comes before the first, {found[0]}"
                 yield Fault.at(section, "last", message, "correct `first` or `last`")
-            yield from _bit(ids, section, direction, *found)
+            yield from _bit(said(node, "message_id", "direction_bit"), section, direction, *found)
         if len(ranges) == 2:
             yield from _overlap(ranges[TELECOMMAND], ranges[TELEMETRY])
 
 
-def _bit(ids: Map, section: Map, direction: str, first: int, last: int) -> Iterator[Fault]:
+def _bit(bit: object, section: Map, direction: str, first: int, last: int) -> Iterator[Fault]:
     """An id of the range whose direction bit is that of the other direction."""
-    bit, wanted = ids.get("direction_bit"), section.get("direction")
+    wanted = section.get("direction")
     if not isinstance(bit, int) or bit < 0 or wanted not in (0, 1) or not 0 <= first <= last <= 255:
         return
     other = next((id for id in range(first, last + 1) if id >> bit & 1 != wanted), None)

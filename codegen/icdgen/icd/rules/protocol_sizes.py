@@ -11,15 +11,15 @@ from icdgen.icd.rules.context import Context, said
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count as counted
-from icdgen.icd.trees import mappings
+from icdgen.icd.trees import at_path, mappings
 
 CAN_IDENTIFIER_BITS = 29  # of an extended CAN frame
 
 
-def numbers(section: Map, *keys: str) -> tuple[int, ...] | None:
+def numbers(section: Map | None, *keys: str) -> tuple[int, ...] | None:
     """The numbers under the keys, if all of them are there."""
-    found = tuple(section.get(key) for key in keys)
-    return found if all(isinstance(value, int) for value in found) else None  # type: ignore[return-value]
+    found = tuple(at_path(section, [key]) for key in keys)
+    return found if all(isinstance(value, int) for value in found) else None
 
 
 def of_one_number(section: Map, *keys: str) -> Iterator[tuple[str, str, int]]:
