@@ -21,7 +21,7 @@ class Applied:
         self.entries: list[Erratum] = []
         self.notes: list[Erratum] = []
         self.of: dict[int, list[Erratum]] = {}  # id(mapping) -> entries that concern it
-        self.accepts: list[tuple[str, Place, Map, str, Place]] = []  # code, file's place, mapping, erratum id, place
+        self.accepts: list[tuple[str, Place, Map]] = []  # code, where it says so, and the mapping that it concerns
         self.findings: list[Finding] = []
 
     def about(self, item: object) -> tuple[Erratum, ...]:
@@ -76,7 +76,7 @@ def _apply_entry(tree: Map, entry: Map, applied: Applied, named: _ByName) -> Non
         if not targets and not wild:
             applied.findings.append(_nowhere(tree, one, named))
         for target in targets:
-            if not wild and not _matches(target, printed):
+            if not _matches(target, printed):
                 applied.findings.append(_stale(entry, target, printed))
                 continue
             matched += 1
@@ -85,7 +85,7 @@ def _apply_entry(tree: Map, entry: Map, applied: Applied, named: _ByName) -> Non
                 named.forget()
             applied.of.setdefault(id(target), []).append(erratum)
             for code, place in entry["accept"].placed() if "accept" in entry else ():
-                applied.accepts.append((code, place, target, erratum.id, target.place))
+                applied.accepts.append((code, place, target))
     expected = entry.get("places")
     if wildcard and matched != expected:
         message = f"`printed` matches {matched} places" + (f", not {expected}" if expected else "")

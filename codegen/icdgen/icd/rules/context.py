@@ -47,7 +47,7 @@ class Context:
         self.icd = icd
         self.languages = languages  # that names must do for
         self.applied = tuple(applied)
-        self._accepted = {(code, id(owner)) for one in self.applied for code, _, owner, _, _ in one.accepts}
+        self._accepted = {(code, id(owner)) for one in self.applied for code, _, owner in one.accepts}
         self.complete = complete
         self.raised: list[tuple[str, Fault]] = []  # code and fault, of the rules that ran already
         self.messages: list[tuple[Message, Node]] = [(m, n) for n in icd.nodes for m in n.messages]

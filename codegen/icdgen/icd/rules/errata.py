@@ -17,9 +17,9 @@ def accept_answers(ctx: Context) -> Iterator[Fault]:
     raised = {(code, id(fault.owner)) for code, fault in ctx.raised}
     idle: dict[tuple[str, Place], list[Place]] = {}
     for applied in ctx.applied:
-        for code, place, owner, _, there in applied.accepts:
+        for code, place, owner in applied.accepts:
             if code in REGISTERED and (code, id(owner)) not in raised:
-                idle.setdefault((code, place), []).append(there)
+                idle.setdefault((code, place), []).append(owner.place)
     for (code, place), targets in idle.items():
         more = f" and {count(len(targets) - 1, 'other place')}" if len(targets) > 1 else ""
         message = f"there is no finding {code} to accept in {line_of(targets[0], place)}{more}"
@@ -29,7 +29,7 @@ def accept_answers(ctx: Context) -> Iterator[Fault]:
 @rule("ICD085")
 def accept_known(ctx: Context) -> Iterator[Fault]:
     for applied in ctx.applied:
-        for code, place, _, _, _ in applied.accepts:
+        for code, place, _ in applied.accepts:
             if code not in REGISTERED:
                 close = close_to(code, REGISTERED)
                 help = f"did you mean {close}?" if close else "`icdgen rule` lists the rules"

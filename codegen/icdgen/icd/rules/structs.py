@@ -89,8 +89,7 @@ def struct_says(ctx: Context) -> Iterator[Fault]:
         for row in mappings(struct.source.get("fields")):
             if tails.is_open(row) and isinstance(row.get("name"), str):
                 message = f"{quote(row['name'])} has no fixed size, and a struct has no open end"
-                key = "size" if "size" in row else "count"
-                yield Fault.at(row, key, message, "only the last part of a message may be open")
+                yield Fault.at(row, tails.key_of(row), message, "only the last part of a message may be open")
         for field in struct.lines:
             if field.view:
                 message = f"{quote(field.name)} is a view, and a struct has none: there is no frame that it would read"
@@ -135,15 +134,12 @@ def struct_divided(ctx: Context) -> Iterator[Fault]:
         for whole in _divided(member.struct.source):
             if "byte_order" not in whole or "bit_order" not in whole:
                 there = line_of(whole.at("bitfields"), member.source.place)
-                message = (
-                    f"{quote(member.name)} has other orders than `{own.name}`, so the bits of {quote(whole['name'])} "
-                    f"({there}), which is divided, would lie elsewhere"
-                )
+                bits = f"the bits of {quote(whole['name'])} ({there}), which is divided, would lie elsewhere"
+                message = f"{quote(member.name)} has other orders than `{own.name}`, so {bits}"
                 help = f"give {quote(whole['name'])} a `byte_order` and a `bit_order`, or make its parts fields"
                 yield Fault.at(member.source, "struct", message, help)
 
 
 def _divided(struct: Map) -> Iterator[Map]:
-    return (
-        row for row in mappings(struct.get("fields")) if division.parts_of(row) and isinstance(row.get("name"), str)
-    )
+    rows = (row for row in mappings(struct.get("fields")) if isinstance(row.get("name"), str))
+    return filter(division.parts_of, rows)
