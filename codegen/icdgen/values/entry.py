@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from fractions import Fraction
 
 from icdgen import codec, naming
 from icdgen.icd.model import Enum, Field, Member
@@ -39,8 +40,7 @@ def raw_value(field: Field, text: str) -> int | bytes:
 def from_physical(field: Field, text: str) -> int | bytes:
     """The raw value of a text, else the one nearest to a physical value. Raises `BadValue`; does not look at the range."""
     _settable(field)
-    reader: _Reader = _READERS.get(field.type, _integer)
-    return reader(field, text)
+    return _READERS.get(field.type, _integer)(field, text)
 
 
 def typed(field: Field, text: str, raw: bool = False, is_open: bool = False) -> int | bytes:
@@ -114,12 +114,9 @@ def _integer(field: Field, text: str) -> int:
         return special
     if field.curve is not None:
         return _on_curve(field, text)
-    number = without_unit(field, text)
-    if field.scale is None and (value := numbers.integer(number)) is not None:
+    if field.scale is None and (value := numbers.integer(without_unit(field, text))) is not None:
         return value
-    exact = numbers.rational(number)
-    if exact is None:
-        raise BadValue(f"`{text}` is not a number" + (f" (in {field.unit.symbol})" if field.unit else ""))
+    exact = _exact(field, text)
     if field.scale:
         return round(field.scale.raw(exact))  # ties to even, as `codec.raw_from_physical`
     if exact.denominator != 1:
@@ -128,14 +125,18 @@ def _integer(field: Field, text: str) -> int:
 
 
 def _on_curve(field: Field, text: str) -> int:
-    exact = numbers.rational(without_unit(field, text))
-    if exact is None:
-        raise BadValue(f"`{text}` is not a number" + (f" (in {field.unit.symbol})" if field.unit else ""))
     try:
-        return codec.raw_from_physical(field, exact)
+        return codec.raw_from_physical(field, _exact(field, text))
     except codec.CodecError as error:
         help = "" if field.leads_back else "--raw takes the raw value"
         raise BadValue(str(error).removeprefix(f"{field.name!r} "), help) from None
+
+
+def _exact(field: Field, text: str) -> Fraction:
+    exact = numbers.rational(without_unit(field, text))
+    if exact is None:
+        raise BadValue(f"`{text}` is not a number" + (f" (in {field.unit.symbol})" if field.unit else ""))
+    return exact
 
 
 def without_unit(field: Field, text: str) -> str:
@@ -163,8 +164,9 @@ def _member(field: Field, enum: Enum, text: str) -> int:
         ((values, value),) = found.items()
         if values == str(value):
             return value
-    what = f"is {' and '.join(found)}: give the number" if len(found) == 1 else "fits several members"
-    what = what if found else f"is no member of {enum.name}"
+        what = f"is {values}: give the number"
+    else:
+        what = "fits several members" if found else f"is no member of {enum.name}"
     raise BadValue(f"`{text}` {what}{members(field)}")
 
 
@@ -173,5 +175,6 @@ def _has_words(member: Member, text: str) -> bool:
     return bool(wanted) and set(wanted) <= set(naming.words(member.name))
 
 
-_Reader = Callable[[Field, str], int | bytes]
-_READERS: dict[str, _Reader] = {"bool": _bool, "bytes": _bytes, "text": _text, "float": _float, "enum": _enum}
+_READERS: dict[str, Callable[[Field, str], int | bytes]] = {
+    "bool": _bool, "bytes": _bytes, "text": _text, "float": _float, "enum": _enum
+}  # fmt: skip
