@@ -120,9 +120,9 @@ def _line(field: Field) -> Field:
     path = tuple(replace(step, index=None) for step in field.path)
     if len(path) < 2:
         return _declared(field)
-    text = [f"{step.name}[]" if step.count else step.name for step in path]
-    count = prod(step.count for step in path if step.count) if any(step.count for step in path) else 0
-    return replace(field, name=".".join((*text[:-1], path[-1].name)), path=path, count=count)
+    text = [f"{step.name}[]" if step.count else step.name for step in path[:-1]]
+    counts = [step.count for step in path if step.count]
+    return replace(field, name=".".join((*text, path[-1].name)), path=path, count=prod(counts) if counts else 0)
 
 
 def arrays_of(fields: tuple[Field, ...]) -> tuple[Field, ...]:

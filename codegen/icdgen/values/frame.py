@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -182,6 +183,4 @@ def _reserved(node: Node, message: Message, data: bytes) -> list[str]:
 
 def _json_number(value: float) -> float | str:
     """JSON has no NaN and no infinity."""
-    if value != value:
-        return "nan"
-    return value if abs(value) != float("inf") else ("inf" if value > 0 else "-inf")
+    return value if math.isfinite(value) else repr(value)
