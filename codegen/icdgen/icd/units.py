@@ -88,12 +88,8 @@ bit/s       bit_per_s       data rate
 """
 
 
-def _standard() -> dict[str, Unit]:
-    rows = (line.split(None, 2) for line in _TABLE.strip().splitlines())
-    return {symbol: Unit(symbol, identifier, quantity) for symbol, identifier, quantity in rows}
-
-
-STANDARD = _standard()
+_ROWS = (line.split(None, 2) for line in _TABLE.strip().splitlines())
+STANDARD = {symbol: Unit(symbol, identifier, quantity) for symbol, identifier, quantity in _ROWS}
 
 # Signs for one of the above that mean nothing else: an import writes the unit itself.
 SIGNS = {
@@ -111,11 +107,8 @@ SPELLINGS = SIGNS | {
 }  # fmt: skip
 
 NOT_STATED = "not stated"
-_SAID = str.maketrans(
-    {"\u03a9": "ohm", "\u2126": "ohm", "\u00b5": "u", "\u03bc": "u", "°": "deg"}
-)  # signs in identifiers
-
-
+# What signs are in identifiers.
+_SAID = str.maketrans({"\u03a9": "ohm", "\u2126": "ohm", "\u00b5": "u", "\u03bc": "u", "°": "deg"})
 _PREFIXES = frozenset("fpnu\u00b5\u03bcmcdhkMGT")
 
 

@@ -11,7 +11,7 @@ from icdgen.icd.model import Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, quote
-from icdgen.icd.trees import mappings
+from icdgen.icd.trees import at_path, mappings
 
 CHECKED = b"123456789"  # what the check value of a CRC is computed over, by convention
 MAX_WIDTH = 64
@@ -32,16 +32,13 @@ def sections(node: Node) -> Iterator[Map]:
 @rule("ICD090")
 def i2c_addresses(ctx: Context) -> Iterator[Fault]:
     for i2c in ctx.sections("i2c"):
-        write, read = (i2c.get(key) for key in ("write", "read"))
-        if isinstance(write, Map):
-            yield from _forms_agree(write, "write", 0)
-        if isinstance(read, Map):
-            yield from _forms_agree(read, "read", 1)
-        if isinstance(write, Map) and isinstance(read, Map):
-            one, other = write.get("address_8bit"), read.get("address_8bit")
-            if _is_byte(one) and _is_byte(other) and not one & 1 and other != one | 1:
-                message = f"the read address {_hex(other)} does not follow the write address {_hex(one)}"
-                yield Fault.at(read, "address_8bit", message, f"the read address is {_hex(one | 1)}")
+        for key, bit in (("write", 0), ("read", 1)):
+            if isinstance(i2c.get(key), Map):
+                yield from _forms_agree(i2c[key], key, bit)
+        one, other = (at_path(i2c, (key, "address_8bit")) for key in ("write", "read"))
+        if _is_byte(one) and _is_byte(other) and not one & 1 and other != one | 1:
+            message = f"the read address {_hex(other)} does not follow the write address {_hex(one)}"
+            yield Fault.at(i2c["read"], "address_8bit", message, f"the read address is {_hex(one | 1)}")
 
 
 def _forms_agree(address: Map, key: str, bit: int) -> Iterator[Fault]:
@@ -83,17 +80,13 @@ def crc_checks(ctx: Context) -> Iterator[Fault]:
             width, polynomial, wanted, init, xor_out = numbers
             if not 1 <= width <= MAX_WIDTH:
                 continue
-            if any(_is_wide(section.get(key), width) for key in ("polynomial", "init", "xor_out", "check")):
+            if not all(0 <= one < 1 << width for one in (polynomial, wanted, init, xor_out)):
                 continue
             reflect_in, reflect_out = (bool(section.get(k)) for k in ("reflect_in", "reflect_out"))
             got = crc(CHECKED, width, polynomial, init, reflect_in, reflect_out, xor_out)
             if got != wanted:
                 message = f"these parameters give {_hex(got)} over 123456789, not the check value {_hex(wanted)}"
                 yield Fault.at(section, "check", message, "correct the parameters or `check`")
-
-
-def _is_wide(value: object, width: int) -> bool:
-    return value is not None and not (isinstance(value, int) and 0 <= value < 1 << width)
 
 
 def crc(data: bytes, width: int, polynomial: int, init: int, reflect_in: bool, reflect_out: bool, xor_out: int) -> int:
