@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
@@ -82,10 +82,10 @@ class Builder:
             source=self.tree,
         )
 
-    def items(self, key: str, owner: Map | None = None) -> Iterator[Map]:
+    def items(self, key: str, owner: Map | None = None) -> list[Map]:
         """What is listed under a key, of the file or a mapping in it, but for what is broken."""
         found = mappings((self.tree if owner is None else owner).get(key))
-        return (item for item in found if id(item) not in self.broken)
+        return [item for item in found if id(item) not in self.broken]
 
     def named(self, item: Map) -> dict[str, Any]:
         """What is said in the same way of all that has a name."""
@@ -106,7 +106,7 @@ class Builder:
 
     def structs(self) -> tuple[model.Struct, ...]:
         """Those of the node, each after what it has in it. Of a circle, none has the next in it: it is a finding."""
-        listed = list(self.items("structs"))
+        listed = self.items("structs")
         items = {item["name"]: item for item in reversed(listed)}
         made: list[model.Struct] = []
         begun: set[str] = set()

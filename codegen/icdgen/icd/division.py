@@ -14,7 +14,7 @@ OF_A_WHOLE = ("unit", "formula", "points", "outside", "const", "special", "min",
 
 def parts_of(field: Map) -> list[Map]:
     """The parts that can be read."""
-    return list(mappings(field.get("bitfields")))
+    return mappings(field.get("bitfields"))
 
 
 def obstacles(field: Map, byte_order: str, bit_order: str) -> Iterator[Fault]:

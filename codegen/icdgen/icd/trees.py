@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, TypeVar
 
 from icdgen.icd.located import Map
@@ -10,9 +10,9 @@ from icdgen.icd.located import Map
 T = TypeVar("T")
 
 
-def mappings(items: object) -> Iterator[Map]:
+def mappings(items: object) -> list[Map]:
     """The mappings of a list: nothing where it is no list."""
-    return (item for item in items if isinstance(item, Map)) if isinstance(items, list) else iter(())
+    return [item for item in items if isinstance(item, Map)] if isinstance(items, list) else []
 
 
 def at_path(tree: Any, path: Iterable[str]) -> Any:
