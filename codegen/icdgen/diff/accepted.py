@@ -18,25 +18,20 @@ from icdgen.suggest import close_to
 
 NAME = ".icdgen-accepted.yaml"
 STALE = "DIF901"
-_VALUES = ("was", "now")
 
 
 class Acceptance(NamedTuple):
-    """One entry. ``where``, ``was`` and ``now`` hold only what the entry says."""
+    """One entry. ``said`` has what it says of the change but for its code: where it is, what was and what is now."""
 
     code: str
-    where: dict[str, str]
-    values: dict[str, str]
+    said: dict[str, str]
     reason: str
     place: Place
 
     def covers(self, change: Change) -> bool:
         """Whether the entry is about this change."""
-        return (
-            self.code == change.code
-            and all(getattr(change.where, key) == value for key, value in self.where.items())
-            and all(getattr(change, key) == value for key, value in self.values.items())
-        )
+        known = {**change.where._asdict(), "was": change.was, "now": change.now}
+        return self.code == change.code and all(known[key] == value for key, value in self.said.items())
 
 
 Accepted = tuple[Change, Acceptance]
@@ -65,9 +60,8 @@ def read(path: Path, name: str) -> tuple[list[Acceptance], str]:
 
 
 def _entry(item: Map) -> Acceptance:
-    where = {key: str(item[key]) for key in Where._fields if key in item}
-    values = {key: str(item[key]) for key in _VALUES if key in item}
-    return Acceptance(item["code"].upper(), where, values, item["reason"], item.at("code"))
+    said = {key: str(item[key]) for key in (*Where._fields, "was", "now") if key in item}
+    return Acceptance(item["code"].upper(), said, item["reason"], item.at("code"))
 
 
 def _unknown(entry: Acceptance) -> Finding:
@@ -80,21 +74,15 @@ def sort(
     changes: Iterable[Change], entries: Sequence[Acceptance]
 ) -> tuple[list[Change], list[Accepted], list[Acceptance]]:
     """The changes that nobody accepted, the others with the first entry that covers each, and the entries that cover nothing."""
-    open_: list[Change] = []
-    accepted: list[Accepted] = []
-    used: set[int] = set()
-    for change in changes:
-        covering = [entry for entry in entries if entry.covers(change)]
-        used.update(map(id, covering))
-        if covering:
-            accepted.append((change, covering[0]))
-        else:
-            open_.append(change)
-    return open_, accepted, [entry for entry in entries if id(entry) not in used]
+    covered = [(change, [entry for entry in entries if entry.covers(change)]) for change in changes]
+    used = {id(entry) for _, covering in covered for entry in covering}
+    accepted = [(change, covering[0]) for change, covering in covered if covering]
+    stale = [entry for entry in entries if id(entry) not in used]
+    return [change for change, covering in covered if not covering], accepted, stale
 
 
 def about_stale(entry: Acceptance) -> Finding:
     """What is said of an entry that no longer applies."""
-    where = ", ".join(f"{key} {quote(value)}" for key, value in (entry.where | entry.values).items())
+    where = ", ".join(f"{key} {quote(value)}" for key, value in entry.said.items())
     text = f"this accepted change does not happen: {entry.code} at {where}"
     return Finding(STALE, text, entry.place, "take the entry out, or correct it", "warning")

@@ -69,12 +69,9 @@ def _once(changes: Iterable[Change]) -> list[Change]:
             where = change.where
             others.setdefault(known[key], []).append(f"{quote(where.field)} of {quote(where.message)}")
     for index, places in others.items():
-        shown = (
-            places
-            if len(places) <= MOST_PLACES
-            else [*places[: MOST_PLACES - 1], f"{len(places) - MOST_PLACES + 1} more"]
-        )
-        found[index] = replace(found[index], details=(*found[index].details, f"The same of {listing(shown)}."))
+        if len(places) > MOST_PLACES:
+            places[MOST_PLACES - 1 :] = [f"{len(places) - MOST_PLACES + 1} more"]
+        found[index] = replace(found[index], details=(*found[index].details, f"The same of {listing(places)}."))
     return found
 
 
@@ -122,8 +119,8 @@ def _change(rule: Rule, pair: Pair, found: Found) -> Change:
         where=found.where or pair.where(),
         was=found.was,
         now=found.now,
-        old=None if pair.before is None and not found.places else old,
-        new=None if pair.after is None and not found.places else new,
+        old=old,
+        new=new,
         details=found.details,
         severity=found.severity or rule.severity,
         addition=rule.addition if found.addition is None else found.addition,

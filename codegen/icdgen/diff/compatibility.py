@@ -13,7 +13,7 @@ from icdgen.diff.pairs import FieldPair, MessagePair, NodePair, kind
 from icdgen.diff.similar import other_senses
 from icdgen.diff.wording import read_as, some
 from icdgen.icd.formula import RAW
-from icdgen.icd.model import Field, Message
+from icdgen.icd.model import Message
 from icdgen.icd.rules.wording import quote
 
 YES, PARTLY, NO = "yes", "partly", "no"
@@ -185,13 +185,8 @@ def _misread(pair: FieldPair) -> str:
         return "another formula"
     if (old.unit.symbol if old.unit else "") != (new.unit.symbol if new.unit else ""):
         return "another unit"
-    return "values of another sense" if _senses_differ(old, new) else ""
-
-
-def _senses_differ(old: Field, new: Field) -> bool:
-    if old.enum is None or new.enum is None or old.enum is new.enum:
-        return False
-    return bool(other_senses(old.enum, new.enum))
+    has_other_senses = old.enum and new.enum and old.enum is not new.enum and other_senses(old.enum, new.enum)
+    return "values of another sense" if has_other_senses else ""
 
 
 def _lengths(sent: Message, reader: Message, verb: str) -> tuple[str, tuple[str, ...]]:
@@ -211,8 +206,7 @@ def _new_obeys_old(pair: MessagePair) -> tuple[str, tuple[str, ...]]:
     if lengths == NO:
         return NO, odd
     found = [(one, *_disobeyed(one)) for one in pair.parts if not one.any.view]
-    reasons = _together((one.any.name, why) for one, why, _ in found if why)
-    reasons = [*odd, *reasons]
+    reasons = [*odd, *_together((one.any.name, why) for one, why, _ in found if why)]
     return (NO if any(refused for *_, refused in found) else PARTLY if reasons else YES), tuple(reasons)
 
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cache, cached_property
 
 from icdgen.diff.envelopes import differ, has_envelope
 from icdgen.diff.generated import Generated
-from icdgen.diff.moves import Moves, moves
+from icdgen.diff.moves import moves
 from icdgen.diff.pairs import DeclaredPair, FieldPair, Match, MessagePair, NodePair, Position, position
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.protocol.envelope import DIRECTIONS
@@ -17,8 +17,8 @@ class Context:
 
     def __init__(self, match: Match) -> None:
         self.match = match
-        self._moves: dict[int, Moves] = {}
-        self._envelopes: dict[int, frozenset[str]] = {}
+        self.moves = cache(moves)  # what moved within a message
+        self.other_envelopes = cache(self._other_envelopes)
 
     @cached_property
     def generated(self) -> Generated:
@@ -47,23 +47,14 @@ class Context:
         """Whether messages of the node travel in envelopes in both ICDs."""
         return node.both and all(map(has_envelope, self.sides(node)))
 
-    def other_envelopes(self, node: NodePair) -> frozenset[str]:
+    def _other_envelopes(self, node: NodePair) -> frozenset[str]:
         """The directions in which no message is as before, because its envelope is not: of nodes that have one in both ICDs."""
-        if id(node) not in self._envelopes:
-            found = (one for one in DIRECTIONS if differ(*self.sides(node), one)) if self.have_envelopes(node) else ()
-            self._envelopes[id(node)] = frozenset(found)
-        return self._envelopes[id(node)]
+        found = (one for one in DIRECTIONS if differ(*self.sides(node), one)) if self.have_envelopes(node) else ()
+        return frozenset(found)
 
     def pair(self, message: Message) -> MessagePair:
         """The pair that a message is a side of."""
         return self.match.messages[id(message)]
-
-    def moves(self, pair: MessagePair) -> Moves:
-        """What moved within the message."""
-        found = self._moves.get(id(pair))
-        if found is None:
-            found = self._moves[id(pair)] = moves(pair)
-        return found
 
     def at_the_end(self, pair: MessagePair) -> list[FieldPair]:
         """Fields that came with the bytes by which the frame grew, or went with those that it lost."""

@@ -27,30 +27,42 @@ class Fact(NamedTuple):
 
 def facts(old: Node, new: Node) -> Iterator[Fact]:
     """All facts that differ, in the order of the old node, then of the new one."""
-    yield from _compare("protocol", (old.protocol, new.protocol), (_tree(old), _tree(new)), (None, None), False)
+    before, after = (_Side(node.protocol, node.source.get("protocol")) for node in (old, new))
+    yield from _compare("protocol", before, after, is_word=False)
 
 
-def _tree(node: Node) -> object:
-    return node.source.get("protocol") if isinstance(node.source, Map) else None
+class _Side(NamedTuple):
+    """A value of one side, what was read for it, and where that stands."""
+
+    value: Any = None
+    tree: object = None
+    place: Place | None = None
+
+    def inside(self, step: Any) -> _Side:
+        """A step further down, which may lead nowhere."""
+        value, tree = self.value, self.tree
+        if step is None or not (step in value if isinstance(value, dict) else step < len(value)):
+            return _Side()
+        if isinstance(tree, Map) and step in tree:
+            return _Side(value[step], tree[step], tree.at(step))
+        if isinstance(tree, Seq) and step < len(tree):
+            return _Side(value[step], tree[step], tree.item_at(step))
+        return _Side(value[step], None, self.place)
 
 
-Two = tuple[Any, Any]  # old and new
-
-
-def _compare(path: str, values: Two, trees: Two, places: Places, is_word: bool) -> Iterator[Fact]:
-    old, new = values
+def _compare(path: str, before: _Side, after: _Side, is_word: bool) -> Iterator[Fact]:
+    old, new = before.value, after.value
     if old == new and type(old) is type(new):
         return
     if isinstance(old, dict) and isinstance(new, dict):
-        for key in (*old, *(key for key in new if key not in old)):
-            yield from _step(f"{path}.{key}", values, trees, places, (key, key), is_word or key in WORDS)
+        for key in old | new:
+            yield from _compare(f"{path}.{key}", before.inside(key), after.inside(key), is_word or key in WORDS)
     elif isinstance(old, list) and isinstance(new, list) and any(isinstance(v, dict) for v in (*old, *new)):
-        names = [_row_names(side) for side in values]
-        for name in (*names[0], *(name for name in names[1] if name not in names[0])):
-            steps = names[0].get(name), names[1].get(name)
-            yield from _step(f"{path}.{name}", values, trees, places, steps, is_word)
+        was, now = _row_names(old), _row_names(new)
+        for name in was | now:
+            yield from _compare(f"{path}.{name}", before.inside(was.get(name)), after.inside(now.get(name)), is_word)
     else:
-        yield Fact(path, old, new, places, is_word)
+        yield Fact(path, old, new, (before.place, after.place), is_word)
 
 
 def _row_names(rows: list[Any]) -> dict[str, int]:
@@ -62,27 +74,6 @@ def _row_names(rows: list[Any]) -> dict[str, int]:
         seen[key] += 1
         found[f"{key}#{seen[key]}" if seen[key] > 1 else key] = index
     return found
-
-
-def _step(path: str, values: Two, trees: Two, places: Places, steps: Two, is_word: bool) -> Iterator[Fact]:
-    old, new = map(_inside, values, trees, places, steps)
-    yield from _compare(path, (old[0], new[0]), (old[1], new[1]), (old[2], new[2]), is_word)
-
-
-def _inside(value: Any, tree: object, place: Place | None, step: Any) -> tuple[Any, object, Place | None]:
-    """One side, a step further down: the value, what was read for it, and where that stands."""
-    if step is None or not (step in value if isinstance(value, dict) else step < len(value)):
-        return None, None, None
-    below, found = _down(tree, step)
-    return value[step], below, found or place
-
-
-def _down(tree: object, step: Any) -> tuple[object, Place | None]:
-    if isinstance(tree, Map) and step in tree:
-        return tree[step], tree.at(step)
-    if isinstance(tree, Seq) and isinstance(step, int) and step < len(tree):
-        return tree[step], tree.item_at(step)
-    return None, None
 
 
 def shown(value: object) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from icdgen import backends
@@ -185,20 +185,8 @@ def _texts(samples: list[FieldPair], side: int) -> list[list[tuple[str, str]]]:
 
 
 def _decisive(field: Field) -> object:
-    enum = field.enum.name if field.enum is not None else None
-    formula = field.scale, field.curve
-    return (
-        field.type,
-        field.bits,
-        field.count,
-        enum,
-        field.unit,
-        formula,
-        field.special,
-        field.limits,
-        field.const,
-        bool(field.when),
-    )
+    raw = field.type, field.bits, field.count, field.enum.name if field.enum else None, field.const, bool(field.when)
+    return raw, field.unit, field.scale, field.curve, field.special, field.limits
 
 
 def _is_sound(field: Field) -> bool:
@@ -292,15 +280,12 @@ class _Cut:
         found: dict[int, dict[Name, None]] = {}
         types: dict[int, str] = {}  # Rust: id(pair) -> name of the type
         for language in LANGUAGES:
-            stems: dict[str, str | None] = {}  # scope -> stem of its names, None if they are no names
             for one in backends.get(language).identifiers(self.icd):
-                scope, text = one.scope, one.text
+                text = one.text
                 pair = self.marks.get(id(one.source)) if one.source is not None else None
                 if pair is None or not text.isidentifier():
                     continue
-                stem = stems.get(scope, "?")
-                if stem == "?":
-                    stem = stems[scope] = _stem(language, scope)
+                stem = _stem(language, one.scope)
                 if stem is None:
                     continue
                 owner = pair.owner if isinstance(pair, (FieldPair, MemberPair)) else None
@@ -349,6 +334,7 @@ def _sort(name: Name) -> tuple[str, bool]:
     return name.language, not name.stem
 
 
+@lru_cache(maxsize=4096)
 def _stem(language: str, scope: str) -> str | None:
     """What a file must mention for a member of that scope to be meant; empty for what stands for itself, None for files."""
     if scope.startswith(("modules of", "files of")):

@@ -50,7 +50,9 @@ def match(old: Icd, new: Icd) -> Match:
     """Both ICDs side by side."""
     found = Match(old, new)
     found.nodes = [NodePair(*pair) for pair in _side_by_side(old.nodes, new.nodes, _renamed_nodes)]
-    for node, enum in _paired(found.nodes, EnumPair, lambda node: node.enums, _enum_rank, _ENUMS_LIKELY, _members):
+    for node, enum in _paired(
+        found.nodes, EnumPair, lambda node: node.enums, lambda enum: enum.name, _ENUMS_LIKELY, _members
+    ):
         node.enums.append(enum)
         found.enums.update((id(one), enum) for one in (enum.before, enum.after) if one is not None)
     for node, pair in _paired(found.nodes, MessagePair, lambda node: node.messages, _rank, _MESSAGES_LIKELY, _fields):
@@ -207,10 +209,6 @@ def _renamed_enum(one: _Left[Enum], other: _Left[Enum]) -> float:
     if one.home is not other.home:
         return 0.0
     return 0.85 * overlap(one.members, other.members) + 0.15 * likeness(one.one.name, other.one.name)
-
-
-def _enum_rank(enum: Enum) -> str:
-    return enum.name
 
 
 _ENUMS_LIKELY = ((_moved_enum, _name, SAME_ENUM), (_renamed_enum, _member_keys, SAME_ENUM))

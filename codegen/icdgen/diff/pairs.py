@@ -9,7 +9,7 @@ from typing import Any, Generic, TypeVar
 
 from icdgen.diagnostics import Place
 from icdgen.diff.where import Places, Where
-from icdgen.icd.located import Map
+from icdgen.icd.annex import Loggable
 from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node
 from icdgen.layout import Piece, byte_range, pieces
 
@@ -258,13 +258,11 @@ def differing(
             yield one, before.get(one), after.get(one)
 
 
-def place_of(thing: object, keys: tuple[str, ...]) -> Place | None:
+def place_of(thing: Node | Message | Field | Enum | Member | Loggable | None, keys: tuple[str, ...]) -> Place | None:
     """Where the first key stands that is there, of a node in its head; the thing itself if none is."""
-    source = getattr(thing, "source", None)
-    if isinstance(thing, Node) and isinstance(source, Map):
-        source = source.get("node") or source
-    if not isinstance(source, Map):
+    if thing is None:
         return None
+    source = thing.source.get("node", thing.source) if isinstance(thing, Node) else thing.source
     for key in keys:
         for name in (key, *_SHOWN.get(key, ())):
             if name in source.spots:

@@ -46,9 +46,7 @@ class Report:
 
     def fails(self, asked: Sequence[str]) -> list[Change]:
         """Changes of the layers asked for; additions only if they are asked for too."""
-        return [c for c in self.changes if c.layer in asked and (not c.addition or ADDITIONS in asked)] + [
-            c for c in self.changes if c.addition and ADDITIONS in asked and c.layer not in asked
-        ]
+        return [c for c in self.changes if (ADDITIONS if c.addition else c.layer) in asked]
 
 
 def _placed(change: Change, old: Side, new: Side) -> Change:

@@ -6,6 +6,7 @@ import os
 import re
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator
+from itertools import chain
 from pathlib import Path
 from typing import NamedTuple
 
@@ -57,9 +58,7 @@ class Use(NamedTuple):
         return list(dict.fromkeys(change.message for change in self.changes))
 
 
-class _Wanted(NamedTuple):
-    stem: str
-    changes: list[Change]
+_Wanted = dict[str, dict[str, list[Change]]]  # name -> stem of what must be mentioned, too -> what changed about it
 
 
 def uses(comparison: Comparison, changes: Iterable[Change], paths: Iterable[Path]) -> list[Use]:
@@ -73,19 +72,15 @@ def uses(comparison: Comparison, changes: Iterable[Change], paths: Iterable[Path
     return found
 
 
-def _wanted(comparison: Comparison, changes: Iterable[Change]) -> dict[str, dict[str, list[_Wanted]]]:
-    """By language and name: what changed about it. Changes of words touch nobody's code."""
+def _wanted(comparison: Comparison, changes: Iterable[Change]) -> dict[str, _Wanted]:
+    """By language: what changed about its names. Changes of words touch nobody's code."""
     old = comparison.context.generated.everything
-    result: dict[str, dict[str, list[_Wanted]]] = {language: {} for language in _LEXERS}
+    result: dict[str, _Wanted] = {language: {} for language in _LEXERS}
     for change in changes:
         if not change.breaks:
             continue
         for name in _names(change, old):
-            rows = result[name.language].setdefault(name.text, [])
-            row = next((row for row in rows if row.stem == name.stem), None)
-            if row is None:
-                rows.append(row := _Wanted(name.stem, []))
-            row.changes.append(change)
+            result[name.language].setdefault(name.text, {}).setdefault(name.stem, []).append(change)
     return result
 
 
@@ -110,7 +105,7 @@ def _sources(top: Path) -> Iterator[Path]:
         yield from (Path(folder, name) for name in sorted(files) if Path(name).suffix.lower() in SUFFIXES)
 
 
-def _in_file(path: Path, language: str, wanted: dict[str, list[_Wanted]]) -> Iterator[Use]:
+def _in_file(path: Path, language: str, wanted: _Wanted) -> Iterator[Use]:
     try:
         with open(path, "rb") as file:
             text = file.read(_MOST).decode("utf-8", "replace")
@@ -122,12 +117,12 @@ def _in_file(path: Path, language: str, wanted: dict[str, list[_Wanted]]) -> Ite
     known = {name for name, _ in tokens}
     starts = [0, *(match.end() for match in re.finditer("\n", text))]
     for name, start in tokens:
-        rows = [row for row in wanted.get(name, ()) if not row.stem or _mentions(language, known, row.stem)]
+        touched = wanted.get(name, {}).items()
+        rows = [changes for stem, changes in touched if not stem or _mentions(language, known, stem)]
         if rows:
             number = bisect_right(starts, start)
             line = text[starts[number - 1] :].split("\n", 1)[0].rstrip("\r")
-            changes = tuple(dict.fromkeys(change for row in rows for change in row.changes))
-            yield Use(str(path), number, start - starts[number - 1] + 1, name, line, changes)
+            yield Use(str(path), number, start - starts[number - 1] + 1, name, line, tuple(dict.fromkeys(chain(*rows))))
 
 
 def _tokens(text: str, lexer: re.Pattern[str]) -> Iterator[tuple[str, int]]:

@@ -36,9 +36,7 @@ def _either(old: Name | None, new: Name | None) -> Name:
 def lines(renamed: Renamed) -> tuple[str, ...]:
     """``C: `a` -> `b` and 3 more``, a line a language. Where all came, or all went, just the names."""
     found: dict[str, list[str]] = {}
-    one_way = not all(old and new for old, new in renamed) and any(
-        all(pair[side] is None for pair in renamed) for side in (0, 1)
-    )
+    one_way = any(all(pair[side] is None for pair in renamed) for side in (0, 1))
     for old, new in sorted(renamed, key=lambda names: not _either(*names).text.endswith("_t")):  # types first
         said = f"{f'`{old.text}`' if old else '(new)'} -> {f'`{new.text}`' if new else '(gone)'}"
         if one_way:
@@ -49,7 +47,7 @@ def lines(renamed: Renamed) -> tuple[str, ...]:
     result = []
     for language, rows in sorted(found.items()):
         rest = [f"{len(rows) - MOST} more"] if len(rows) > MOST else []
-        result.append(f"{TITLES.get(language, language)}: {listing(rows[:MOST] + rest)}")
+        result.append(f"{TITLES[language]}: {listing(rows[:MOST] + rest)}")
     return tuple(result)
 
 
@@ -88,8 +86,7 @@ def node_renamed(pair: NodePair, ctx: Context) -> Iterator[Found]:
 def names_gone(pair: Pair, ctx: Context) -> Iterator[Found]:
     if _is_of_struct(pair):
         return
-    names = ctx.generated.old.get(id(pair), ()) if not isinstance(pair, NodePair) else ()
-    gone: Renamed = [(name, None) for name in names]
+    gone: Renamed = [(name, None) for name in ctx.generated.old.get(id(pair), ())]
     text = f"the generated names of {_WHAT[type(pair)]} {quote(pair.old.name)} are gone"
     yield Found(text, ("name", "identifier"), pair.old.name, "", lines(gone))
 
@@ -102,8 +99,8 @@ def retyped(pair: FieldPair, ctx: Context) -> Iterator[Found]:
         return
     changed = ctx.generated.retyped(pair)
     if changed:
-        said = tuple(f"{TITLES.get(language, language)}: `{a}` -> `{b}`" for language, a, b in changed)
-        words = listing([TITLES.get(language, language) for language, _, _ in changed])
+        said = tuple(f"{TITLES[language]}: `{a}` -> `{b}`" for language, a, b in changed)
+        words = listing([TITLES[language] for language, _, _ in changed])
         text = f"{quote(new.name)} has another type in {words}"
         yield Found(text, ("type", "bits", "enum", "count", "when"), changed[0][1], changed[0][2], said)
 
@@ -155,8 +152,7 @@ def declared_elsewhere(pair: MessagePair | EnumPair, ctx: Context) -> Iterator[F
 def names_come(pair: Pair, ctx: Context) -> Iterator[Found]:
     if _is_of_struct(pair):
         return
-    names = ctx.generated.new.get(id(pair), ()) if not isinstance(pair, NodePair) else ()
-    come: Renamed = [(None, name) for name in names]
+    come: Renamed = [(None, name) for name in ctx.generated.new.get(id(pair), ())]
     text = f"{_WHAT[type(pair)]} {quote(pair.new.name)} has generated names now"
     yield Found(text, ("name", "identifier"), "", pair.new.name, lines(come))
 

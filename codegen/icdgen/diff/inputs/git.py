@@ -86,13 +86,13 @@ class Git:
 
     def inside(self, paths: Iterable[Path]) -> list[PurePosixPath]:
         """The paths relative to the repository's top. Raises `UserError` for one that lies outside."""
-        found = []
+        found, top = [], os.path.realpath(self.top)
         for path in paths:
             full = os.path.realpath(path)
-            if not self.top or os.path.commonpath([full, os.path.realpath(self.top)]) != os.path.realpath(self.top):
+            if not self.top or os.path.commonpath([full, top]) != top:
                 help = "say which ICDs are meant: REVISION:PATH, or `icds` in icdgen.toml"
                 raise UserError(f"{path} is not in this git repository", help)
-            found.append(PurePosixPath(os.path.relpath(full, os.path.realpath(self.top)).replace(os.sep, "/")))
+            found.append(PurePosixPath(os.path.relpath(full, top).replace(os.sep, "/")))
         return found
 
     def usual(self, paths: Iterable[Path]) -> list[PurePosixPath]:
@@ -114,13 +114,13 @@ def _name(path: PurePosixPath) -> str:
 
 
 def _export(revision: str, home: PurePosixPath, folder: Path, top: str) -> None:
-    name = _name(home)
-    listed = _run("ls-tree", "-r", "-z", "--full-tree", revision, *(["--", f"{name}/"] if name else []), top=top)
+    below = ["--", f"{_name(home)}/"] if _name(home) else []
     wanted: list[tuple[str, str]] = []
-    for line in listed.split("\0"):
+    for line in _run("ls-tree", "-r", "-z", "--full-tree", revision, *below, top=top).split("\0"):
         head, _, path = line.partition("\t")
-        if path.endswith(_SUFFIX) and head.split(" ")[0] in _FILES:
-            wanted.append((head.split(" ")[2], path))
+        if path.endswith(_SUFFIX):
+            mode, _, blob = head.split(" ")
+            wanted += [(blob, path)] if mode in _FILES else []
     for path, data in _contents(wanted, top):
         target = folder / PurePosixPath(path)
         target.parent.mkdir(parents=True, exist_ok=True)

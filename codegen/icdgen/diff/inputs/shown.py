@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, TypeVar
@@ -168,21 +169,16 @@ class _Reader:
 
     def parts(self, item: Map) -> dict[str, Any]:
         """Fields, and the open end, if there is one."""
-        members = [self.field(field) for field in item["fields"]]
-        fields = tuple(element for one in members for element in one.elements)
-        told = item.get("tail")
+        fields, told = self.fields(item), item.get("tail")
         if told is None:
             return {"fields": fields}
         counter = told.get("counter")
         if counter is None:
-            end = next(one for one in members if one.name == told["part"])
+            end = next(one for one in members_of(fields) if one.name == told["part"])
             implied = implied_count(end, item["length"])
             counter, fields = implied.name, (*fields, implied)
-        tail = model.Tail(told["part"], counter, told["step"], told["most"], told.get("plus", 0))
-        inner = tuple(
-            model.Tail(one["part"], one["counter"], one["step"], one["most"], one.get("plus", 0), one["least"])
-            for one in item.get("inner", ())
-        )
+        tail = _open_part(told, counter)
+        inner = tuple(replace(_open_part(one, one["counter"]), begin=one["least"]) for one in item.get("inner", ()))
         for one in (*inner, tail):
             fields = one.counted_in(fields)
         return {"fields": fields, "tail": tail, "inner": inner}
@@ -237,6 +233,10 @@ class _Reader:
 
 def _as_it_is(kind: object, item: Map) -> dict[str, Any]:
     return {name: item[name] for name in machine.as_they_are(kind) if name in item}
+
+
+def _open_part(item: Map, counter: str) -> model.Tail:
+    return model.Tail(item["part"], counter, item["step"], item["most"], item.get("plus", 0))
 
 
 def _curve(item: Map) -> curve.Curve | None:

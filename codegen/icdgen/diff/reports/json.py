@@ -83,7 +83,7 @@ def _place(place: Place | None) -> dict[str, object] | None:
 
 
 def _stale(entry: Acceptance) -> dict[str, object]:
-    return {"code": entry.code, **entry.where, **entry.values, "reason": entry.reason, "place": _place(entry.place)}
+    return {"code": entry.code, **entry.said, "reason": entry.reason, "place": _place(entry.place)}
 
 
 def _use(use: Use, numbers: dict[int, int]) -> dict[str, object]:

@@ -32,17 +32,10 @@ def report(report: Report, colour: bool = False, width: int | None = None, every
 
 def said(text: str) -> str:
     """The text with nothing in it that Markdown would act upon; what stands in back-ticks stays code."""
-    text = shown(text)
-    parts, at = [], 0
-    for match in _CODE.finditer(text):
-        code = match[1].replace("|", "\\|")
-        parts += [_escaped(text[at : match.start()]), f"`{code}`" if code else "\\`\\`"]
-        at = match.end()
-    return "".join([*parts, _escaped(text[at:])])
-
-
-def _escaped(text: str) -> str:
-    return _MARKUP.sub(r"\\\1", text)
+    parts = _CODE.split(shown(text))
+    parts[::2] = [_MARKUP.sub(r"\\\1", words) for words in parts[::2]]
+    parts[1::2] = ["`" + code.replace("|", "\\|") + "`" if code else "\\`\\`" for code in parts[1::2]]
+    return "".join(parts)
 
 
 def _summary(report: Report) -> Iterator[str]:
