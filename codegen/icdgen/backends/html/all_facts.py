@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 from icdgen.backends.html.relations import Relations
+from icdgen.backends.html.texts import capitalized
 from icdgen.icd import schema
 from icdgen.protocol.declared import Fact, Kind, facts_of
 from icdgen.protocol.facts import Facts
@@ -45,7 +46,7 @@ def of_code(relations: Relations, known: Facts) -> list[Part]:
             if value is None or value == ():
                 continue
             url = relations.links.message(value.message) if isinstance(value, Step) else ""
-            rows.append(Row(sentence(fact.about), value_text(fact, value), why.get((path, fact.key), ""), url))
+            rows.append(Row(capitalized(fact.about), value_text(fact, value), why.get((path, fact.key), ""), url))
         if rows:
             found.append(_part(path, rows))
     return found
@@ -67,9 +68,7 @@ def with_others(relations: Relations, known: Facts, parts: list[Part], section: 
             rows = [Row(_about(form, key), _said_text(form, key, value), "", url)]
         part = _part(path[0], [])
         before = "".join(f"{one.replace('_', ' ')}: " for one in path[1:])
-        found.setdefault(part.anchor, part).rows.extend(
-            row._replace(about=sentence(before + row.about)) for row in rows
-        )
+        found.setdefault(part.anchor, part).rows.extend(r._replace(about=capitalized(before + r.about)) for r in rows)
     return list(found.values())
 
 
@@ -89,17 +88,12 @@ def _said(
 
 def _about(form: dict[str, Any], key: str) -> str:
     meaning = schema.meaning(form).removesuffix(" (name of a message)")
-    return sentence(key.replace("_", " ") if not meaning or meaning.startswith("name of a") else meaning)
+    return capitalized(key.replace("_", " ") if not meaning or meaning.startswith("name of a") else meaning)
 
 
 def _said_text(form: dict[str, Any], key: str, value: object) -> str:
-    if (
-        isinstance(value, int)
-        and not isinstance(value, bool)
-        and (key in _IN_HEXADECIMAL or "byte" in form.get("$ref", ""))
-    ):
-        return f"0x{value:02X}"
-    return as_text(value)
+    is_code = key in _IN_HEXADECIMAL or "byte" in form.get("$ref", "")
+    return f"0x{value:02X}" if is_code and type(value) is int else as_text(value)
 
 
 def _entry(row: Mapping[str, Any]) -> Row:
@@ -112,19 +106,16 @@ def _part(path: str, rows: list[Row]) -> Part:
     return Part(f"facts-{path.replace('.', '-')}", path.replace(".", ": ").replace("_", " "), rows)
 
 
-def _things(known: Facts) -> Iterator[tuple[str, object]]:
+def _things(known: Facts) -> list[tuple[str, object]]:
     named = {
         "client": known.client, "uart.framing": known.framing, "uart.acknowledge": known.acknowledge, "can": known.can,
         "can.extended": known.can and known.can.extended, "crc8": known.checksum, "log_mask": known.mask,
         "telemetry_log": known.log_file, "unsolicited_log": known.log_message, "index_file": known.index,
         "file_transfer": known.files, "file_transfer.hole_map": known.hole_map,
+        **{f"file_transfer.{name}": one for name, one in (known.files.procedures if known.files else {}).items()},
+        "program_copy": known.program_copy, "program_information": known.program_information,
     }  # fmt: skip
-    yield from ((path, thing) for path, thing in named.items() if thing is not None)
-    for name, one in (known.files.procedures if known.files else {}).items():
-        yield f"file_transfer.{name}", one
-    for name, operation in (("program_copy", known.program_copy), ("program_information", known.program_information)):
-        if operation is not None:
-            yield name, operation
+    return [(path, thing) for path, thing in named.items() if thing is not None]
 
 
 def value_text(fact: Fact, value: object) -> str:
@@ -137,10 +128,6 @@ def value_text(fact: Fact, value: object) -> str:
     if fact.kind is Kind.SPAN and isinstance(value, tuple):
         return f"bytes {value[0]} to {value[0] + value[1] - 1}"
     return as_text(value)
-
-
-def sentence(text: str) -> str:
-    return text[:1].upper() + text[1:]
 
 
 def as_text(value: object) -> str:

@@ -6,9 +6,9 @@ hexadecimal digits do.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from itertools import groupby
+from itertools import groupby, zip_longest
 
 from icdgen import layout
 from icdgen.backends.html.labels import Label, fit
@@ -121,9 +121,8 @@ class _Canvas:
         return grid, [first for first, _ in grid]
 
     def drawing(self) -> Drawing:
-        self._fill()
-        height = TOP + self.row * len(self.grid)
         for shape in self.shapes:
+            shape.rects = self._rects(shape.key)
             shape.labels = fit(shape.rects, self._told(self.message.fields[shape.key - 1]), shape.key)
         msb0 = self.node.bit_order == "msb0"
         columns = [
@@ -145,7 +144,7 @@ class _Canvas:
             "first": self.first,
         }  # fmt: skip
         return Drawing(
-            height=height + 2,
+            height=self._y(len(self.grid)) + 2,
             columns=columns,
             rows=rows,
             shapes=[shape for shape in self.shapes if shape.rects],
@@ -162,52 +161,34 @@ class _Canvas:
     def _x(self, column: int) -> int:
         return round(LEFT + column * self.cell)
 
-    def _fill(self) -> None:
-        for shape in self.shapes:
-            shape.rects = self._rects(shape.key)
-
     def _rects(self, key: int) -> list[tuple[int, int, int, int]]:
         """Runs of cells of one owner; runs below each other that are equally wide are one rectangle."""
         found: list[list[int]] = []
         for index, (_, owners) in enumerate(self.grid):
-            column = 0
-            for owner, group in groupby(owners):
-                end = column + len(list(group))
-                if owner == key:
-                    x, y, width = self._x(column), self._y(index), self._x(end) - self._x(column)
-                    above = next((r for r in found if r[0] == x and r[2] == width and r[1] + r[3] == y), None)
-                    if above:
-                        above[3] += self.row
-                    else:
-                        found.append([x, y, width, self.row])
-                column = end
+            for owner, start, end in _runs(owners):
+                if owner != key:
+                    continue
+                x, y, width = self._x(start), self._y(index), self._x(end) - self._x(start)
+                above = next((r for r in found if r[0] == x and r[2] == width and r[1] + r[3] == y), None)
+                if above:
+                    above[3] += self.row
+                else:
+                    found.append([x, y, width, self.row])
         return [(r[0], r[1], r[2], r[3]) for r in found]
 
     def _lines(self) -> str:
         """Boundaries between what belongs to different owners, and around everything."""
-        path = []
+        path: list[str] = []
+        above: list[int] = []
         for index, (_, owners) in enumerate(self.grid):
-            above = self.grid[index - 1][1] if index else []
             y = self._y(index)
-            for column in range(1, len(owners)):
-                if owners[column] != owners[column - 1]:
-                    path.append(f"M{self._x(column)} {y}v{self.row}")
+            path += (f"M{self._x(start)} {y}v{self.row}" for _, start, _ in _runs(owners) if start)
             path.append(f"M{LEFT} {y}v{self.row}M{self._x(len(owners))} {y}v{self.row}")
-            differs = [column >= len(above) or owner != above[column] for column, owner in enumerate(owners)]
-            differs += [True] * (len(above) - len(owners))
-            path += self._runs(differs, y)
-        last = self.grid[-1][1]
-        path += self._runs([True] * len(last), self._y(len(self.grid)))
+            differs = _runs(one != other for one, other in zip_longest(owners, above))
+            path += (f"M{self._x(start)} {y}H{self._x(end)}" for is_other, start, end in differs if is_other)
+            above = owners
+        path.append(f"M{LEFT} {self._y(len(self.grid))}H{self._x(len(above))}")
         return "".join(path)
-
-    def _runs(self, marks: list[bool], y: int) -> list[str]:
-        path, column = [], 0
-        for mark, group in groupby(marks):
-            end = column + len(list(group))
-            if mark:
-                path.append(f"M{self._x(column)} {y}H{self._x(end)}")
-            column = end
-        return path
 
     def _skips(self) -> list[tuple[int, str]]:
         """Where rows are left out, and what is said there."""
@@ -217,3 +198,11 @@ class _Canvas:
                 left_out = self.rows[index + 1] - self.rows[index - 1] - self.across
                 found.append((self._y(index), f"{left_out} more bytes"))
         return found
+
+
+def _runs(row: Iterable[int]) -> Iterator[tuple[int, int, int]]:
+    """Equal values in a row: the value, where they begin, and where they end."""
+    end = 0
+    for value, group in groupby(row):
+        start, end = end, end + len(list(group))
+        yield value, start, end

@@ -13,6 +13,6 @@ def values(relations: Relations, enum: Enum) -> dict[str, object]:
         "enum": enum,
         "node": relations.icd.node(enum.node),
         "members": [(member, relations.links.anchor(enum, str(member.value))) for member in enum.members],
-        "users": relations.users(enum),
+        "users": relations.uses[enum.node, enum.name],
         "errata": errata_of_enum(enum),
     }

@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 from icdgen_runtime.wire.envelope import Direction
 from icdgen_runtime.wire.stream import stream_encode
 
-from icdgen.backends.html.texts import count
 from icdgen.describe.numbers import bit_range
 from icdgen.icd.model import Message
+from icdgen.icd.rules.wording import count
 from icdgen.protocol.envelope import COBS, CRC, DATA, GIVEN, HDLC, LENGTH, PACKET, SLIP, Check, Stream
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Crc
@@ -84,9 +84,13 @@ def _field(field: Any) -> dict[str, object]:
 
 
 def _check(check: Check) -> dict[str, object]:
-    crc = {key: value for key, value in asdict(check.crc).items() if value is not None}
     places = {"from": check.covered_from, "trailer": check.covered_trailer, "seeded": check.is_seeded}
-    return {"kind": check.kind, "crc": crc, **places}
+    return {"kind": check.kind, "crc": crc_numbers(check.crc), **places}
+
+
+def crc_numbers(crc: Crc) -> dict[str, object]:
+    """The parameters of a checksum that are known."""
+    return {key: value for key, value in asdict(crc).items() if value is not None}
 
 
 def boxes(section: Mapping[str, Any]) -> list[tuple[str, str, float, str]]:
@@ -175,19 +179,14 @@ class Part(NamedTuple):
     title: str
 
 
-def packet(form: Stream, link: Any, message: Message, direction: Direction, data: bytes) -> list[Part]:
-    """The message in its envelope, before anything is stuffed."""
-    id = message.telemetry_id if direction == "telemetry" else message.telecommand_id
-    assert id is not None
+def packet(form: Stream, link: Any, id: int, direction: Direction, data: bytes) -> list[Part]:
+    """A message in its envelope, before anything is stuffed."""
     whole = stream_encode(link._replace(stream=link.stream._replace(delimited_by=PACKET)), id, data, direction)
     head, end = form.header_bytes, len(whole) - form.trailer_bytes
-    roles = {
-        in_trailer: ", ".join(one.role for one in form.fields if one.in_trailer == in_trailer)
-        for in_trailer in (False, True)
-    }
+    before, behind = (", ".join(f.role for f in form.fields if f.in_trailer == where) for where in (False, True))
     parts = [
-        Part("id", whole[:head], f"header: {roles[False]}"),
+        Part("id", whole[:head], f"header: {before}"),
         Part("data", whole[head:end], f"data, {count(end - head, 'byte')}"),
-        Part("crc", whole[end:], f"trailer: {roles[True]}"),
+        Part("crc", whole[end:], f"trailer: {behind}"),
     ]
     return [part for part in parts if part.data]

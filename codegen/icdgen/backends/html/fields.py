@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
@@ -9,8 +10,7 @@ from icdgen import layout
 from icdgen.backends.html import texts
 from icdgen.backends.html.links import Links
 from icdgen.backends.html.sections import Section
-from icdgen.icd.erratum import Erratum
-from icdgen.icd.model import Enum, Field, Member, Message, Node
+from icdgen.icd.model import Field, Message, Node
 from icdgen.show.fields import remarks
 
 
@@ -21,23 +21,21 @@ class FieldRow:
     key: int
     at: int
     bits: int
-    name: str = "reserved"
+    field: Field | None = None
     anchor: str = ""
-    kind: str = "reserved"
     type: str = ""
-    enum: Enum | None = None
     enum_url: str = ""
-    members: tuple[Member, ...] = ()
     raw: str = ""
     physical: str = ""
     resolution: str = ""
     unit: str = ""
     unit_url: str = ""
-    unit_title: str = ""
     formula: str = ""
-    summary: str = ""
-    notes: tuple[str, ...] = ()
-    errata: tuple[Erratum, ...] = ()
+    notes: Sequence[str] = ()
+
+    @property
+    def is_flag(self) -> bool:
+        return self.field is not None and self.field.type == "bool"
 
 
 @dataclass
@@ -50,19 +48,12 @@ class FlagRow:
 
 _MANY_FLAGS = 6  # of so many flags on end a grid is made
 
-# Columns of the table that are left out where no field has anything in them.
-_COLUMNS = (
-    ("raw", "Raw"),
-    ("physical", "Physical"),
-    ("resolution", "Resolution"),
-    ("unit", "Unit"),
-    ("formula", "Formula"),
-)
+_COLUMNS = ("raw", "physical", "resolution", "unit", "formula")  # left out where no field has anything in them
 
 
-def columns_of(rows: list[FieldRow]) -> list[tuple[str, str]]:
-    """Attribute and title of each further column that says something about at least one field."""
-    return [(name, title) for name, title in _COLUMNS if any(getattr(row, name) for row in rows)]
+def columns_of(rows: list[FieldRow]) -> list[str]:
+    """Each further column that says something about at least one field."""
+    return [name for name in _COLUMNS if any(getattr(row, name) for row in rows)]
 
 
 def rows(message: Message, node: Node, links: Links, anchors: list[str]) -> list[FieldRow]:
@@ -84,39 +75,28 @@ def between(found: list[FieldRow], section: Section) -> list[FieldRow | FlagRow]
         if row.key in section.keys or (not row.key and section.first * 8 <= row.at < section.end * 8)
     ]
     made: list[FieldRow | FlagRow] = []
-    for is_flag, group in groupby(inside, key=lambda row: row.kind == "bool"):
+    for is_flag, group in groupby(inside, key=lambda row: row.is_flag):
         run = list(group)
         made += [FlagRow(run)] if is_flag and len(run) >= _MANY_FLAGS else run
     return made
 
 
 def _row(key: int, field: Field, message: Message, links: Links, anchor: str) -> FieldRow:
+    # of what is derived the formula says all
+    told = () if field.derived else remarks(field, texts.number, message if message.has_conditions else None)
     return FieldRow(
         key=key,
         at=field.at,
         bits=field.bits,
-        name=field.name,
+        field=field,
         anchor=anchor,
-        kind=field.type,
         type=texts.type_name(field),
-        enum=field.enum,
         enum_url=links.enum(field.enum) if field.enum else "",
-        members=field.enum.members if field.enum else (),
         raw=texts.raw_range(field),
         physical=texts.physical_range(field),
         resolution=texts.factor(abs(field.scale.factor)) if field.scale else "",
         unit=field.unit.symbol if field.unit else "",
         unit_url=links.unit(field.unit) if field.unit else "",
-        unit_title=field.unit.quantity if field.unit else "",
         formula=field.formula if field.has_formula or field.derived else "",  # points are among the notes
-        summary=field.summary,
-        notes=tuple(_notes(field, message)),
-        errata=field.errata,
+        notes=[texts.capitalized(note) for note in told],
     )
-
-
-def _notes(field: Field, message: Message) -> list[str]:
-    if field.derived is not None:
-        return []  # the formula says it
-    told = remarks(field, texts.number, message if message.has_conditions else None)
-    return [note[:1].upper() + note[1:] for note in told]

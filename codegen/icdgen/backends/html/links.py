@@ -16,17 +16,8 @@ from icdgen.naming import snake, words
 
 _LONGEST = 80
 # Stems that file systems or the site itself keep for themselves.
-_TAKEN = frozenset(
-    [
-        "index",
-        "protocol",
-        "con",
-        "prn",
-        "aux",
-        "nul",
-        *(f"{port}{number}" for port in ("com", "lpt") for number in range(10)),
-    ]
-)
+_TAKEN = {"index", "protocol", "con", "prn", "aux", "nul"}
+_TAKEN.update(f"{port}{number}" for port in ("com", "lpt") for number in range(10))
 
 HOME, ERRATA, UNITS, CHANGES = "index.html", "errata.html", "units.html", "changes.html"
 
@@ -44,10 +35,11 @@ class Links:
     """Paths of a set of ICDs. Equal names below one owner are told apart by a number."""
 
     def __init__(self, icd: Icd) -> None:
-        self._nodes = {node.name: node for node in icd.nodes}
         self._pages: dict[tuple[str, str, str], str] = {}
         self._anchors: dict[int, dict[str, str]] = {}
         for node in icd.nodes:
+            owners: list[Message | Enum] = [*node.messages, *node.enums]
+            self._anchors.update((id(one), _anchors(one, node.vocabulary)) for one in owners)
             self._give_out(node, "message", "", node.messages)
             self._give_out(node, "enum", "enum-", node.enums)
 
@@ -79,17 +71,7 @@ class Links:
 
     def anchor(self, owner: Message | Enum, name: str) -> str:
         """Anchor of a field (``field-roll_angle``) or a member (``member-idle``) of its owner's page."""
-        known = self._anchors.get(id(owner))
-        if known is None:
-            known = self._anchors[id(owner)] = self._anchors_of(owner)
-        return known[name]
-
-    def _anchors_of(self, owner: Message | Enum) -> dict[str, str]:
-        vocabulary = self._nodes[owner.node].vocabulary
-        taken: set[str] = set()
-        if isinstance(owner, Message):
-            return {f.name: _free("field-" + slug(f.identifier or f.name, vocabulary), taken) for f in owner.fields}
-        return {str(m.value): _free("member-" + slug(m.identifier or m.name, vocabulary), taken) for m in owner.members}
+        return self._anchors[id(owner)][name]
 
     def field(self, message: Message, field: Field) -> str:
         """``demo/estimated_roll.html#field-roll_angle``"""
@@ -102,6 +84,14 @@ class Links:
     def unit(self, unit: Unit) -> str:
         """``units.html#unit-deg``"""
         return f"{UNITS}#unit-{unit.identifier}"
+
+
+def _anchors(owner: Message | Enum, vocabulary: tuple[str, ...]) -> dict[str, str]:
+    """Those of all fields by name, or of all members by value."""
+    taken: set[str] = set()
+    if isinstance(owner, Message):
+        return {f.name: _free("field-" + slug(f.identifier or f.name, vocabulary), taken) for f in owner.fields}
+    return {str(m.value): _free("member-" + slug(m.identifier or m.name, vocabulary), taken) for m in owner.members}
 
 
 def _free(name: str, taken: set[str]) -> str:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from icdgen import codec
 from icdgen.backends.html import drawing, fields, plan, sections, texts, wire
 from icdgen.backends.html.examples import examples, frames
 from icdgen.backends.html.relations import Relations
@@ -14,6 +16,7 @@ from icdgen.describe.numbers import count_text, length_text
 from icdgen.describe.shared_ids import sharing
 from icdgen.icd import wire_ids
 from icdgen.icd.model import Message, Node
+from icdgen.icd.rules.wording import count
 
 if TYPE_CHECKING:
     from icdgen.render import Renderer
@@ -28,7 +31,8 @@ def values(relations: Relations, node: Node, message: Message, render: Renderer)
     rows = fields.rows(message, node, relations.links, anchors)
     travels = relations.wire(message)
     shown = examples(message, node)
-    data = shown[0].frame if shown and message.telemetry_id is not None else _fresh(message, node)
+    is_received = message.telemetry_id is not None
+    data = shown[0].frame if shown and is_received else codec.encode(node, message, message.fresh)
     return {
         "message": message,
         "node": node,
@@ -43,12 +47,12 @@ def values(relations: Relations, node: Node, message: Message, render: Renderer)
         "bands": [(one, fields.between(rows, one), picture) for one, picture in zip(parts, pictures, strict=False)],
         "shares": [(one, fields.between(rows, one)) for one in shares],
         "buses": wire.buses(message, travels, data),
-        "example_data": message.telemetry_id is not None and bool(data),
+        "example_data": is_received and bool(data),
         "examples": shown,
         "frames": frames(message, node),
         "snippets": snippets(describe(relations.icd).message(message), render),
-        "contains": relations.contains.get((message.node, message.name), []),
-        "contained_in": relations.contained_in.get((message.node, message.name), []),
+        "contains": relations.contains[message.node, message.name],
+        "contained_in": relations.contained_in[message.node, message.name],
         "errata": errata_of_message(message),
         "plan": texts.script_json(_plan(node, message, pictures, shares, travels)),
     }
@@ -56,48 +60,39 @@ def values(relations: Relations, node: Node, message: Message, render: Renderer)
 
 def _facts(relations: Relations, node: Node, message: Message) -> list[tuple[str, str, str]]:
     """Label, text, and where a link leads."""
-    facts = [("Length", length_text(message), ""), ("Fields", str(message.field_count), "")]
+    protocol = relations.icd.protocol_of(node) or {}
+    reply = protocol.get("stream", {}).get("replies", {}).get(message.name)
+    answer = next((one for one in relations.icd.messages_of(node) if one.name == reply), None)
+    is_acknowledged = message.telecommand_id is not None and answer is None and "stream" not in protocol
+    source = [f"{word} {number}" for word, number in (("table", message.table), ("page", message.page)) if number]
+    facts = [
+        ("Length", length_text(message), ""),
+        ("Fields", str(message.field_count), ""),
+        *_open_parts(message),
+        ("End", "may be left out as far as it is zeros" if message.may_end_early else "", ""),
+        ("Reserved", f"last {count(message.reserved, 'byte')}" if message.reserved else "", ""),
+        ("Id", sharing(describe(relations.icd).node(node).known_ids, message), ""),
+        ("Group", message.group, ""),
+        ("Answered with", answer.name, relations.links.message(answer)) if answer else ("", "", ""),
+        ("Acknowledged", ("yes" if message.acknowledge else "no") if is_acknowledged else "", ""),
+        *(
+            ("Log mask", f"bit {row.bit}", relations.links.node(owner.name) + "#log-mask")
+            for owner, row in relations.logged[message.node, message.name]
+        ),
+        ("Manual", ", ".join(source), ""),
+        ("Spoken by", ", ".join(one.title for one in relations.speakers[node.name] if one is not node), ""),
+    ]
+    return [(label, text, url) for label, text, url in facts if text]
+
+
+def _open_parts(message: Message) -> Iterator[tuple[str, str, str]]:
+    """How much there is of each open part."""
     arrays = {one.path[0].name for one in message.fields if one.path}
     for part in message.open_parts:
         is_told = message.counter is not None and message.counter.implied and part is message.tail
         until = "up to the end" if is_told else f"as many as {count_text(part)} says"
-        what = "element" if part.step > 1 or part.name in arrays else "byte"
-        label = "Open end" if part is message.tail else "Open part"
-        facts.append((label, f"{part.name}: up to {texts.count(part.most, what)}, {until}", ""))
-    if message.may_end_early:
-        facts.append(("End", "may be left out as far as it is zeros", ""))
-    if message.reserved:
-        facts.append(("Reserved", f"last {texts.count(message.reserved, 'byte')}", ""))
-    shared = describe(relations.icd).node(node).known_ids
-    told = sharing(shared, message)
-    if told:
-        facts.append(("Id", told, ""))
-    if message.group:
-        facts.append(("Group", message.group, ""))
-    protocol = relations.icd.protocol_of(node) or {}
-    reply = protocol.get("stream", {}).get("replies", {}).get(message.name)
-    answer = next((one for one in relations.icd.messages_of(node) if one.name == reply), None)
-    if answer is not None:
-        facts.append(("Answered with", answer.name, relations.links.message(answer)))
-    elif message.telecommand_id is not None and "stream" not in protocol:
-        facts.append(("Acknowledged", "yes" if message.acknowledge else "no", ""))
-    for owner, row in relations.logged.get((message.node, message.name), []):
-        facts.append(("Log mask", f"bit {row.bit}", relations.links.node(owner.name) + "#log-mask"))
-    source = [f"table {message.table}"] if message.table else []
-    source += [f"page {message.page}"] if message.page else []
-    if source:
-        facts.append(("Manual", ", ".join(source), ""))
-    others = [one.title for one in relations.speakers[node.name] if one is not node]
-    if others:
-        facts.append(("Spoken by", ", ".join(others), ""))
-    return facts
-
-
-def _fresh(message: Message, node: Node) -> bytes:
-    """The frame of a new message: zeros, and what is constant."""
-    from icdgen import codec
-
-    return codec.encode(node, message, message.fresh)
+        most = count(part.most, "element" if part.step > 1 or part.name in arrays else "byte")
+        yield "Open end" if part is message.tail else "Open part", f"{part.name}: up to {most}, {until}", ""
 
 
 def _pictures(message: Message, node: Node, anchors: list[str], parts: list[sections.Section]) -> list[drawing.Drawing]:

@@ -26,7 +26,7 @@ def home(relations: Relations) -> dict[str, object]:
     errata = [erratum for node in icd.nodes for erratum in node.errata if not erratum.is_note]
     notes = sum(erratum.is_note for node in icd.nodes for erratum in node.errata)
     totals = [
-        (texts.count(len(icd.nodes), "node").split()[0], "nodes"),
+        (f"{len(icd.nodes):,}", "nodes"),
         (f"{len(messages):,}", "messages"),
         (f"{sum(m.field_count for m in messages):,}", "fields"),
         (f"{sum(len(n.enums) for n in icd.nodes):,}", "enumerations"),
@@ -48,9 +48,8 @@ def _paste_example(relations: Relations, example: Message | None) -> str:
     """A frame as it goes over the line, to show what can be pasted."""
     if example is None:
         return ""
-    buses = wire.buses(
-        example, relations.wire(example), examples.examples(example, relations.icd.node(example.node))[0].frame
-    )
+    frame = examples.examples(example, relations.icd.node(example.node))[0].frame
+    buses = wire.buses(example, relations.wire(example), frame)
     lines = buses[0].lines if buses else []
     return " ".join(chunk.text for chunk in lines[-1].chunks) if lines else ""
 
@@ -66,9 +65,14 @@ def _card(relations: Relations, node: Node) -> dict[str, object]:
             (sum(m.kind == kind for m in node.messages), title.lower() if kind != CONFIGURATION else "configuration")
             for kind, title in _KINDS.items()
         ],
-        "errata": sum(not erratum.is_note for erratum in node.errata),
-        "notes": sum(erratum.is_note for erratum in node.errata),
+        **_decisions(node),
     }
+
+
+def _decisions(node: Node) -> dict[str, int]:
+    """How many errata and notes it has."""
+    notes = sum(erratum.is_note for erratum in node.errata)
+    return {"errata": len(node.errata) - notes, "notes": notes}
 
 
 def _facts(node: Node) -> list[tuple[str, str]]:
@@ -97,7 +101,7 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
         "kinds": [
             (kind, title, count) for kind, title in _KINDS.items() if (count := sum(m.kind == kind for m in spoken))
         ],
-        "groups": sorted({str(row["group"]) for row in rows if row["group"]}),
+        "groups": sorted({message.group for message in spoken if message.group}),
         "loggable": [_loggable(relations, node, row) for row in node.loggable],
         "enums": [
             (Place(enum.name, relations.links.enum(enum)), len(enum.members), enum.summary) for enum in node.enums
@@ -108,8 +112,7 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
         ],
         "protocol": protocol.has_page(relations, node),
         "printed": relations.links.printed(node.name),
-        "errata_count": sum(not erratum.is_note for erratum in node.errata),
-        "notes_count": sum(erratum.is_note for erratum in node.errata),
+        **_decisions(node),
         "own": len(node.messages),
         "fields_count": sum(m.field_count for m in node.messages),
     }
@@ -122,7 +125,7 @@ def _numbering(node: Node) -> str:
 def _row(relations: Relations, node: Node, message: Message) -> dict[str, object]:
     own = message.node == node.name
     ids = texts.ids(message)
-    mask = [row.bit for owner, row in relations.logged.get((message.node, message.name), []) if owner is node]
+    mask = [row.bit for owner, row in relations.logged[message.node, message.name] if owner is node]
     return {
         "message": message,
         "url": relations.links.message(message),
@@ -130,11 +133,7 @@ def _row(relations: Relations, node: Node, message: Message) -> dict[str, object
         "anchors": [
             f"{'telemetry' if way == 'get' or message.kind == TELEMETRY else 'telecommand'}-{id}" for way, id in ids
         ],
-        "kind": message.kind,
-        "group": message.group,
-        "length": message.length,
         "bytes": message.length if len(message.lengths) == 1 else f"{message.least}\u2013{message.length}",
-        "fields": message.field_count,
         "mask": mask,
         "of": "" if own else relations.icd.node(message.node).title,
         "errata": len(errata_of_message(message)),

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict
 from typing import Any, NamedTuple
 
 from icdgen.backends.html import all_facts, envelopes, sequences, texts
-from icdgen.backends.html.all_facts import Row, as_text, sentence, value_text
+from icdgen.backends.html.all_facts import Row, as_text, value_text
 from icdgen.backends.html.relations import Place, Relations
 from icdgen.icd.model import Enum, Node
 from icdgen.protocol import facts
@@ -50,7 +49,11 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
             *((name, _crc_rows(crc), f"0x{check:X}" if check is not None else "") for name, crc, check in checks),
             *((one.name, [Row(*row) for row in one.rows], "") for one in sums),
         ],
-        "calculator": texts.script_json([{"name": name, **_plain(crc)} for name, crc in computed]) if computed else "",
+        "calculator": (
+            texts.script_json([{"name": name, **envelopes.crc_numbers(crc)} for name, crc in computed])
+            if computed
+            else ""
+        ),
         "identifier": _identifier(known, section),
         "types": [
             Row(f"{one['value']} · {one['name']}", one.get("summary", ""))
@@ -137,21 +140,13 @@ def _identifier(known: Facts, section: dict[str, Any]) -> list[Box]:
 
 
 def _checks(known: Facts, section: dict[str, Any]) -> list[tuple[str, Crc, int | None]]:
-    found = []
-    if known.checksum:
-        found.append((f"CRC-{known.checksum.crc.width}", known.checksum.crc, section["crc8"].get("check")))
-    if known.crc16:
-        found.append((f"CRC-{known.crc16.width}", known.crc16, section["crc16"].get("check")))
-    return found
-
-
-def _plain(crc: Crc) -> dict[str, object]:
-    return {key: value for key, value in asdict(crc).items() if value is not None}
+    found = (("crc8", known.checksum and known.checksum.crc), ("crc16", known.crc16))
+    return [(f"CRC-{crc.width}", crc, section[key].get("check")) for key, crc in found if crc]
 
 
 def _crc_rows(crc: Crc) -> list[Row]:
     return [
-        Row(sentence(fact.about), value_text(fact, getattr(crc, fact.name)))
+        Row(texts.capitalized(fact.about), value_text(fact, getattr(crc, fact.name)))
         for fact in facts_of(Crc)
         if getattr(crc, fact.name) is not None
     ]
@@ -181,25 +176,30 @@ def entries(relations: Relations, node: Node, url: str) -> Iterator[tuple[str, s
     for title, rows in lines(section):
         words = " ".join(f"{row.about} {row.value}" for row in rows)
         yield f"line bus serial interface {words}", f"{title} settings", Place(node.title, f"{url}#lines")
-    if known.framing:
-        words = "uart framing escape start end of message byte stuffing"
-        yield words, "Framing", Place(node.title, f"{url}#framing")
-    if known.stream:
-        words = "envelope stream header trailer sync length sequence delimiter framing checksum"
-        yield words, "Envelope", Place(node.title, f"{url}#envelope")
-    for name in (
-        *(name for name, _, _ in _checks(known, section)),
-        *(one.name for one in envelopes.sums(section, known)),
-    ):
-        words = "crc checksum polynomial init reflect calculator " + name.replace("-", "").lower()
-        yield words, f"{name} parameters and calculator", Place(node.title, f"{url}#checksums")
-    if known.can:
-        yield "can identifier bits message types", "CAN identifier", Place(node.title, f"{url}#identifier")
-    if known.errors:
-        yield "error codes reasons nack", "Error codes", Place(node.title, f"{url}#errors")
-    yield "acknowledge ack nack handshake sequence", "Acknowledges", Place(node.title, f"{url}#acknowledges")
-    for one in sequences.procedures(relations, node, known):
-        words = " ".join(arrow.text for arrow in one.arrows)
-        yield f"procedure sequence {words}", one.title, Place(node.title, f"{url}#procedures")
-    yield "timeout time-out retries interval wait", "Time-outs", Place(node.title, f"{url}#times")
-    yield "assumptions assumed reasons", "Assumptions", Place(node.title, f"{url}#assumptions")
+    checks = [*(name for name, _, _ in _checks(known, section)), *(one.name for one in envelopes.sums(section, known))]
+    crc = "crc checksum polynomial init reflect calculator"
+    found = [
+        (known.framing, "uart framing escape start end of message byte stuffing", "Framing", "framing"),
+        (
+            known.stream,
+            "envelope stream header trailer sync length sequence delimiter framing checksum",
+            "Envelope",
+            "envelope",
+        ),
+        *(
+            (True, f"{crc} {one.replace('-', '').lower()}", f"{one} parameters and calculator", "checksums")
+            for one in checks
+        ),
+        (known.can, "can identifier bits message types", "CAN identifier", "identifier"),
+        (known.errors, "error codes reasons nack", "Error codes", "errors"),
+        (True, "acknowledge ack nack handshake sequence", "Acknowledges", "acknowledges"),
+        *(
+            (True, f"procedure sequence {' '.join(arrow.text for arrow in one.arrows)}", one.title, "procedures")
+            for one in sequences.procedures(relations, node, known)
+        ),
+        (True, "timeout time-out retries interval wait", "Time-outs", "times"),
+        (True, "assumptions assumed reasons", "Assumptions", "assumptions"),
+    ]
+    for is_there, words, title, anchor in found:
+        if is_there:
+            yield words, title, Place(node.title, f"{url}#{anchor}")

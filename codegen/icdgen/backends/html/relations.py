@@ -11,7 +11,7 @@ from icdgen.backends.html.wire import Speaker, Wire
 from icdgen.backends.python.objects.links import link_of
 from icdgen.icd.annex import Loggable
 from icdgen.icd.erratum import Erratum
-from icdgen.icd.model import Enum, Field, Icd, Message, Node
+from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.units import Unit
 from icdgen.protocol import facts
 
@@ -39,8 +39,8 @@ class Relations:
         self.speakers: dict[str, list[Node]] = {
             one.name: [node for node in icd.nodes if node is one or one in icd.included(node)] for one in icd.nodes
         }
-        self.uses: dict[tuple[str, str], list[tuple[Message, Field]]] = defaultdict(list)
-        self.units: dict[str, tuple[Unit, list[tuple[Message, Field]]]] = {}
+        self.uses: dict[tuple[str, str], list[Place]] = defaultdict(list)  # fields that hold an enumeration
+        self.units: dict[str, tuple[Unit, list[Place]]] = {}  # and the fields that have it
         self.places: dict[tuple[str, str], list[Place]] = defaultdict(list)
         self.contained_in: dict[tuple[str, str], list[Contained]] = defaultdict(list)
         self.contains: dict[tuple[str, str], list[Contained]] = defaultdict(list)
@@ -57,9 +57,9 @@ class Relations:
                 place = Place(f"{message.name}: {field.name}", self.links.field(message, field))
                 self._errata(field.errata, place)
                 if field.enum is not None:
-                    self.uses[field.enum.node, field.enum.name].append((message, field))
+                    self.uses[field.enum.node, field.enum.name].append(place)
                 if field.unit is not None:
-                    self.units.setdefault(field.unit.identifier, (field.unit, []))[1].append((message, field))
+                    self.units.setdefault(field.unit.identifier, (field.unit, []))[1].append(place)
             for part in message.contains:
                 other = spoken.get(part.message)
                 if other is not None:
@@ -90,7 +90,7 @@ class Relations:
 
     def places_of(self, erratum: Erratum) -> list[Place]:
         """Where the erratum applies."""
-        return self.places.get((erratum.id, erratum.title), [])
+        return self.places[erratum.id, erratum.title]
 
     def anchors(self, message: Message) -> list[str]:
         """Anchors of the fields, in their order."""
@@ -107,11 +107,6 @@ class Relations:
             known = facts.of(self.icd, node)
             self._spoken[node.name] = Speaker(known, self.icd.protocol_of(node), link_of(self.icd, known))
         return self._spoken[node.name]
-
-    def users(self, enum: Enum) -> list[Place]:
-        """Fields that hold the enumeration."""
-        uses = self.uses.get((enum.node, enum.name), [])
-        return [Place(f"{m.name}: {f.name}", self.links.field(m, f)) for m, f in uses]
 
 
 def manual(node: Node) -> str:

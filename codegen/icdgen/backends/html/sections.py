@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from icdgen.backends.html.relations import Relations
+from icdgen.describe.numbers import byte_range
 from icdgen.icd.model import Field, Message
+from icdgen.icd.rules.wording import count
 
 _LONG = 16  # fields of a message that is shown in sections; four flags count as one field
 _SHARE = 10  # fields of a section that is no message of its own
@@ -25,13 +27,12 @@ class Section:
     @property
     def about(self) -> str:
         """``bytes 0 to 5, 3 fields``"""
-        span = f"byte {self.first}" if self.end - self.first < 2 else f"bytes {self.first} to {self.end - 1}"
-        return f"{span}, {len(self.keys)} field{'' if len(self.keys) == 1 else 's'}"
+        return f"{byte_range(self.first, max(self.end - self.first, 1))}, {count(len(self.keys), 'field')}"
 
 
 def bands(relations: Relations, message: Message) -> list[Section]:
     """The messages that it repeats, and what is between them; none if it repeats none, or not in whole bytes one after another."""
-    parts = sorted(relations.contains.get((message.node, message.name), []), key=lambda part: part.at)
+    parts = sorted(relations.contains[message.node, message.name], key=lambda part: part.at)
     found: list[Section] = []
     end = 0
     for part in parts:
@@ -49,8 +50,7 @@ def shares(message: Message) -> list[Section]:
     keys = list(range(1, len(message.fields) + 1))
     if not _is_long(message):
         return [Section("Fields", 0, message.length, keys)]
-    count = -(-len(keys) // _SHARE)
-    size = -(-len(keys) // count)
+    size = -(-len(keys) // -(-len(keys) // _SHARE))  # all about as long
     found = []
     for start in range(0, len(keys), size):
         some = keys[start : start + size]
@@ -69,7 +69,7 @@ def _folded(message: Message, found: list[Section]) -> list[Section]:
     """Of a long message only the first section is open."""
     if not _is_long(message):
         return found
-    return [Section(s.title, s.first, s.end, s.keys, s.url, open=s is found[0]) for s in found]
+    return [replace(one, open=one is found[0]) for one in found]
 
 
 def _is_long(message: Message) -> bool:
@@ -77,7 +77,7 @@ def _is_long(message: Message) -> bool:
 
 
 def _between(message: Message, first: int, end: int) -> list[Section]:
-    title = f"Bytes {first} to {end - 1}" if end - first > 1 else f"Byte {first}"
+    title = byte_range(first, end - first).capitalize()
     return [Section(title, first, end, _keys(message, first, end))] if end > first else []
 
 

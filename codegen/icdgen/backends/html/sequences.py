@@ -7,11 +7,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from icdgen.backends.html.relations import Relations
-from icdgen.backends.html.texts import BUSES, clip, count
-from icdgen.icd.model import Message, Node
+from icdgen.backends.html.texts import BUSES, capitalized, clip
+from icdgen.icd.model import Node
+from icdgen.icd.rules.wording import count
 from icdgen.protocol.declared import Kind, facts_of
 from icdgen.protocol.facts import Facts
-from icdgen.protocol.sections import Download, Operation, Step
+from icdgen.protocol.sections import Download, Step
 
 TOP, ROW = 40, 46
 _TEXT, _NOTE = 50, 62  # characters that fit between the lines
@@ -60,21 +61,15 @@ def acknowledges(relations: Relations, node: Node, known: Facts) -> list[Sequenc
     if known.i2c_address is not None:
         told = [Arrow(True, f"write to {known.i2c_address:02X}: id, parameters")]
         if known.polled:
-            one, every = (
-                known.polled,
-                f"every {known.client.poll_interval} ms, for {known.client.poll_timeout} ms at most",
-            )
-            url = relations.links.message(one.message)
+            one, url = known.polled, relations.links.message(known.polled.message)
+            every = f"every {known.client.poll_interval} ms, for {known.client.poll_timeout} ms at most"
             told += [Arrow(True, one.message.name, every, url), Arrow(False, f"until {one.processed}", one.error, url)]
         found.append(Sequence("I²C, telecommand", node.title, told))
     if known.can:
         types = known.can.types
-        found.append(
-            Sequence("CAN, telecommand", node.title, list(_on_can(types, "telecommand", "acknowledge", "refusal")))
-        )
-        found.append(
-            Sequence("CAN, telemetry", node.title, list(_on_can(types, "request", "reply", "request_refusal")))
-        )
+        told = list(_on_can(types, "telecommand", "acknowledge", "refusal"))
+        asked = list(_on_can(types, "request", "reply", "request_refusal"))
+        found += [Sequence("CAN, telecommand", node.title, told), Sequence("CAN, telemetry", node.title, asked)]
     return found
 
 
@@ -91,21 +86,21 @@ def procedures(relations: Relations, node: Node, known: Facts) -> list[Sequence]
         arrows = [*_steps(relations, one), *(_packets(relations, known) if isinstance(one, Download) else [])]
         found.append(Sequence(f"File {name}", node.title, arrows, _limits(one)))
     for title, operation in (("Program copy", known.program_copy), ("Program information", known.program_information)):
-        if isinstance(operation, Operation):
+        if operation is not None:
             found.append(Sequence(title, node.title, list(_steps(relations, operation)), _limits(operation)))
     return found
 
 
 def _steps(relations: Relations, one: object) -> Iterator[Arrow]:
-    for fact in facts_of(type(one)):
+    for fact in facts_of(one):
         step = getattr(one, fact.name)
         if fact.kind is not Kind.STEP or not isinstance(step, Step):
             continue
-        yield Arrow(True, _title(step.message, fact.direction), fact.about, relations.links.message(step.message))
-        if fact.direction == "telemetry":
-            yield Arrow(
-                False, step.message.name, ", ".join(step.fields.values()), relations.links.message(step.message)
-            )
+        name, url = step.message.name, relations.links.message(step.message)
+        is_asked = fact.direction == "telemetry"
+        yield Arrow(True, f"request for {name}" if is_asked else name, fact.about, url)
+        if is_asked:
+            yield Arrow(False, name, ", ".join(step.fields.values()), url)
 
 
 def _packets(relations: Relations, known: Facts) -> Iterator[Arrow]:
@@ -120,22 +115,17 @@ def _packets(relations: Relations, known: Facts) -> Iterator[Arrow]:
     url = relations.links.message(message) if message else ""
     counter = f"{count(files.counter_bytes, 'byte')} of counter, " if files.counter_bytes else ""
     yield Arrow(False, message.name if message else "packets of the file", told, url)
-    yield Arrow(
-        False, "… one packet after another", f"{counter}{count(files.packet_bytes, 'byte')} of the file each", url
-    )
-
-
-def _title(message: Message, direction: str) -> str:
-    return f"request for {message.name}" if direction == "telemetry" else message.name
+    note = f"{counter}{count(files.packet_bytes, 'byte')} of the file each"
+    yield Arrow(False, "… one packet after another", note, url)
 
 
 def _limits(one: object) -> list[str]:
     """Times and counts of a procedure, in words."""
     found = []
-    for fact in facts_of(type(one)):
+    for fact in facts_of(one):
         value = getattr(one, fact.name)
         if fact.kind is Kind.TIME:
             found.append(f"{fact.about}: {value} ms")
         elif fact.kind is Kind.NUMBER and value is not None:
             found.append(f"{fact.about}: {value}")
-    return [text[:1].upper() + text[1:] for text in found]
+    return list(map(capitalized, found))

@@ -49,16 +49,16 @@ def type_name(field: Field) -> str:
     return f"{field.type}{field.bits}" if field.type in ("uint", "int", "float") else field.type
 
 
-def count(number: int, noun: str, plural: str = "") -> str:
-    """``1 byte``, ``2 bytes``"""
-    return f"{number:,} {noun if number == 1 else plural or noun + 's'}"
-
-
 def ids(message: Message) -> list[tuple[str, int]]:
     """The ids of a message and what each is for."""
     if message.kind == CONFIGURATION:
         return [("set", message.set_id or 0), ("get", message.get_id or 0)]
     return [("id", message.id or 0)]
+
+
+def capitalized(text: str) -> str:
+    """The text with a capital letter at its beginning, the others as they are."""
+    return text[:1].upper() + text[1:]
 
 
 def clip(text: str, most: int) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 
 from icdgen.backends.html import texts
-from icdgen.backends.html.relations import Place, Relations
+from icdgen.backends.html.relations import Relations
 
 _FEW = 8
 _TYPES = {
@@ -23,8 +23,7 @@ def values(relations: Relations) -> dict[str, object]:
     """Values of the page: units in use by quantity, types with their number of fields."""
     quantities: dict[str, list[dict[str, object]]] = defaultdict(list)
     for unit, uses in relations.units.values():
-        places = [Place(f"{m.name}: {f.name}", relations.links.field(m, f)) for m, f in uses]
-        quantities[unit.quantity].append({"unit": unit, "uses": places[:_FEW], "more": places[_FEW:]})
+        quantities[unit.quantity].append({"unit": unit, "uses": uses[:_FEW], "more": uses[_FEW:]})
     counts: dict[str, int] = defaultdict(int)
     widths: dict[str, set[int]] = defaultdict(set)
     for node in relations.icd.nodes:
@@ -48,6 +47,6 @@ def _numberings(relations: Relations) -> list[tuple[str, str, str]]:
 
 
 def _widths(kind: str, found: set[int]) -> str:
-    if kind in ("bytes", "text"):
-        return texts.span(str(min(found)), str(max(found))) if len(found) > 6 else ", ".join(map(str, sorted(found)))
+    if kind in ("bytes", "text") and len(found) > 6:
+        return texts.span(str(min(found)), str(max(found)))
     return ", ".join(map(str, sorted(found)))

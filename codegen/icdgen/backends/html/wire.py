@@ -4,7 +4,7 @@ is left out."""
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from icdgen_runtime.wire.can import CanMessage, can_split
@@ -16,10 +16,10 @@ from icdgen_runtime.wire.stream import stream_encode
 from icdgen_runtime.wire.uart import uart_encode
 
 from icdgen.backends.html import envelopes
-from icdgen.backends.html.texts import count
 from icdgen.icd.model import Message
+from icdgen.icd.rules.wording import count
 from icdgen.protocol.facts import Facts
-from icdgen.protocol.sections import Can
+from icdgen.protocol.sections import Can, Framing
 
 _SHOWN = 24  # data bytes that are written out
 
@@ -120,7 +120,7 @@ def crc_facts(facts: Facts) -> dict[str, object]:
     """Parameters of the checksum of messages, its bytes and their order, and whether it covers the id."""
     form = facts.checksum
     assert form is not None
-    found = {key: value for key, value in asdict(form.crc).items() if value is not None} | {"bytes": form.bytes}
+    found = envelopes.crc_numbers(form.crc) | {"bytes": form.bytes}
     told = {"covers_id": form.covers_id, "little": facts.little and form.bytes > 1}
     return found | {key: True for key, value in told.items() if value}
 
@@ -152,9 +152,6 @@ def _crc_chunk(sent: bytes, speaker: Speaker, direction: str) -> Chunk:
     return Chunk("crc", _hex(sent), f"CRC-{form.crc.width}" + (", optional" if optional else ""))
 
 
-# Envelopes
-
-
 def _stream(message: Message, wire: Wire, data: bytes) -> Bus | None:
     form = wire.facts.stream
     if form is None:
@@ -163,15 +160,12 @@ def _stream(message: Message, wire: Wire, data: bytes) -> Bus | None:
     ids: dict[Direction, int | None] = {"telecommand": message.telecommand_id, "telemetry": message.telemetry_id}
     for direction, id in ids.items():
         if id is not None:
-            parts = envelopes.packet(form, wire.link, message, direction, data)
+            parts = envelopes.packet(form, wire.link, id, direction, data)
             lines.append(Line(direction.capitalize(), [Chunk(one.kind, _hex(one.data), one.title) for one in parts]))
             sent = stream_encode(wire.link, id, data, direction)
             if sent != b"".join(one.data for one in parts):
                 lines.append(Line("as it is sent", [Chunk("data", _hex(sent), "stuffed, between delimiters")]))
     return Bus("Envelope", f"A message ends {envelopes.ENDS[form.delimited_by]}.", lines)
-
-
-# UART
 
 
 def _uart(message: Message, wire: Wire, data: bytes) -> Bus | None:
@@ -186,7 +180,7 @@ def _uart(message: Message, wire: Wire, data: bytes) -> Bus | None:
     if message.telemetry_id is not None:
         lines.append(Line("Request", _framed(wire.link, message.telemetry_id, b"")))
         lines.append(Line("Answer", _framed(wire.link, message.telemetry_id, data)))
-    return Bus("UART", _uart_note(wire.section["uart"], wire.facts), lines)
+    return Bus("UART", _uart_note(wire.section["uart"], wire.facts.framing), lines)
 
 
 def _framed(link: Link, id: int, data: bytes, checked: Speaker | None = None) -> list[Chunk]:
@@ -203,19 +197,14 @@ def _framed(link: Link, id: int, data: bytes, checked: Speaker | None = None) ->
     return [*chunks, Chunk("frame", _hex(line[ends[-1] :]), "end of message")]
 
 
-def _uart_note(section: dict[str, Any], facts: Facts) -> str:
+def _uart_note(section: dict[str, Any], framing: Framing) -> str:
     parts = [f"{section['baud_rate']:,} baud"] if "baud_rate" in section else []
     if {"data_bits", "parity", "stop_bits"} <= section.keys():
         parity = section["parity"]
         parts.append(f"{section['data_bits']}{'N' if parity == 'none' else parity[0].upper()}{section['stop_bits']}")
-    framing = facts.framing
-    assert framing is not None
     within = "id and data" if framing.escapes_id else "the data"
     doubled = f"{framing.escape:02X} within {within} is sent as {framing.escape:02X} {framing.escaped:02X}"
     return ", ".join(parts) + (". " if parts else "") + doubled + "."
-
-
-# I2C
 
 
 def _i2c(message: Message, wire: Wire, data: bytes) -> Bus | None:
@@ -249,9 +238,6 @@ def _with_crc(wire: Wire, direction: str, id: int, data: bytes, sent: list[Chunk
         yield Line("with CRC", [*sent, _crc_chunk(whole[1 + len(data) :], checked, direction)])
 
 
-# CAN
-
-
 def _can(message: Message, wire: Wire, data: bytes) -> Bus | None:
     form = wire.facts.can
     if form is None:
@@ -260,25 +246,23 @@ def _can(message: Message, wire: Wire, data: bytes) -> Bus | None:
     lines: list[Line] = []
     if message.telecommand_id is not None:
         sent = CanMessage("telecommand", message.telecommand_id, 0, node, data)
-        lines += _packets(wire, sent, "Telecommand")
+        lines += _packets(wire, form, sent, "Telecommand")
     if message.telemetry_id is not None:
-        lines += _packets(wire, CanMessage("request", message.telemetry_id, 0, node), "Request")
-        lines += _packets(wire, CanMessage("reply", message.telemetry_id, node, 0, data), "Answer")
+        lines += _packets(wire, form, CanMessage("request", message.telemetry_id, 0, node), "Request")
+        lines += _packets(wire, form, CanMessage("reply", message.telemetry_id, node, 0, data), "Answer")
     bits = sum(part.bits for part in form.parts.values())
     note = f"{bits}-bit identifiers. Your own address stands as 0: put it in its place."
     return Bus("CAN", note, lines) if lines else None
 
 
-def _packets(wire: Wire, message: CanMessage, label: str) -> Iterator[Line]:
+def _packets(wire: Wire, form: Can, message: CanMessage, label: str) -> Iterator[Line]:
     """One packet, or as many extended ones as it takes; of many the first two and the last."""
-    form = wire.facts.can
-    assert form is not None
     try:
         packets = can_split(wire.link, message)
     except (TooLongError, UnsupportedError):
         return
     if len(packets) == 1 and len(message.data) <= form.data_bytes:
-        yield Line(label, [_identifier(wire, packets[0].id), *_data(packets[0].data)])
+        yield Line(label, [_identifier(wire, form, packets[0].id), *_data(packets[0].data)])
         return
     assert form.extended is not None
     for index, packet in enumerate(packets):
@@ -288,13 +272,11 @@ def _packets(wire: Wire, message: CanMessage, label: str) -> Iterator[Line]:
             continue
         left_at = form.extended.left_at
         left = Chunk("crc", _hex(packet.data[left_at:]), "packets left")
-        chunks = [_identifier(wire, packet.id), *_data(packet.data[:left_at]), left]
+        chunks = [_identifier(wire, form, packet.id), *_data(packet.data[:left_at]), left]
         yield Line(f"{label} {index + 1}/{len(packets)}", chunks)
 
 
-def _identifier(wire: Wire, id: int) -> Chunk:
-    form = wire.facts.can
-    assert form is not None
+def _identifier(wire: Wire, form: Can, id: int) -> Chunk:
     parts = {role: id >> part.shift & (1 << part.bits) - 1 for role, part in form.parts.items()}
     rows = wire.section["can"]["message_types"]["values"]
     name = next(row["name"] for row in rows if row["value"] == parts["type"])
