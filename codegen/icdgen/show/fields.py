@@ -21,14 +21,9 @@ from icdgen.icd.model import Field, Message, Node, Struct, Tail
 from icdgen.tables import Column, render
 
 _COLUMNS = [
-    Column("offset", right=True, fixed=True),
-    Column("bits", right=True, fixed=True),
-    Column("type"),
-    Column("name"),
-    Column("unit"),
-    Column("resolution", right=True),
-    Column("from", right=True),
-    Column("to", right=True),
+    *(Column(title, right=True, fixed=True) for title in ("offset", "bits")),
+    *(Column(title) for title in ("type", "name", "unit")),
+    *(Column(title, right=True) for title in ("resolution", "from", "to")),
     Column("notes"),
 ]
 
@@ -52,9 +47,8 @@ def _row(field: Field, message: Message | Struct) -> tuple[str, ...]:
     part = _open_part(message if isinstance(message, Message) else None, field)
     if part is not None and part.name == field.name:
         bits = f"up to {part.most} x {8 * part.step}"
-    if field.derived is not None:
-        return ("", "", "derived", field.name, unit, resolution, low, high, "; ".join(_notes(field, message)))
-    return (str(field.at), bits, kind, field.name, unit, resolution, low, high, "; ".join(_notes(field, message)))
+    place = ("", "", "derived") if field.derived else (str(field.at), bits, kind)
+    return (*place, field.name, unit, resolution, low, high, "; ".join(_notes(field, message)))
 
 
 def remarks(

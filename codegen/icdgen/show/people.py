@@ -18,26 +18,18 @@ from icdgen.tables import Column, clean, render
 from icdgen.values.errors import NotFound
 from icdgen.values.find import by_name, describe, find_message, find_named, find_node
 
+_FIGURES = ("type", "version", "commands", "telemetry", "settings", "fields", "errata", "notes")
 _NODES = [
     Column("node", fixed=True),
     Column("title"),
-    Column("type", right=True, fixed=True),
-    Column("version", right=True, fixed=True),
-    Column("commands", right=True, fixed=True),
-    Column("telemetry", right=True, fixed=True),
-    Column("settings", right=True, fixed=True),
-    Column("fields", right=True, fixed=True),
-    Column("errata", right=True, fixed=True),
-    Column("notes", right=True, fixed=True),
+    *(Column(title, right=True, fixed=True) for title in _FIGURES),
     Column("includes"),
 ]
 _MESSAGES = [
     Column("id", right=True, fixed=True),
     Column("kind"),
     Column("name"),
-    Column("bytes", right=True, fixed=True),
-    Column("fields", right=True, fixed=True),
-    Column("table", right=True, fixed=True),
+    *(Column(title, right=True, fixed=True) for title in ("bytes", "fields", "table")),
     Column("group"),
     Column("of"),
 ]
@@ -113,16 +105,17 @@ def _one(icd: Icd, node: Node, name: str, width: int | None, kind: str | None) -
         return _message(icd, find_message(icd, node.name, name, kind), width)
     except NotFound:
         family = (*icd.included(node), node)
-        enums = by_name([e for n in family for e in n.enums], name, node.vocabulary)
-        if enums:
-            return "\n".join(_enum(enum, width) for enum in enums)
-        structs = by_name([s for n in family for s in n.structs], name, node.vocabulary)
-        if structs:
-            return "\n".join(_struct(struct, icd.node(struct.node), width) for struct in structs)
-        errata = [e for n in family for e in n.errata if e.id.casefold() == name.casefold()]
-        if not errata:
+        found = (
+            [_enum(one, width) for one in by_name([e for n in family for e in n.enums], name, node.vocabulary)]
+            or [
+                _struct(one, icd.node(one.node), width)
+                for one in by_name([s for n in family for s in n.structs], name, node.vocabulary)
+            ]
+            or [_erratum(one, width) for n in family for one in n.errata if one.id.casefold() == name.casefold()]
+        )
+        if not found:
             raise
-        return "\n".join(_erratum(erratum, width) for erratum in errata)
+        return "\n".join(found)
 
 
 def _struct(struct: Struct, node: Node, width: int | None) -> str:
@@ -150,14 +143,10 @@ def _message(icd: Icd, message: Message, width: int | None) -> str:
     lines += [f"Dangerous: {message.hazard}"] if message.hazard else []
     lines += filter(None, [sharing(ids_of(icd, node), message)])
     lines += [f"From bit {part.at} it repeats {part.message}." for part in message.contains]
-    text = _lines(lines, width)
     table = field_table(message, node, width)
-    text += "\n" + table if table else ""
-    enums = dict.fromkeys(f.enum for f in message.fields if f.enum)
-    errata = errata_of_message(message)
-    for part in (*(_enum(e, width) for e in enums), *(_erratum(e, width) for e in errata)):
-        text += "\n" + part
-    return text
+    enums = [_enum(one, width) for one in dict.fromkeys(f.enum for f in message.fields if f.enum)]
+    errata = [_erratum(one, width) for one in errata_of_message(message)]
+    return "\n".join([_lines(lines, width), *filter(None, [table]), *enums, *errata])
 
 
 def _enum(enum: Enum, width: int | None) -> str:

@@ -34,7 +34,6 @@ OTHER_TYPES = {
 """Types that a field of the same width could be instead."""
 
 T = TypeVar("T", Field, Message, Node, Member)
-IDS = ("id", "set_id", "get_id")
 _OTHER_ORDER = {"little": "big", "big": "little", "lsb0": "msb0", "msb0": "lsb0"}
 _WIDER = {**dict.fromkeys(("uint", "int", "enum"), (-1, 1)), **dict.fromkeys(("bytes", "text"), (-8, 8))}
 _LIMITS = ("min", "max", "above", "below")
@@ -57,7 +56,9 @@ def of_field(field: Field, message: Message | Struct, node: Node) -> Iterator[tu
     source = field.source
     parts = message.open_parts
     if any(part.name == field.name for part in parts):
-        yield from _of_open(field)
+        # how many elements there are, and where, is no change of a field
+        if not field.is_bytes and field.struct is None:
+            yield from (*_types(field), *_formulas(field), *_values(field))
         return
     if parts and isinstance(message, Message):
         size = 8 * message.fixed
@@ -102,14 +103,6 @@ def _of_conditions(field: Field, message: Message | Struct) -> Iterator[tuple[Ch
             now = replace(one, values=(said + step,))
             changed = (*field.when[:place], now, *field.when[place + 1 :])
             yield _step("condition", field.source["when"], one.field, said, step), replace(field, when=changed)
-
-
-def _of_open(field: Field) -> Iterator[tuple[Change, Field]]:
-    """The changes of the elements of an open end; how many there are, and where, is no change of a field."""
-    if not field.is_bytes and field.struct is None:
-        yield from _types(field)
-        yield from _formulas(field)
-        yield from _values(field)
 
 
 def _readings(field: Field, node: Node) -> Iterator[tuple[Change, Field]]:
@@ -205,7 +198,7 @@ def _values(field: Field) -> Iterator[tuple[Change, Field]]:
 def of_message(message: Message, node: Node) -> Iterator[tuple[Change, Message]]:
     """The changes of what a message says of itself."""
     source = message.source
-    for key in (*IDS, "length"):
+    for key in ("id", "set_id", "get_id", "length"):
         value = getattr(message, key)
         if key == "length" and message.tail is not None:
             continue  # what is open begins where it ends
@@ -282,17 +275,15 @@ def _can_be(field: Field, kind: str) -> bool:
     """Whether a field of this width and with what else its line says may be of that type."""
     if field.type == "float" and field.special:
         return False
+    if kind in ("uint", "int"):
+        return field.bits <= 64
+    if any(key in field.source for key in _OF_SCALED):
+        return False
     if kind == "bool":
-        return field.bits == 1 and not any(key in field.source for key in _OF_SCALED)
+        return field.bits == 1
     if kind == "float":
-        return field.bits in (32, 64) and not any(key in field.source for key in _OF_SCALED)
-    if kind == "bytes":
-        return (
-            not field.count
-            and field.bits % 8 == field.at % 8 == 0
-            and not any(key in field.source for key in _OF_SCALED)
-        )
-    return field.bits <= 64
+        return field.bits in (32, 64)
+    return not field.count and field.bits % 8 == field.at % 8 == 0
 
 
 def _same_places(fields: tuple[Field, ...], node: Node, others: tuple[Field, ...], other: Node) -> bool:

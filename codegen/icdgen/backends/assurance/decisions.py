@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from icdgen.backends.assurance.paper import Cell, Group, Page, lines_of
-from icdgen.backends.assurance.places import Files
+from icdgen.backends.assurance.paper import Cell, Files, Group, Page, lines_of
 from icdgen.backends.assurance.trace import Element
 from icdgen.icd.errata import section
 from icdgen.icd.erratum import Erratum

@@ -9,11 +9,9 @@ from typing import TYPE_CHECKING
 from icdgen import __version__, backends
 from icdgen.backends.assurance import decisions, measured
 from icdgen.backends.assurance.measured import Measurement
-from icdgen.backends.assurance.paper import Cell, Group, Page, csv_text, lines_of
-from icdgen.backends.assurance.places import Files
-from icdgen.backends.assurance.symbols import Symbols
+from icdgen.backends.assurance.paper import Cell, Files, Group, Page, csv_text, lines_of
 from icdgen.backends.assurance.trace import Element, Trace
-from icdgen.backends.assurance.tracing import CHANGES, Tracing, title
+from icdgen.backends.assurance.tracing import CHANGES, Symbols, Tracing, title
 from icdgen.icd.model import Icd
 from icdgen.render import Renderer
 

@@ -1,11 +1,15 @@
-"""A paper of the pack: a table with what it says, as a page to print and as CSV (RFC 4180)."""
+"""A paper of the pack: a table with what it says, as a page to print and as CSV (RFC 4180). Files are named in it by where they
+lie below the folder that holds them all, and not on somebody's machine."""
 
 from __future__ import annotations
 
 import csv
 import io
+import os
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+
+from icdgen.diagnostics import Place
 
 Cell = str | Sequence[str]
 """A text, or several, each in a line of its own."""
@@ -30,7 +34,7 @@ class Page:
     columns: tuple[str, ...]
     groups: list[Group]
     facts: tuple[tuple[str, str], ...] = ()
-    data: tuple[str, ...] = field(default=())  # names of the CSV files of the same
+    data: tuple[str, ...] = ()  # names of the CSV files of the same
 
 
 def lines_of(cell: Cell) -> list[str]:
@@ -47,12 +51,16 @@ def csv_text(columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
     return file.getvalue()
 
 
-def ranges(numbers: Iterable[int]) -> str:
-    """Rising numbers in short: ``31-38 40``."""
-    runs: list[list[int]] = []
-    for number in numbers:
-        if runs and number == runs[-1][1] + 1:
-            runs[-1][1] = number
-        else:
-            runs.append([number, number])
-    return " ".join(f"{first}-{last}" if last > first else str(first) for first, last in runs)
+class Files:
+    """The files that the ICDs were read from."""
+
+    def __init__(self, files: Iterable[str]) -> None:
+        folders = {os.path.dirname(os.path.abspath(file)) for file in files}
+        self._top = os.path.commonpath(folders) if folders else ""
+
+    def name(self, file: str) -> str:
+        return os.path.relpath(os.path.abspath(file), self._top).replace(os.sep, "/") if file else ""
+
+    def line(self, place: Place) -> str:
+        """``errata/demo.yaml:12``; nothing of what was not read from a file."""
+        return f"{self.name(place.file)}:{place.line}" if place.file else ""

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
-from icdgen.backends.assurance.paper import Cell, Group, Page
-from icdgen.backends.assurance.places import Files, vectors
-from icdgen.backends.assurance.symbols import Symbols
-from icdgen.backends.assurance.trace import Element
-from icdgen.icd.model import Enum, Message, Node
+from icdgen import backends
+from icdgen.backends.assurance.paper import Cell, Files, Group, Page
+from icdgen.backends.assurance.trace import Element, Noticed
+from icdgen.icd.located import Map
+from icdgen.icd.model import Enum, Icd, Message, Node
 
 TITLES = {"c": "C", "python": "Python", "rust": "Rust"}
 _SHOWN = (
@@ -31,6 +32,36 @@ TRACE = (
     "kind", "node", "part of", "name", "row", "table", "page", "file", "line", "says", "errata", "changes", "unnoticed", "vectors",
 )  # fmt: skip
 CHANGES = ("kind", "node", "part of", "name", "key", "file", "line", "column", "says", "changed to", "vectors")
+
+
+class Symbol(NamedTuple):
+    """A name, and where it is one: "members of demo_estimated_roll_t"."""
+
+    scope: str
+    name: str
+
+    def __str__(self) -> str:
+        return f"{self.name} ({self.scope})"
+
+
+class Symbols:
+    """What backends say they declare for what was read in a line: those of our languages, and plug-ins that are installed.
+
+    Raises `UserError` for a plug-in that can't be used.
+    """
+
+    def __init__(self, icd: Icd) -> None:
+        self.languages = (*TITLES, *backends.plug_ins())
+        self._known: dict[str, dict[int, list[Symbol]]] = {}
+        for language in self.languages:
+            known = self._known[language] = {}
+            for one in backends.get(language).identifiers(icd):
+                if one.source is not None:
+                    known.setdefault(id(one.source), []).append(Symbol(one.scope, one.text))
+
+    def of(self, language: str, source: Map) -> list[Symbol]:
+        """Each once, in the order in which the backend tells them."""
+        return list(dict.fromkeys(self._known[language].get(id(source), ())))
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +105,8 @@ class Tracing:
         for one in elements:
             if one.owner is None:
                 rows: list[Sequence[Cell]] = []
-                groups.append(Group(rows, _heading(one), _notes(one)))
+                heading = one.model.title if isinstance(one.model, Node) else one.name
+                groups.append(Group(rows, heading, _notes(one)))
             groups[-1].rows.append(self._shown(one))
         languages = (title(language) for language in self.symbols.languages)
         columns = ("Row", "Name", "Says", "Line", *languages, "Changes", "Unnoticed", "Vectors")
@@ -103,10 +135,6 @@ def said(one: Element) -> str:
     return ", ".join(f"{key} {one.source[key]}" for key in _SHOWN if key in one.source)
 
 
-def _heading(one: Element) -> str:
-    return one.model.title if isinstance(one.model, Node) else one.name
-
-
 def _notes(one: Element) -> tuple[str, ...]:
     words = [one.model.kind if isinstance(one.model, Message) else one.kind]
     if one.table is not None:
@@ -122,3 +150,19 @@ def _unnoticed(one: Element) -> int:
 
 def _text(value: int | None) -> str:
     return "" if value is None else str(value)
+
+
+def vectors(noticed: Noticed) -> list[str]:
+    """Files of vectors and lines of these: ``demo.json 31-38 40``."""
+    return [f"{node}.json {_ranges(numbers)}" for node, numbers in noticed.items()]
+
+
+def _ranges(numbers: Iterable[int]) -> str:
+    """Rising numbers in short: ``31-38 40``."""
+    runs: list[list[int]] = []
+    for number in numbers:
+        if runs and number == runs[-1][1] + 1:
+            runs[-1][1] = number
+        else:
+            runs.append([number, number])
+    return " ".join(f"{first}-{last}" if last > first else str(first) for first, last in runs)

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from itertools import chain, count
 from typing import Any, NamedTuple
 
 from icdgen import naming
 from icdgen.backends.xtce.places import Run, gaps, run_of, run_of_all
-from icdgen.backends.xtce.types import Type, Types, is_said, type_of
+from icdgen.backends.xtce.types import Type, Types, is_said, most_first, type_of, unique
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.description import TailDescription
 from icdgen.icd.model import TELECOMMAND, Special
@@ -81,14 +80,6 @@ def _named(of: Type) -> str:
 def _camel(name: str) -> str:
     """``EstimatedRollAngle``, ``InView1Azimuth``"""
     return naming.camel(filter(None, name.split("_")))
-
-
-def unique(wanted: str, taken: set[str]) -> str:
-    """A name that nothing else has, from now on taken: as ``wanted``, or with a number behind it."""
-    tried = chain([wanted], (f"{wanted}_{number}" for number in count(2)))
-    name = next(name for name in tried if name not in taken)
-    taken.add(name)
-    return name
 
 
 @dataclass
@@ -218,7 +209,7 @@ class Frames:
             return Entry("", run, value=_hex(0, run.bits))
         name = f"Reserved{run.bits}"
         is_wide = run.bits > 64
-        type_ = Type("Binary", run.bits) if is_wide else Type("Integer", run.bits, "unsigned", _first(run.bits))
+        type_ = Type("Binary", run.bits) if is_wide else Type("Integer", run.bits, "unsigned", most_first(run.bits))
         self.reserved.setdefault(name, Row(name, self.types.name(type_, _named(type_)), is_reserved=True))
         return Entry(name, run)
 
@@ -235,10 +226,6 @@ def _add_row(made: Frame, one: FieldDescription, type_: str, most: int = 0) -> N
     made.rows.append(Row(name, type_, model.name, model.summary, special, model.const, is_view=model.view, most=most))
     if not is_said(model):
         made.notes.append(f"`{model.name}`: beyond its table it has the value of the last point")
-
-
-def _first(bits: int) -> str:
-    return "mostSignificantByteFirst" if bits > 8 else ""
 
 
 def _parts(message: MessageDescription) -> Iterator[FieldDescription]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from itertools import chain, count
 from math import ceil, floor
 from typing import Any
 
@@ -54,6 +55,14 @@ class Type:
         return self.encoding == "twosComplement"
 
 
+def unique(wanted: str, taken: set[str]) -> str:
+    """A name that nothing else has, from now on taken: as ``wanted``, or with a number behind it."""
+    tried = chain([wanted], (f"{wanted}_{number}" for number in count(2)))
+    name = next(name for name in tried if name not in taken)
+    taken.add(name)
+    return name
+
+
 @dataclass
 class Types:
     """Those of one of the sets of a file."""
@@ -64,12 +73,7 @@ class Types:
     def name(self, of: Type, wanted: str) -> str:
         """What a type is called: as ``wanted`` if that is free."""
         if of not in self.names:
-            name, number = wanted, 1
-            while name in self.taken:
-                number += 1
-                name = f"{wanted}_{number}"
-            self.taken.add(name)
-            self.names[of] = name
+            self.names[of] = unique(wanted, self.taken)
         return self.names[of]
 
     def of(self, field: FieldDescription, wanted: str, is_little: bool) -> str:
@@ -92,9 +96,7 @@ class Types:
 
 def type_of(field: Field, is_little: bool = False) -> Type:
     """The type of a field, of an array that of an element."""
-    order = ""
-    if (field.bits > 8 or is_little) and not field.is_bytes:
-        order = f"{'least' if is_little else 'most'}SignificantByteFirst"
+    order = "" if field.is_bytes else "leastSignificantByteFirst" if is_little else most_first(field.bits)
     encoding = "" if field.type == "float" or field.is_bytes else "twosComplement" if field.signed else "unsigned"
     made = Type(_KINDS[field.type], field.bits, encoding, order, field.unit.symbol if field.unit else "")
     if field.enum is not None:
@@ -103,6 +105,11 @@ def type_of(field: Field, is_little: bool = False) -> Type:
     if field.has_formula:
         made = replace(made, kind="Float", **_calibration(field))
     return replace(made, limits=_limits(field))
+
+
+def most_first(bits: int) -> str:
+    """The order of the bytes of a number that begins with the most significant one; of a single byte none."""
+    return "mostSignificantByteFirst" if bits > 8 else ""
 
 
 def _usual_name(field: FieldDescription, of: Type) -> str:
