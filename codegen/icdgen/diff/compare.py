@@ -24,7 +24,6 @@ from icdgen.diff.layers import LAYERS
 from icdgen.diff.match import match
 from icdgen.diff.pairs import FieldPair, Match, MessagePair, NodePair, Pair
 from icdgen.diff.rule import REGISTERED, Check, Found, Rule
-from icdgen.icd.erratum import Erratum
 from icdgen.icd.model import Icd
 from icdgen.icd.rules.wording import listing, quote
 
@@ -138,10 +137,7 @@ def _decisions(pair: Pair, keys: tuple[str, ...]) -> tuple[str, ...]:
     said = []
     for key in sorted(old.keys() | new.keys()):
         before, after = old.get(key), new.get(key)
-        if before != after and any(_holds(entry, keys) for entry in (before, after) if entry is not None):
+        held = [name for entry in (before, after) if entry for name, _ in entry.held]
+        if before != after and any(name in keys for name in held):
             said.append(f"{key} {'is new' if before is None else 'is gone' if after is None else 'says otherwise'}")
     return tuple(said)
-
-
-def _holds(entry: Erratum, keys: tuple[str, ...]) -> bool:
-    return any(key in keys for key, _ in entry.held)

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from icdgen.describe.numbers import length_text
 from icdgen.diff.changes.numbers import is_derived_otherwise, is_wider
 from icdgen.diff.compare import Comparison
+from icdgen.diff.context import by_id
 from icdgen.diff.envelopes import FACT
 from icdgen.diff.pairs import FieldPair, MessagePair, NodePair, kind
 from icdgen.diff.similar import other_senses
@@ -101,14 +102,12 @@ def _frames(comparison: Comparison, key: str, judge: Judge, logged: bool = False
     for node in match.nodes:
         if node.before is None:
             continue
-        old = [(getattr(m, key), m) for m in match.old.messages_of(node.old) if getattr(m, key) is not None]
-        new: dict[int, list[Message]] = {}
-        for one in match.new.messages_of(node.new) if node.both else ():
-            new.setdefault(getattr(one, key), []).append(one)
-        wanted = _loggable(node) if logged else None
+        old = [(number, m) for m in match.old.messages_of(node.old) if (number := getattr(m, key)) is not None]
+        new = by_id(match.new.messages_of(node.new) if node.both else (), key)
+        wanted = {row.id for row in node.old.loggable} if logged else set()  # of all that do not say what they can log
         others = () if logged else comparison.context.other_envelopes(node)
         for number, message in old:
-            if wanted is not None and number not in wanted:
+            if wanted and number not in wanted:
                 continue
             now = _now(comparison, message, new.get(number, []))
             verdict, reasons = _verdict(comparison, key, message, now, judge)
@@ -125,11 +124,6 @@ def _now(comparison: Comparison, old: Message, known: list[Message]) -> Message 
     """What of the messages of an id is the old one, or else has its place."""
     after = comparison.match.messages[id(old)].after
     return next((one for one in known if one is after), known[0] if len(known) == 1 else None)
-
-
-def _loggable(node: NodePair) -> set[int] | None:
-    """Ids of the frames that the node can log; None where the ICD does not say."""
-    return {row.id for row in node.old.loggable} or None
 
 
 def _verdict(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import cache, cached_property
 
 from icdgen.diff.envelopes import differ, has_envelope
@@ -98,4 +99,14 @@ def _bits(position: Position) -> set[tuple[int, int]]:
             found |= {(byte, bit) for byte in one for bit in range(8)}
         else:
             found |= {(one.byte, one.shift + bit) for bit in range(one.bits)}
+    return found
+
+
+def by_id(messages: Iterable[Message], key: str) -> dict[int, list[Message]]:
+    """The messages of each id; ``key`` names it: ``telemetry_id``."""
+    found: dict[int, list[Message]] = {}
+    for message in messages:
+        number = getattr(message, key)
+        if number is not None:
+            found.setdefault(number, []).append(message)
     return found

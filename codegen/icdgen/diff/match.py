@@ -286,16 +286,13 @@ _MESSAGES_LIKELY = ((_moved_message, _name, SAME_MESSAGE), (_renamed_message, _m
 # Fields
 
 
-def _printed(message: Message) -> list[Field]:
-    """The fields that the ICD has lines for, those of structs wherever they stand."""
-    return [one for one in message.lines if not one.implied]
-
-
 def _fields(pair: MessagePair) -> list[FieldPair]:
-    old, new = (sorted(_printed(one), key=_place) if one else [] for one in (pair.before, pair.after))
+    """Those that the ICD has lines for, those of structs wherever they stand."""
+    lines = ([f for f in one.lines if not f.implied] if one else [] for one in (pair.before, pair.after))
+    old, new = (sorted(fields, key=_place) for fields in lines)
     pairs = _side_by_side(old, new, lambda known, *left: _renamed_fields(pair, known, *left))
     found = [FieldPair(*one, owner=pair) for one in pairs]
-    return sorted(found, key=lambda p: _place(p.old if p.before is not None else p.new))
+    return sorted(found, key=lambda p: _place(p.before or p.new))
 
 
 def _place(field: Field) -> tuple[int, str]:

@@ -48,7 +48,8 @@ def _row(field: Field, message: Message | Struct) -> tuple[str, ...]:
     if part is not None and part.name == field.name:
         bits = f"up to {part.most} x {8 * part.step}"
     place = ("", "", "derived") if field.derived else (str(field.at), bits, kind)
-    return (*place, field.name, unit, resolution, low, high, "; ".join(_notes(field, message)))
+    notes = [*remarks(field, message=message if isinstance(message, Message) else None), *(e.id for e in field.errata)]
+    return (*place, field.name, unit, resolution, low, high, "; ".join([*notes, *filter(None, [field.summary])]))
 
 
 def remarks(
@@ -94,9 +95,3 @@ def _open_part(message: Message | None, field: Field) -> Tail | None:
     """The open part of its message that a line is, or stands in."""
     name = field.path[0].name if field.path else field.name
     return next((part for part in (message.open_parts if message else ()) if part.name == name), None)
-
-
-def _notes(field: Field, message: Message | Struct) -> list[str]:
-    notes = list(remarks(field, message=message if isinstance(message, Message) else None))
-    notes += [erratum.id for erratum in field.errata]
-    return notes + ([field.summary] if field.summary else [])

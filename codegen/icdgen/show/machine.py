@@ -12,7 +12,7 @@ from icdgen.describe.bounds import bounds
 from icdgen.icd.annex import Loggable
 from icdgen.icd.erratum import Erratum
 from icdgen.icd.located import plain
-from icdgen.icd.model import Enum, Field, Icd, Limits, Member, Message, Node, Struct, Tail
+from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node, Struct, Tail
 
 FORMAT = 1
 SCHEMA = Path(__file__).parent.with_name("show.schema.json")
@@ -66,9 +66,13 @@ def _node(node: Node) -> _Object:
         notes=_errata(node, is_note=True),
     ) | {
         "includes": list(node.includes),
-        **({"structs": [_struct(one) for one in node.structs]} if node.structs else {}),
+        **(
+            {"structs": [_row(one) | {"fields": list(map(_field, one.members))} for one in node.structs]}
+            if node.structs
+            else {}
+        ),
         "messages": [_message(m) for m in node.messages],
-        "enums": [_enum(e) for e in node.enums],
+        "enums": [_row(one) | {"members": list(map(_row, one.members))} for one in node.enums],
         "loggable": [_row(row) for row in node.loggable],
     }
 
@@ -106,10 +110,6 @@ def _open_part(tail: Tail, counter: str | None, begin: int) -> _Object:
     )
 
 
-def _struct(struct: Struct) -> _Object:
-    return _row(struct) | {"fields": [_field(f) for f in struct.members]}
-
-
 def _field(field: Field) -> _Object:
     scale = field.scale
     return _present(
@@ -123,7 +123,7 @@ def _field(field: Field) -> _Object:
         **(field.curve.plain if field.curve else {}),
         formula=field.formula if field.has_formula else None,
         special=[_attributes(one) for one in field.special],
-        limits=_limits(field.limits),
+        limits={bound.key: str(bound.value) for bound in bounds(field.limits)},  # exact, like `scale`
         view=True if field.view else None,
         when={one.field: list(one.values) for one in field.when},
         **_ids(field.errata),
@@ -135,17 +135,8 @@ def _derived(field: Field) -> _Object:
     return _present(**found, unit=field.unit.symbol if field.unit else None)
 
 
-def _enum(enum: Enum) -> _Object:
-    return _row(enum) | {"members": [_row(member) for member in enum.members]}
-
-
 def _row(one: Enum | Member | Loggable | Struct) -> _Object:
     return _present(**_attributes(one), **_ids(one.errata))
-
-
-def _limits(limits: Limits | None) -> dict[str, str] | None:
-    """Bounds as exact numbers, ``p`` or ``p/q``, like ``scale``."""
-    return {bound.key: str(bound.value) for bound in bounds(limits)} if limits is not None else None
 
 
 def _errata(node: Node, is_note: bool) -> list[_Object]:

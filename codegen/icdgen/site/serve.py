@@ -35,14 +35,11 @@ class Source:
     def site(self) -> Site:
         """The site as of now. Raises `UserError`."""
         with self._lock:
-            if self._site is None or self._is_stale(self._site):
+            seen = self._site.inputs.items() if self._site else ()
+            if self._site is None or any(fingerprints.of_path(os.fspath(path)) != was for path, was in seen):
                 self._site = None
                 self._site = make(*self._arguments)
             return self._site
-
-    @staticmethod
-    def _is_stale(site: Site) -> bool:
-        return any(fingerprints.of_path(os.fspath(path)) != seen for path, seen in site.inputs.items())
 
 
 def handler(source: Source) -> type[BaseHTTPRequestHandler]:

@@ -118,7 +118,7 @@ def _readings(field: Field, node: Node) -> Iterator[tuple[Change, Field]]:
 
 def _types(field: Field) -> Iterator[tuple[Change, Field]]:
     source = field.source
-    for kind in OTHER_TYPES[field.type] if _is_plain(field) else ():
+    for kind in OTHER_TYPES[field.type] if "type" in source and "enum" not in source else ():
         if _can_be(field, kind):
             scale, curve = calibration(field.formula, kind)
             if "points" in source and kind in ("uint", "int", "float"):
@@ -264,11 +264,6 @@ def _step(kind: str, source: Map, key: str, value: float, step: int) -> Change:
     printed = source.get(key, value)
     old = printed if type(printed) in (int, float) else value
     return Change(kind, source, key, old, old + step)
-
-
-def _is_plain(field: Field) -> bool:
-    """Whether its type can be another without a further change of its line."""
-    return "type" in field.source and "enum" not in field.source
 
 
 def _can_be(field: Field, kind: str) -> bool:

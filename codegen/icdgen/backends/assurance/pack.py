@@ -30,7 +30,9 @@ def files(icd: Icd, render: Renderer, folder: Path | None) -> Iterator[tuple[Pur
     """Path and text of each; ``folder`` is that of measurements. Raises `UserError` for one that is of something else."""
     known = measured.read(folder, icd, lambda language: code_now(icd, language)) if folder is not None else []
     digests = tuple((f"{node.title} ({node.name})", node.digest) for node in icd.nodes)
-    traced, tracing = Trace(icd), Tracing(_files(icd), Symbols(icd))
+    of_errata = (erratum.source.place.file for node in icd.nodes for erratum in node.errata)
+    read = Files(file for file in (*(node.file for node in icd.nodes), *of_errata) if file)
+    traced, tracing = Trace(icd), Tracing(read, Symbols(icd))
     elements = {node.name: list(traced.elements(node)) for node in icd.nodes}
     every = [one for found in elements.values() for one in found]
     foot = {"version": __version__, "digest": measured.icd_digest(icd), "lines_of": lines_of}
@@ -85,8 +87,3 @@ def code_now(icd: Icd, language: str) -> str:
     """The digest of what is generated now. Raises `UserError` for a language that there is not."""
     backend = backends.get(language)
     return measured.code_digest(backend.files(icd, Renderer.of(backend)))
-
-
-def _files(icd: Icd) -> Files:
-    of_errata = (erratum.source.place.file for node in icd.nodes for erratum in node.errata)
-    return Files(file for file in (*(node.file for node in icd.nodes), *of_errata) if file)

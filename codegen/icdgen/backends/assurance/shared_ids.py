@@ -46,13 +46,10 @@ class SharedIds:
         found: dict[str, list[int]] = {}
         for name, rows in self._rows.items():
             for number, row, known in rows:
-                if concerns(known) and _answer(icd, row, [now(one) for one in known]) != _demanded(row):
+                demanded = row.message if row.expected is None else row.expected
+                if concerns(known) and _answer(icd, row, [now(one) for one in known]) != demanded:
                     found.setdefault(name, []).append(number)
         return found
-
-
-def _demanded(row: SharedRow) -> object:
-    return row.message if row.expected is None else row.expected
 
 
 def _answer(icd: Icd, row: SharedRow, messages: Sequence[Message]) -> object:

@@ -175,15 +175,13 @@ class Trace:
         """The lists of ids, of each node that speaks the message, in which one is no longer its own."""
         found: Noticed = {}
         for node in self.icd.nodes:
-            for direction, known in self._vectors[node.name].ids.items() if _speaks(self.icd, node, message) else ():
+            if all(message is not one for one in self.icd.messages_of(node)):
+                continue
+            for direction, known in self._vectors[node.name].ids.items():
                 mine = {id for id, names in known.items() if message.name in names}
                 if mine & (set(message.ids) - set(now.ids)):
                     found.setdefault(node.name, []).append(self._lines[node.name].ids[direction])
         return found
-
-
-def _speaks(icd: Icd, node: Node, message: Message) -> bool:
-    return message.node in (node.name, *(one.name for one in icd.included(node)))
 
 
 def together(several: Iterator[Noticed] | list[Noticed]) -> Noticed:

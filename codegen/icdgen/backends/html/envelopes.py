@@ -146,7 +146,7 @@ def sums(section: Mapping[str, Any], known: Facts) -> list[Sum]:
         form = known.stream.check if known.stream else None
         kind, covers = given["kind"], given["covers"]
         rows = [("Kind", f"CRC of {given['width']} bits" if kind == CRC else f"{_KINDS[kind]}, {given['width']} bits")]
-        rows += [(_label(key), _value(given[key])) for key in _PARAMETERS if key in given]
+        rows += [(key.replace("_", " ").capitalize(), _value(given[key])) for key in _PARAMETERS if key in given]
         rows.append(("Covers", _covered(covers)))
         if given.get("seeds"):
             said = ", ".join(f"{message} {seed}" for message, seed in given["seeds"].items())
@@ -156,10 +156,6 @@ def sums(section: Mapping[str, Any], known: Facts) -> list[Sum]:
 
 
 _PARAMETERS = ("polynomial", "init", "reflect_in", "reflect_out", "xor_out")
-
-
-def _label(key: str) -> str:
-    return key.replace("_", " ").capitalize()
 
 
 def _value(value: object) -> str:

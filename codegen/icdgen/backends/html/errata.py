@@ -48,7 +48,7 @@ def _group(relations: Relations, node: Node) -> Group:
 
 
 def _entry(relations: Relations, erratum: Erratum) -> Entry:
-    places = relations.places_of(erratum)
+    places = relations.places[erratum.id, erratum.title]
     return Entry(erratum, places[:_FEW], places[_FEW:], list(dict.fromkeys(one.text.split(": ")[0] for one in places)))
 
 

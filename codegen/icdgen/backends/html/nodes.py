@@ -93,10 +93,15 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
     """Values of a node's page, and of the page that holds all its messages."""
     spoken = sorted(relations.icd.messages_of(node), key=lambda m: m.node != node.name)
     rows = [_row(relations, node, message) for message in spoken]
+    first = "least" if node.bit_order == "lsb0" else "most"
     return {
         "node": node,
         "document": document(node),
-        "facts": [*_facts(node), ("Byte order", f"{node.byte_order}-endian"), ("Bit numbering", _numbering(node))],
+        "facts": [
+            *_facts(node),
+            ("Byte order", f"{node.byte_order}-endian"),
+            ("Bit numbering", f"bit 0 is the {first} significant"),
+        ],
         "rows": rows,
         "kinds": [
             (kind, title, count) for kind, title in _KINDS.items() if (count := sum(m.kind == kind for m in spoken))
@@ -116,10 +121,6 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
         "own": len(node.messages),
         "fields_count": sum(m.field_count for m in node.messages),
     }
-
-
-def _numbering(node: Node) -> str:
-    return f"bit 0 is the {'least' if node.bit_order == 'lsb0' else 'most'} significant"
 
 
 def _row(relations: Relations, node: Node, message: Message) -> dict[str, object]:

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from icdgen.backends.html import all_facts, envelopes, sequences, texts
 from icdgen.backends.html.all_facts import Row, as_text, value_text
 from icdgen.backends.html.relations import Place, Relations
-from icdgen.icd.model import Enum, Node
+from icdgen.icd.model import Node
 from icdgen.protocol import facts
 from icdgen.protocol.declared import facts_of
 from icdgen.protocol.facts import Facts
@@ -154,7 +154,9 @@ def _crc_rows(crc: Crc) -> list[Row]:
 
 def errors(relations: Relations, node: Node, known: Facts, section: dict[str, Any]) -> list[tuple[int, str, str, str]]:
     """Code, name, what it is to the protocol, and where the name stands."""
-    enum = _enum(relations, node, section.get("errors", {}).get("enum"))
+    name = section.get("errors", {}).get("enum")
+    enums = (enum for one in (node, *relations.icd.included(node)) for enum in one.enums)
+    enum = next((one for one in enums if one.name == name), None)
     roles = {code: key.replace("_", " ") for key, code in known.errors.items()}
     if enum is None:
         return [(code, role, "", "") for code, role in sorted(roles.items())]
@@ -163,11 +165,6 @@ def errors(relations: Relations, node: Node, known: Facts, section: dict[str, An
         (m.value, m.name, roles.get(m.value, ""), f"{url}#{relations.links.anchor(enum, str(m.value))}")
         for m in enum.members
     ]
-
-
-def _enum(relations: Relations, node: Node, name: object) -> Enum | None:
-    nodes = [node, *relations.icd.included(node)]
-    return next((enum for one in nodes for enum in one.enums if enum.name == name), None)
 
 
 def entries(relations: Relations, node: Node, url: str) -> Iterator[tuple[str, str, Place]]:

@@ -46,12 +46,10 @@ def script(relations: Relations) -> str:
 
 def numbers_of(ids: dict[int, tuple[Variant, ...]], numbers: dict[tuple[str, str], int]) -> dict[str, Any]:
     """The number of the message of each id; where several share it, each with the bytes that its constants are in."""
-    return {str(id): _number(those, numbers) for id, those in ids.items()}
-
-
-def _number(variants: tuple[Variant, ...], numbers: dict[tuple[str, str], int]) -> object:
-    found = [(numbers[one.message.node, one.message.name], signs(one)) for one in variants]
-    return found if len(found) > 1 else found[0][0]
+    found = {
+        id: [(numbers[one.message.node, one.message.name], signs(one)) for one in those] for id, those in ids.items()
+    }
+    return {str(id): those if len(those) > 1 else those[0][0] for id, those in found.items()}
 
 
 def _speaker(relations: Relations, node: Node, numbers: dict[tuple[str, str], int]) -> dict[str, Any]:

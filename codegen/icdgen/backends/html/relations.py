@@ -88,10 +88,6 @@ class Relations:
         """The message, as a link."""
         return Place(message.name, self.links.message(message))
 
-    def places_of(self, erratum: Erratum) -> list[Place]:
-        """Where the erratum applies."""
-        return self.places[erratum.id, erratum.title]
-
     def anchors(self, message: Message) -> list[str]:
         """Anchors of the fields, in their order."""
         return [self.links.anchor(message, field.name) for field in message.fields]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.describe.numbers import length_text
-from icdgen.diff.context import Context
+from icdgen.diff.context import Context, by_id
 from icdgen.diff.pairs import MessagePair, NodePair
 from icdgen.diff.rule import Found, rule
 from icdgen.diff.wording import ids, some
@@ -49,7 +49,7 @@ def id_taken_over(ctx: Context) -> Iterator[Found]:
         if not node.both:
             continue
         for kind, key in DIRECTIONS.items():
-            before, after = (_spoken(icd.messages_of(side), key) for icd, side in ctx.sides(node))
+            before, after = (by_id(icd.messages_of(side), key) for icd, side in ctx.sides(node))
             for number in sorted(before.keys() & after.keys()):
                 old, new = _exchanged(ctx, before[number], after[number])
                 if old is None or new is None or (id(old), id(new), kind) in seen:
@@ -78,29 +78,15 @@ def _exchanged(ctx: Context, before: list[Message], after: list[Message]) -> tup
     return min(both, key=lambda pair: pair[0].length != pair[1].length, default=(None, None))
 
 
-def _spoken(messages: tuple[Message, ...], key: str) -> dict[int, list[Message]]:
-    found: dict[int, list[Message]] = {}
-    for message in messages:
-        number = getattr(message, key)
-        if number is not None:
-            found.setdefault(number, []).append(message)
-    return found
-
-
 @rule("DIF105", "message")
 def kind_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     old, new = pair.old, pair.new
     if old.kind == new.kind:
         return
     lost = [kind for kind, key in DIRECTIONS.items() if getattr(old, key) is not None and getattr(new, key) is None]
-    details = tuple(f"It can no longer be {_verb(kind)}." for kind in lost)
+    details = tuple(f"It can no longer be {'sent' if kind == 'telecommand' else 'requested'}." for kind in lost)
     text = f"{quote(new.name)} is a {new.kind} now, was a {old.kind}"
-    only_more = not lost
-    yield Found(text, ("kind",), old.kind, new.kind, details, "note" if only_more else None, only_more)
-
-
-def _verb(kind: str) -> str:
-    return "sent" if kind == "telecommand" else "requested"
+    yield Found(text, ("kind",), old.kind, new.kind, details, None if lost else "note", not lost)
 
 
 @rule("DIF106", "message")

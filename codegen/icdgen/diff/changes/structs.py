@@ -18,7 +18,7 @@ from icdgen.diff.pairs import MessagePair, NodePair
 from icdgen.diff.rule import Found, rule
 from icdgen.diff.wording import bits
 from icdgen.icd.located import Map
-from icdgen.icd.model import Field, Icd, Message, Node, Struct
+from icdgen.icd.model import Field, Icd, Node, Struct
 from icdgen.icd.rules.wording import count, quote
 
 
@@ -81,9 +81,7 @@ def struct_declared_otherwise(pair: NodePair, ctx: Context) -> Iterator[Found]:
             continue
         what = "is gone" if name not in new else "is new" if name not in old else "has other generated names or types"
         breaks = retyped or any(one for one, _ in renamed)
-        places = old[name].source.at("name") if name in old else None, (
-            new[name].source.at("name") if name in new else None
-        )
+        places = [one[name].source.at("name") if name in one else None for one in (old, new)]
         yield Found(
             f"the struct {quote(name)} {what}",
             ("name", "identifier"),
@@ -92,7 +90,7 @@ def struct_declared_otherwise(pair: NodePair, ctx: Context) -> Iterator[Found]:
             (*lines(renamed), *(f"C: `{one}` -> `{other}`" for one, other in retyped)),
             severity=None if breaks else "note",
             addition=None if breaks else True,
-            places=places,
+            places=(places[0], places[1]),
         )
 
 
@@ -144,23 +142,15 @@ def _declared(icd: Icd, node: Node) -> dict[str, _Declared]:
 
 @rule("DIF314", "message")
 def struct_stands_otherwise(pair: MessagePair, ctx: Context) -> Iterator[Found]:
-    was, now = (list(map(_standing, _structs(side))) for side in (pair.old, pair.new))
-    if was == now:
-        return
+    was, now = ([_standing(one) for one in side.members if one.struct] for side in (pair.old, pair.new))
     gone, come = [one for one in was if one not in now], [one for one in now if one not in was]
     if not gone and not come:
         return
-    text = (
-        f"{count(len(gone or come), 'struct')} in {quote(pair.new.name)} {'is' if len(gone or come) == 1 else 'are'} "
-    )
-    text += "declared otherwise" if gone else "new"
+    number, what = len(gone or come), "declared otherwise" if gone else "new"
+    text = f"{count(number, 'struct')} in {quote(pair.new.name)} {'is' if number == 1 else 'are'} {what}"
     details = [f"`{one}` is gone" for one in gone] + [f"`{one}` is new" for one in come]
     severity, addition = (None, None) if gone else ("note", True)
     yield Found(text, ("fields",), ", ".join(gone), ", ".join(come), tuple(details), severity, addition)
-
-
-def _structs(message: Message) -> list[Field]:
-    return [one for one in message.members if one.struct is not None]
 
 
 def _standing(member: Field) -> str:

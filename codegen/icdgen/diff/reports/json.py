@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from itertools import groupby
 from pathlib import Path
 
 from icdgen.diagnostics import Place
@@ -11,7 +12,6 @@ from icdgen.diff.change import Change
 from icdgen.diff.compatibility import Direction
 from icdgen.diff.generated import Name
 from icdgen.diff.report import Report
-from icdgen.diff.uses import Use
 
 FORMAT = 1
 SCHEMA = Path(__file__).parent.parent.with_name("diff.schema.json")
@@ -38,7 +38,9 @@ def document(report: Report) -> dict[str, object]:
     }
     if report.uses is not None:
         numbers = {id(change): number for number, change in enumerate(report.comparison.changes)}
-        found["uses"] = [_use(use, numbers) for use in report.uses]
+        found["uses"] = [
+            one._asdict() | {"changes": sorted(numbers[id(c)] for c in one.changes)} for one in report.uses
+        ]
     return found
 
 
@@ -69,13 +71,11 @@ def _change(change: Change, reason: str | None, names: tuple[Name, ...]) -> dict
         "details": change.details,
         "sure": round(change.sure, 3),
         "errata": change.errata,
-        "generated": {language: _texts(names, language) for language in dict.fromkeys(n.language for n in names)},
+        "generated": {
+            language: [n.text for n in some] for language, some in groupby(names, lambda name: name.language)
+        },
     }
     return found if reason is None else found | {"accepted": reason}
-
-
-def _texts(names: tuple[Name, ...], language: str) -> list[str]:
-    return [name.text for name in names if name.language == language]
 
 
 def _place(place: Place | None) -> dict[str, object] | None:
@@ -84,7 +84,3 @@ def _place(place: Place | None) -> dict[str, object] | None:
 
 def _stale(entry: Acceptance) -> dict[str, object]:
     return {"code": entry.code, **entry.said, "reason": entry.reason, "place": _place(entry.place)}
-
-
-def _use(use: Use, numbers: dict[int, int]) -> dict[str, object]:
-    return use._asdict() | {"changes": sorted(numbers[id(change)] for change in use.changes)}
