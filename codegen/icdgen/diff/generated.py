@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 from icdgen import backends
 from icdgen.diagnostics import Place
@@ -26,8 +26,10 @@ from icdgen.icd.model import TELEMETRY, Enum, Field, Icd, Message, Node
 from icdgen.naming import camel
 
 if TYPE_CHECKING:
+    from icdgen.backends import Identifier
     from icdgen.describe import FieldDescription
 
+Marked = TypeVar("Marked")
 LANGUAGES = ("c", "python", "rust")
 
 
@@ -37,6 +39,25 @@ class Name(NamedTuple):
     language: str
     text: str
     stem: str = ""
+
+
+class Marks(Generic[Marked]):
+    """Sources for the parts of an ICD that is made to ask for its names, by which it is known what has each of them."""
+
+    def __init__(self) -> None:
+        self._known: dict[int, tuple[Map, Marked]] = {}  # by identity, so that each mark must stay
+
+    def of(self, thing: Marked) -> Map:
+        """A new mark of a thing."""
+        mark = Map(Place(""))
+        self._known[id(mark)] = mark, thing
+        return mark
+
+    def names(self, icd: Icd, language: str) -> Iterator[tuple[Marked, Identifier]]:
+        """What has a mark, and each of the names that code in the language has for it."""
+        for one in backends.get(language).identifiers(icd):
+            if id(one.source) in self._known:
+                yield self._known[id(one.source)][1], one
 
 
 NOTHING, NODES, OWNERS = range(3)  # what is called by its old name
@@ -167,21 +188,21 @@ def idle_facts(pairs: Iterable[IdentifiedPair]) -> set[Difference]:
 
 def _texts(samples: list[FieldPair], side: int) -> list[list[tuple[str, str]]]:
     """The generated names of one side of each sample, by language, all in one message of an ICD of its own."""
-    marks = [Map(Place("")) for _ in samples]
+    marks = Marks[list[tuple[str, str]]]()
+    found: list[list[tuple[str, str]]] = [[] for _ in samples]
+    usual: dict[str, Any] = {"identifier": None, "count": 0, "path": ()}
     fields = [
-        replace(pair.new if side else pair.old, name=f"Sample {number}", identifier=None, source=mark, count=0, path=())
-        for number, (pair, mark) in enumerate(zip(samples, marks, strict=True))
+        replace(pair.new if side else pair.old, name=f"Sample {number}", source=marks.of(found[number]), **usual)
+        for number, pair in enumerate(samples)
     ]
-    found: dict[int, list[tuple[str, str]]] = {id(mark): [] for mark in marks}
     for vocabulary in dict.fromkeys(pair.owner.new_node.vocabulary for pair in samples):
         own = (f for f, pair in zip(fields, samples, strict=True) if pair.owner.new_node.vocabulary == vocabulary)
         message = Message("Samples", TELEMETRY, 0, tuple(own), node="samples")
         icd = Icd((Node("samples", "", "", "little", "lsb0", (message,), (), vocabulary=vocabulary),))
         for language in LANGUAGES:
-            for one in backends.get(language).identifiers(icd):
-                if id(one.source) in found:
-                    found[id(one.source)].append((language, one.text))
-    return list(found.values())
+            for texts, one in marks.names(icd, language):
+                texts.append((language, one.text))
+    return found
 
 
 def _decisive(field: Field) -> object:
@@ -202,8 +223,7 @@ class _Cut:
 
     def __init__(self, match: Match, side: int, kept: set[int], old_names: int = NOTHING) -> None:
         self.match, self.side, self.kept, self.old_names = match, side, kept, old_names
-        self.marks: dict[int, IdentifiedPair] = {}
-        self.alive: list[Map] = []  # marks go by identity
+        self.marks = Marks[IdentifiedPair]()
         self.enums: dict[int, Enum] = {}
         self.messages: dict[int, Message] = {}  # id(pair) -> what it has become
         self.fields: dict[int, Field] = {}
@@ -236,10 +256,7 @@ class _Cut:
     def marked(self, one: Thing, pair: IdentifiedPair | None, **more: Any) -> Thing:
         """The thing with a mark, and under its old name where that is asked for."""
         if pair is not None:
-            mark = Map(Place(""))
-            self.marks[id(mark)] = pair
-            self.alive.append(mark)
-            more["source"] = mark
+            more["source"] = self.marks.of(pair)
             if self.old_names == OWNERS and pair.before is not None and isinstance(pair, MessagePair | EnumPair):
                 more.update(name=pair.old.name, identifier=pair.old.identifier)
         return replace(one, **more)
@@ -280,17 +297,12 @@ class _Cut:
         found: dict[int, dict[Name, None]] = {}
         types: dict[int, str] = {}  # Rust: id(pair) -> name of the type
         for language in LANGUAGES:
-            for one in backends.get(language).identifiers(self.icd):
-                text = one.text
-                pair = self.marks.get(id(one.source)) if one.source is not None else None
-                if pair is None or not text.isidentifier():
-                    continue
-                stem = _stem(language, one.scope)
-                if stem is None:
-                    continue
+            for pair, one in self.marks.names(self.icd, language):
+                text, stem = one.text, _stem(language, one.scope)
                 owner = pair.owner if isinstance(pair, (FieldPair, MemberPair)) else None
-                if owner is None and language == "c" and text.endswith("_H"):
-                    continue  # an include guard
+                is_guard = owner is None and language == "c" and text.endswith("_H")  # of a header
+                if stem is None or is_guard or not text.isidentifier():
+                    continue
                 if language == "rust":
                     if owner is None:
                         types.setdefault(id(pair), text)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from icdgen import codec, layout
+from icdgen import codec
 from icdgen.backends.html.texts import MINUS, number
 from icdgen.icd import floats
 from icdgen.icd.model import Field, Message, Node
@@ -35,29 +35,11 @@ def frames(message: Message, node: Node) -> list[tuple[str, str]]:
     found = {frame: why for why, frame in reversed(list(patterns.frames(message, node)))}
     ordered = dict.fromkeys(frame for _, frame in patterns.frames(message, node))
     for index, raw in enumerate(patterns.raw_columns(message)):
-        frame = _encoded(message, node, raw)
+        frame = codec.encode(node, message, raw)
         if frame not in ordered:
             ordered[frame] = None
             found[frame] = f"chosen values {index}"
     return [(found[frame], frame.hex(" ").upper()) for frame in ordered]
-
-
-def _encoded(message: Message, node: Node, raw: dict[str, int | bytes]) -> bytes:
-    """What the codec makes of raw values that fit, sooner."""
-    frame = bytearray(message.length)
-    for field in message.owners:
-        if not codec.is_present(field, raw):
-            continue
-        value = raw[field.name]
-        if isinstance(value, bytes):
-            frame[field.at // 8 : field.at // 8 + len(value)] = value
-            continue
-        for piece in () if field.implied else layout.pieces(field, node):
-            frame[piece.byte] |= (value >> piece.at & (1 << piece.bits) - 1) << piece.shift
-    if message.tail is None:
-        return bytes(frame)
-    found = bytes(frame[: message.begin + codec.count_of(message, raw) * message.tail.step])
-    return codec.squeezed(node, message, found) if message.inner else found
 
 
 def examples(message: Message, node: Node) -> list[Example]:

@@ -7,17 +7,14 @@ from dataclasses import replace
 from itertools import chain
 from typing import NamedTuple
 
-from icdgen import backends
 from icdgen.backends.c.types import declaration
 from icdgen.describe import describe
-from icdgen.diagnostics import Place
 from icdgen.diff.changes.names import lines
 from icdgen.diff.context import Context
-from icdgen.diff.generated import LANGUAGES, Name
+from icdgen.diff.generated import LANGUAGES, Marks, Name
 from icdgen.diff.pairs import MessagePair, NodePair
 from icdgen.diff.rule import Found, rule
 from icdgen.diff.wording import bits
-from icdgen.icd.located import Map
 from icdgen.icd.model import Field, Icd, Node, Struct
 from icdgen.icd.rules.wording import count, quote
 
@@ -109,34 +106,24 @@ def _renamed(before: dict[int, list[Name]], after: dict[int, list[Name]]) -> Ite
 def _declared(icd: Icd, node: Node) -> dict[str, _Declared]:
     """By the name of each struct of a node."""
     made: dict[int, Struct] = {}  # id(struct) -> the same with sources of its own: an ICD from elsewhere has none
-    marks: dict[int, tuple[str, int]] = {}  # id(source) -> name of the struct, and bit of the member
-    alive: list[Map] = []
-
-    def mark(name: str, at: int = -1) -> Map:
-        alive.append(Map(Place("")))
-        marks[id(alive[-1])] = name, at
-        return alive[-1]
-
+    marks = Marks[tuple[str, int]]()  # name of the struct, and bit of the member
     for struct in node.structs:  # each stands after those that it has in it
         members = [
-            replace(one, source=mark(struct.name, one.at), struct=made.get(id(one.struct), one.struct))
+            replace(one, source=marks.of((struct.name, one.at)), struct=made.get(id(one.struct), one.struct))
             for one in struct.members
         ]
         fields = tuple(chain.from_iterable(one.elements for one in members))
-        made[id(struct)] = replace(struct, fields=fields, source=mark(struct.name))
+        made[id(struct)] = replace(struct, fields=fields, source=marks.of((struct.name, -1)))
     alone = replace(node, structs=tuple(made.values()), messages=())
     around = Icd((*(replace(one, messages=()) for one in icd.included(node)), alone))
     found = {struct.name: _Declared({}, {}) for struct in alone.structs}
     for language in LANGUAGES:
-        for one in backends.get(language).identifiers(around):
-            owner = marks.get(id(one.source)) if one.source is not None else None
-            if owner is not None and one.text.isidentifier() and not one.text.endswith("_H"):
-                name, at = owner
+        for (name, at), one in marks.names(around, language):
+            if one.text.isidentifier() and not one.text.endswith("_H"):
                 found[name].names.setdefault(at, []).append(Name(language, one.text))
-    description = describe(around)
     for struct in alone.structs:
-        members_of = description.struct(struct).members
-        found[struct.name].members.update((one.name, declaration(one)) for one in members_of)
+        described = describe(around).struct(struct).members
+        found[struct.name].members.update((one.name, declaration(one)) for one in described)
     return found
 
 
