@@ -99,10 +99,10 @@ class TestGit:
         git = ["git", "-c", "user.name=A", "-c", "user.email=a@b"]
         subprocess.run([*git, "add", "-A"], cwd=repository, check=True)
         subprocess.run([*git, "commit", "-qm", "overlay"], cwd=repository, check=True)
-        assert codes(icdgen("diff", "v2:icd/demo.yaml", "HEAD:icd/demo.yaml", "--format", "json").out) == {
-            "DIF401",
-            "DIF403",
-        }
+        result = icdgen("diff", "v2:icd/demo.yaml", "HEAD:icd/demo.yaml", "--format", "json")
+        assert codes(result.out) == {"DIF401", "DIF403"}
+        come = next(change for change in json.loads(result.out)["changes"] if change["code"] == "DIF403")
+        assert come["old"] is None and (come["new"]["file"], come["new"]["line"]) == ("HEAD:icd/errata/demo.yaml", 4)
 
     @pytest.mark.parametrize(
         "arguments, said",

@@ -10,7 +10,7 @@ from typing import Any, Generic, TypeVar
 from icdgen.diagnostics import Place
 from icdgen.diff.where import Places, Where
 from icdgen.icd.annex import Loggable
-from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node
+from icdgen.icd.model import Enum, Erratum, Field, Icd, Member, Message, Node
 from icdgen.layout import Piece, byte_range, pieces
 
 # What a key of an ICD is called in the output of ``show``.
@@ -258,7 +258,9 @@ def differing(
             yield one, before.get(one), after.get(one)
 
 
-def place_of(thing: Node | Message | Field | Enum | Member | Loggable | None, keys: tuple[str, ...]) -> Place | None:
+def place_of(
+    thing: Node | Message | Field | Enum | Member | Loggable | Erratum | None, keys: tuple[str, ...]
+) -> Place | None:
     """Where the first key stands that is there, of a node in its head; the thing itself if none is."""
     if thing is None:
         return None

@@ -50,9 +50,7 @@ class Report:
 
 
 def _placed(change: Change, old: Side, new: Side) -> Change:
-    """With places as a user knows them; those of errata in their overlays."""
-    if erratum := change.where.erratum:
-        return replace(change, old=old.erratum(erratum), new=new.erratum(erratum))
+    """With places as a user knows them."""
     places = old.place(change.old), new.place(change.new)
     return change if places == (change.old, change.new) else replace(change, old=places[0], new=places[1])
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.diff.context import Context
-from icdgen.diff.pairs import NodePair, differing
+from icdgen.diff.pairs import NodePair, differing, place_of
 from icdgen.diff.rule import Found, rule
 from icdgen.icd.erratum import Erratum
 from icdgen.icd.rules.wording import listing
@@ -18,25 +18,27 @@ _PARTS = ("title", "why", "evidence", "confidence", "tables", "printed", "held",
 @rule("DIF405", "node", severity="note")
 def erratum_differs(pair: NodePair, ctx: Context) -> Iterator[Found]:
     for _, old, new in differing(pair.old.errata, pair.new.errata, lambda entry: entry.id):
+        entry = new or old
+        assert entry is not None
+        was, now = old.title if old else "", new.title if new else ""
         if old is not None and new is not None:
-            yield _erratum_changed(pair, old, new)
-        elif new is not None:
-            yield _found("DIF403", pair, new, f"is new{_effect(new)}", "", new.title)
-        elif old is not None:
-            yield _found("DIF404", pair, old, f"is gone{_effect(old)}", old.title, "")
+            code, said, was, now = "DIF405", *_differences(old, new)
+        else:
+            code, said = ("DIF403", "is new") if new else ("DIF404", "is gone")
+            said += "" if entry.is_note else f" ({_kind(entry)})"
+        text = f"{entry.label.lower()} {entry.id} {said}: {entry.title}"
+        where = pair.where()._replace(erratum=entry.id)
+        places = place_of(old, ("id",)), place_of(new, ("id",))
+        yield Found(text, ("name",), was, now, where=where, places=places, code=code)
 
 
-def _erratum_changed(pair: NodePair, old: Erratum, new: Erratum) -> Found:
+def _differences(old: Erratum, new: Erratum) -> tuple[str, str, str]:
+    """What is said of an entry that is another, what it was, and what it is."""
     parts = [part for part in _PARTS if getattr(old, part) != getattr(new, part)]
     was, now = _kind(old), _kind(new)
     if was == now:
         was, now = (str(getattr(entry, parts[0])) if parts else "" for entry in (old, new))
-    return _found("DIF405", pair, new, f"says otherwise ({listing(parts) if parts else 'what it changes'})", was, now)
-
-
-def _found(code: str, pair: NodePair, entry: Erratum, said: str, was: str, now: str) -> Found:
-    text = f"{entry.label.lower()} {entry.id} {said}: {entry.title}"
-    return Found(text, ("name",), was, now, where=pair.where()._replace(erratum=entry.id), code=code)
+    return f"says otherwise ({listing(parts) if parts else 'what it changes'})", was, now
 
 
 def _kind(entry: Erratum) -> str:
@@ -45,10 +47,6 @@ def _kind(entry: Erratum) -> str:
     if not entry.changes:
         return "changes nothing"
     return f"holds {', '.join(f'{key}: {_plain(value)}' for key, value in entry.held)}"
-
-
-def _effect(entry: Erratum) -> str:
-    return "" if entry.is_note else f" ({_kind(entry)})"
 
 
 def _plain(value: object) -> str:

@@ -265,4 +265,5 @@ def _erratum(item: Map) -> model.Erratum:
         held=tuple(item.get("held", {}).items()),
         changes=item.get("changes", False),
         is_note=is_note,
+        source=item,
     )

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import os
-import re
 import tempfile
 from dataclasses import dataclass, field
-from functools import cached_property
 from pathlib import Path
 
 from icdgen.diagnostics import Finding, Place
@@ -16,8 +14,6 @@ from icdgen.icd.loaded import Loaded
 from icdgen.icd.model import Icd
 from icdgen.loading import load
 
-_OVERLAY = re.compile(r"^errata:|^ *\"errata\":", re.MULTILINE)
-_ENTRY = re.compile(r"^[ -]*[\"']?id[\"']?: *[\"']?([A-Z][A-Z0-9-]*)[\"']?,? *$", re.MULTILINE)
 _READING = ("ICD001", "ICD002", "ICD003", "ICD004", "ICD010")  # something of the ICD is not in the model
 
 
@@ -42,23 +38,6 @@ class Side:
         if place is None or not place.file:
             return None
         return place if not self.folder else place._replace(file=self.name(place.file))
-
-    def erratum(self, key: str) -> Place | None:
-        """Where the entry of an overlay stands that has this id."""
-        return self._errata.get(key)
-
-    @cached_property
-    def _errata(self) -> dict[str, Place]:
-        found: dict[str, Place] = {}
-        for file, text in self.texts.items():
-            if _OVERLAY.search(text):
-                for match in _ENTRY.finditer(text):
-                    start = match.start(1)
-                    place = Place(
-                        file, text.count("\n", 0, start) + 1, start - text.rfind("\n", 0, start), len(match[1])
-                    )
-                    found.setdefault(match[1], place)
-        return found
 
     def name(self, file: str) -> str:
         """The file as a user knows it."""
