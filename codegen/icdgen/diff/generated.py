@@ -23,11 +23,9 @@ from icdgen.diff.pairs import (
 )
 from icdgen.icd.located import Map
 from icdgen.icd.model import TELEMETRY, Enum, Field, Icd, Message, Node
-from icdgen.naming import camel
 
 if TYPE_CHECKING:
     from icdgen.backends import Identifier
-    from icdgen.describe import FieldDescription
 
 Marked = TypeVar("Marked")
 LANGUAGES = ("c", "python", "rust")
@@ -313,6 +311,7 @@ class _Cut:
     def type_of(self, language: str, pair: FieldPair) -> str:
         """The type of the field's raw value in a language."""
         from icdgen.backends.c import types as c
+        from icdgen.backends.python import fields as python
         from icdgen.backends.rust import names as rust
         from icdgen.describe import describe
 
@@ -326,15 +325,7 @@ class _Cut:
         if language == "c":
             array = f"[{field.count}]" if field.count else ""
             return f"uint8_t{array}[{field.bits // 8}]" if field.is_bytes else f"{c.type_of(one)}{array}"
-        if one.count:
-            return f"tuple[{_python_type(one)}, ...]"
-        return f"Optional[{_python_type(one)}]" if field.when else _python_type(one)
-
-
-def _python_type(one: FieldDescription) -> str:
-    kind = one.model.type
-    plain = {"uint": "int", "enum": "int", "text": "bytes"}.get(kind, kind)
-    return camel(one.enum.words) if one.enum is not None else plain
+        return python.annotation(one).replace("_lazy.", "")
 
 
 def _place(field: Field) -> tuple[str, int]:

@@ -10,6 +10,7 @@ import json
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from hashlib import sha256
+from itertools import chain
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -55,24 +56,17 @@ def read(folder: Path, icd: Icd, code_of: Callable[[str], str]) -> list[Measurem
     try:
         paths = sorted(path for path in folder.iterdir() if path.suffix == ".json" and not path.name.startswith("."))
     except OSError as error:
-        raise UserError(
-            f"{folder}: cannot be read: {error.strerror}", "--measured names a folder of measurements"
-        ) from None
+        text = f"{folder}: cannot be read: {error.strerror}"
+        raise UserError(text, "--measured names a folder of measurements") from None
     found = []
     for path in paths:
         data = _data(path)
-        if data["icd"] != icd_digest(icd):
-            raise UserError(
-                f"{path}: it measures other ICDs: the digest is {data['icd'][:16]} there and {icd_digest(icd)[:16]} here",
-                _AGAIN,
-            )
-        for language, digest in data["code"].items():
-            now = code_of(language)
-            if digest != now:
-                raise UserError(
-                    f"{path}: it measures other code: the digest of `{language}` is {digest[:16]} there and {now[:16]} here",
-                    _AGAIN,
-                )
+        ours = ("ICDs: the digest", data["icd"], icd_digest(icd))
+        code = ((f"code: the digest of `{name}`", there, code_of(name)) for name, there in data["code"].items())
+        for what, there, here in chain([ours], code):
+            if there != here:
+                text = f"{path}: it measures other {what} is {there[:16]} there and {here[:16]} here"
+                raise UserError(text, _AGAIN)
         rows = [[str(cell) for cell in row] for row in data["rows"]]
         facts = tuple((str(key), str(value)) for key, value in data["facts"])
         says, made_by, columns = (tuple(map(str, data[key])) for key in ("says", "made_by", "columns"))
@@ -87,9 +81,8 @@ def _data(path: Path) -> dict[str, Any]:
     except (OSError, ValueError, RecursionError) as error:
         raise UserError(f"{path}: cannot be read: {error}", _AGAIN) from None
     if not isinstance(data, dict) or data.get("icdgen_measurement") != FORMAT:
-        raise UserError(
-            f"{path}: not a measurement (no `icdgen_measurement: {FORMAT}`)", "keep only measurements in that folder"
-        )
+        text = f"{path}: not a measurement (no `icdgen_measurement: {FORMAT}`)"
+        raise UserError(text, "keep only measurements in that folder")
     for key, kind in _KEYS.items():
         if type(data.get(key)) is not kind:
             raise UserError(f"{path}: `{key}` is missing or not of its kind", _AGAIN)

@@ -68,7 +68,7 @@ def script(relations: Relations) -> str:
 
 def _of_message(relations: Relations, node: Node, message: Message) -> Iterator[Entry]:
     links = relations.links
-    numbers = [(way, id) for way, id in texts.ids(message)]
+    numbers = texts.ids(message)
     ids = "/".join(f"{id} (0x{id:02X})" for _, id in numbers)
     own = _words(message, node)
     phrases = [spelling for id in message.ids for spelling in (str(id), f"0x{id:02x}", f"{id:02x}h", f"id {id}")]

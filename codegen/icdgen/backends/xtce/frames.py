@@ -60,9 +60,8 @@ class Frame:
     size: int = 0  # bits of every frame, where entries that are not always there leave it open
     base: Base | None = None  # of one that shares its id
     told: list[tuple[str, int]] = field(default_factory=list)  # numbers of the base, with their values
-    lacks: list[str] = field(
-        default_factory=list
-    )  # what is left out, as XTCE has no word for it: such a command cannot be sent
+    # what is left out, as XTCE has no word for it: such a command cannot be sent
+    lacks: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)  # what else is not said
     names: dict[str, str] = field(default_factory=dict)  # of parameters or arguments, by those of fields
 
@@ -89,12 +88,10 @@ class Frames:
     direction: str
     types: Types
     head: int
+    shared: dict[int, int]  # ids of several messages, with bytes that all their frames have
+    taken: set[str]  # names of containers or commands, and of parameters
+    bases: dict[int, Base] = field(default_factory=dict)  # of those that share an id
     reserved: dict[str, Row] = field(default_factory=dict)
-    shared: dict[int, int] = field(
-        default_factory=dict
-    )  # ids of several messages, with bytes that all their frames have
-    bases: dict[int, Base] = field(default_factory=dict)  # of these
-    taken: set[str] = field(default_factory=set)  # names of containers or commands, and of parameters
 
     def frame(self, message: MessageDescription) -> Frame:
         """A message as it is sent in the direction."""
@@ -126,14 +123,12 @@ class Frames:
             made.lacks += (f"`{part.name}`, which has no fixed size, is left out" for part in message.model.open_parts)
         if message.model.may_end_early:
             made.notes.append("it is sent with the zeros that it may be sent without")
-        made.notes += (
-            f"`{one.model.name}` is left out: it is derived by `{one.model.formula}`" for one in message.derived
-        )
+        for one in message.derived:
+            made.notes.append(f"`{one.model.name}` is left out: it is derived by `{one.model.formula}`")
         self._lay_out(made, found, self.head + message.model.fixed * 8)
         if behind is not None:
-            made.entries.append(
-                behind._replace(at=behind.run.at if any(one.at is not None for one in made.entries) else None)
-            )
+            is_placed = any(one.at is not None for one in made.entries)
+            made.entries.append(behind._replace(at=behind.run.at if is_placed else None))
         return made
 
     def _open(self, made: Frame, tail: TailDescription) -> Entry | None:
@@ -191,10 +186,8 @@ class Frames:
 
     def _lay_out(self, made: Frame, found: list[Entry], end: int) -> None:
         """Gives entries their places, and reserved bits entries: each then follows the one before it, if that can be."""
-        is_plain = all(one.run.is_usual and not one.needs for one in found)
-        is_plain = is_plain and not made.message.seen and made.base is None
-        is_plain = is_plain and not any("order of its bits" in text for text in made.lacks)
-        if is_plain:
+        is_plain = all(one.run.is_usual and not one.needs for one in found) and not made.message.seen
+        if is_plain and made.base is None and not any("order of its bits" in text for text in made.lacks):
             found += map(self._reserved, gaps((one.run for one in found), self.head, end))
             made.entries = sorted(found, key=lambda one: one.run.at)
             return

@@ -75,17 +75,17 @@ class Drawing(NamedTuple):
 
 def draw(pair: MessagePair, changes: list[Change]) -> Drawing | None:
     """The layouts of a message; one strip is empty where it is only in one ICD. None where no bit changed place or sense."""
-    kinds = {id(one): _kind(one, changes) for one in pair.parts}
     sides = tuple(message.length * 8 if message is not None else 0 for message in (pair.before, pair.after))
     rows = [Row() for _ in range((max(*sides, 1) + BITS - 1) // BITS)]
     for size, y in zip(sides, (OLD_Y, NEW_Y), strict=True):
         _frame(rows, size, y)
     for number, one in enumerate(sorted(pair.parts, key=lambda p: p.any.at)):
-        before = _boxes(rows, one.old, OLD_Y, kinds[id(one)], f"f{number}") if one.before is not None else {}
-        after = _boxes(rows, one.new, NEW_Y, kinds[id(one)], f"f{number}") if one.after is not None else {}
+        kind, key = _kind(one, changes), f"f{number}"
+        before = _boxes(rows, one.old, OLD_Y, kind, key) if one.before is not None else {}
+        after = _boxes(rows, one.new, NEW_Y, kind, key) if one.after is not None else {}
         for index in before.keys() & after.keys():
-            if kinds[id(one)] != "same" or before[index].x != after[index].x:
-                rows[index].links.append(_link(before[index], after[index], kinds[id(one)], f"f{number}"))
+            if kind != "same" or before[index].x != after[index].x:
+                rows[index].links.append(_link(before[index], after[index]))
     for number, row in enumerate(rows):
         row.ticks = [(LEFT + byte * 8 * CELL, number * BITS // 8 + byte) for byte in range(BITS // 8)]
     if not any(row.is_new for row in rows):
@@ -140,10 +140,10 @@ def _title(one: Field) -> str:
     return ", ".join(words)
 
 
-def _link(old: Box, new: Box, kind: str, key: str) -> Link:
+def _link(old: Box, new: Box) -> Link:
     top, bottom = OLD_Y + HEIGHT, NEW_Y
     corners = ((old.x, top), (old.x + old.width, top), (new.x + new.width, bottom), (new.x, bottom))
-    return Link(" ".join(f"{x:g},{y}" for x, y in corners), kind, key)
+    return Link(" ".join(f"{x:g},{y}" for x, y in corners), new.kind, new.key)
 
 
 def _folded(rows: list[Row]) -> list[Row | str]:

@@ -34,14 +34,9 @@ def groups(changes: Iterable[Change]) -> list[Group]:
         owner = pair.owner if isinstance(pair, FieldPair | MemberPair) else pair
         group = found.get(id(owner))
         if group is None:
-            group = found[id(owner)] = Group(*_title(owner, change), owner, [])
+            about = "enumeration" if isinstance(owner, EnumPair) else "node"
+            if isinstance(owner, MessagePair):
+                about = f"{owner.any.kind} {ids(owner.any.ids)}"
+            group = found[id(owner)] = Group(owner.any.name, about, owner.where().node, owner, [])
         group.changes.append(change)
     return list(found.values())
-
-
-def _title(owner: Pair, change: Change) -> tuple[str, str, str]:
-    if isinstance(owner, MessagePair):
-        return owner.any.name, f"{owner.any.kind} {ids(owner.any.ids)}", owner.node.name
-    if isinstance(owner, EnumPair):
-        return owner.any.name, "enumeration", owner.node.name
-    return owner.any.name, "node", owner.any.name
