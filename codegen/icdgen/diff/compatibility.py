@@ -9,7 +9,7 @@ from icdgen.describe.numbers import length_text
 from icdgen.diff.changes.numbers import is_derived_otherwise, is_wider
 from icdgen.diff.compare import Comparison
 from icdgen.diff.context import by_id
-from icdgen.diff.envelopes import FACT
+from icdgen.diff.facts import AROUND
 from icdgen.diff.pairs import FieldPair, MessagePair, NodePair, kind
 from icdgen.diff.similar import other_senses
 from icdgen.diff.wording import read_as, some
@@ -93,7 +93,7 @@ def _is_of_all(comparison: Comparison, node: NodePair, fact: str, direction: str
     """Whether a fact concerns every message of a direction; of a node with envelopes only where these are others now."""
     if not comparison.context.have_envelopes(node):
         return True
-    return bool(FACT.fullmatch(fact)) and direction in comparison.context.other_envelopes(node)
+    return bool(AROUND.fullmatch(fact)) and direction in comparison.context.other_envelopes(node)
 
 
 def _frames(comparison: Comparison, key: str, judge: Judge, logged: bool = False) -> list[Frame | None]:

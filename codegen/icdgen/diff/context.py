@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from functools import cache, cached_property
 
-from icdgen.diff.envelopes import differ, has_envelope
+from icdgen.diff.facts import differ, has_envelope
 from icdgen.diff.generated import Generated
 from icdgen.diff.moves import moves
 from icdgen.diff.pairs import DeclaredPair, FieldPair, Match, MessagePair, NodePair, Position, position

@@ -1,18 +1,23 @@
-"""The protocol section as single facts: what differs, and where it stands."""
+"""The protocol section as single facts: what differs, where it stands, and whether that changes what is around each message."""
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import astuple
 from typing import Any, NamedTuple
 
 from icdgen.diagnostics import Place
 from icdgen.diff.where import Places
 from icdgen.icd.located import Map, Seq
-from icdgen.icd.model import Node
+from icdgen.icd.model import Icd, Node
+from icdgen.protocol import facts as protocol
 
 WORDS = frozenset(("source", "summary", "printed_constant"))  # keys that say something about the manual, not the device
 NAMES = ("name", "role", "value")  # what tells the rows of a list apart
+PART = re.compile(r"protocol\.stream(\.(header|trailer)(\.[^.]+)?)?")  # without which a message looks otherwise
+AROUND = re.compile(r"protocol\.stream\.(delimited_by|header|trailer)\b.*|protocol\.checksums\b.*")
 
 
 class Fact(NamedTuple):
@@ -89,3 +94,23 @@ def shown(value: object) -> str:
     if isinstance(value, dict):
         return f"{{{', '.join(f'{key}: {shown(item)}' for key, item in value.items() if key not in WORDS)}}}"
     return str(value)
+
+
+def has_envelope(side: tuple[Icd, Node]) -> bool:
+    """Whether messages of the node travel in envelopes."""
+    return "stream" in side[1].protocol
+
+
+def differ(old: tuple[Icd, Node], new: tuple[Icd, Node], direction: str) -> bool:
+    """Whether no message of a direction that one side makes is one of the other's, whatever it holds."""
+    return _form(*old, direction) != _form(*new, direction)
+
+
+def _form(icd: Icd, node: Node, direction: str) -> object:
+    """All that decides what is around the data of a message of ``direction``."""
+    stream = protocol.of(icd, node).stream
+    assert stream is not None
+    place = int(direction == "telemetry")
+    fields = [(*astuple(one)[:-1], one.values[place] if one.role == "constant" else None) for one in stream.fields]
+    check = None if stream.check is None else astuple(stream.check)
+    return stream.delimited_by, stream.header_bytes, stream.trailer_bytes, stream.length_plus, fields, check

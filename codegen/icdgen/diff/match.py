@@ -349,18 +349,13 @@ class _Shifts:
 
 def _in_order(found: Match) -> None:
     """As the ICDs have them: what is new or there still as in the new one, what is gone at its end."""
+    nodes = (*found.old.nodes, *found.new.nodes)
+    rows = (some for node in nodes for some in (node.messages, node.enums))
+    places = {id(one): number for some in rows for number, one in enumerate(some)}
+
+    def rank(pair: DeclaredPair) -> tuple[bool, int]:
+        return pair.after is None, places[id(pair.any)]
+
     for node in found.nodes:
-        late, order = (_ranks(side) for side in (node.before, node.after))
-
-        def rank(pair: DeclaredPair, late: dict[int, int] = late, order: dict[int, int] = order) -> Any:
-            return pair.after is None, order.get(id(pair.after), 0), late.get(id(pair.before), 0)
-
         node.messages.sort(key=rank)
         node.enums.sort(key=rank)
-
-
-def _ranks(node: Node | None) -> dict[int, int]:
-    """The place of each message and enumeration among those of the node, by identity."""
-    if node is None:
-        return {}
-    return {id(one): number for rows in (node.messages, node.enums) for number, one in enumerate(rows)}

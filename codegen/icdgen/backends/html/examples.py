@@ -32,14 +32,12 @@ def frames(message: Message, node: Node) -> list[tuple[str, str]]:
     """Name and bytes of every frame of the message's golden vectors, in their order."""
     if not message.length:
         return []
-    found = {frame: why for why, frame in reversed(list(patterns.frames(message, node)))}
-    ordered = dict.fromkeys(frame for _, frame in patterns.frames(message, node))
+    found: dict[bytes, str] = {}
+    for why, frame in patterns.frames(message, node):
+        found.setdefault(frame, why)
     for index, raw in enumerate(patterns.raw_columns(message)):
-        frame = codec.encode(node, message, raw)
-        if frame not in ordered:
-            ordered[frame] = None
-            found[frame] = f"chosen values {index}"
-    return [(found[frame], frame.hex(" ").upper()) for frame in ordered]
+        found.setdefault(codec.encode(node, message, raw), f"chosen values {index}")
+    return [(why, frame.hex(" ").upper()) for frame, why in found.items()]
 
 
 def examples(message: Message, node: Node) -> list[Example]:

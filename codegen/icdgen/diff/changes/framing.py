@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.diff.context import Context
-from icdgen.diff.envelopes import FACT, PART
-from icdgen.diff.facts import facts, shown
+from icdgen.diff.facts import AROUND, PART, facts, shown
 from icdgen.diff.pairs import NodePair, differing, place_of
 from icdgen.diff.rule import Found, rule
 from icdgen.icd.annex import Loggable
@@ -28,7 +27,7 @@ def fact_differs(pair: NodePair, ctx: Context) -> Iterator[Found]:
     for fact in facts(pair.old, pair.new):
         was, now = shown(fact.old), shown(fact.new)
         keys: tuple[str, ...] = (fact.path.rsplit(".", 1)[-1],)
-        is_around = have_envelopes and FACT.fullmatch(fact.path)
+        is_around = have_envelopes and AROUND.fullmatch(fact.path)
         is_spelling = is_around and not others and "checksums" not in fact.path  # as an order that is the node's
         if fact.is_word or is_spelling:
             code, said, keys = "DIF413", "says otherwise", ()
