@@ -35,6 +35,9 @@ class SideBySide(Generic[Thing]):
     before: Thing | None
     after: Thing | None
     sure: float = 1.0
+    is_of_another_node: bool = field(
+        default=False, kw_only=True
+    )  # a message or an enumeration that another one declares now
 
     @property
     def old(self) -> Thing:
@@ -62,6 +65,11 @@ class SideBySide(Generic[Thing]):
         """The new one, or the old one where there is no new one."""
         return self.old if self.after is None else self.after
 
+    @property
+    def is_of_struct(self) -> bool:
+        """Whether it is a field whose names a struct declares, and no message: see DIF313."""
+        return False
+
     def where(self) -> Where:
         raise NotImplementedError
 
@@ -79,7 +87,6 @@ class _DeclaredPair(SideBySide[Thing], Generic[Thing, Part]):
 
     old_node: Node = field(kw_only=True)
     new_node: Node = field(kw_only=True)
-    is_of_another_node: bool = field(kw_only=True)  # another node declares it now
     parts: list[Part] = field(default_factory=list)
 
     @property
@@ -128,7 +135,6 @@ class FieldPair(SideBySide[Field]):
 
     @property
     def is_of_struct(self) -> bool:
-        """Whether a struct declares its names, and no message."""
         return any(step.struct is not None for step in self.any.path)
 
     @property
@@ -214,11 +220,6 @@ class Match:
 
 
 Position = tuple[range | Piece, ...]
-
-
-def is_of_another_node(pair: Pair) -> bool:
-    """Whether it is a message or an enumeration that another node declares now."""
-    return isinstance(pair, MessagePair | EnumPair) and pair.is_of_another_node
 
 
 def orders(node: Node) -> tuple[str, str]:

@@ -30,9 +30,7 @@ _COLUMNS = [
 
 def field_table(message: Message | Struct, node: Node, width: int | None = None) -> str:
     """Fields and reserved bits in the order of the frame; empty for a message without any."""
-    rows: list[tuple[int, tuple[str, ...]]] = [
-        (field.at, _row(field, message)) for field in message.lines if not field.implied
-    ]
+    rows = [(field.at, _row(field, message)) for field in message.lines if not field.implied]
     reserved = ("reserved", "", "", "", "", "", "")
     rows += [(gap.at, (str(gap.at), str(gap.bits), *reserved)) for gap in layout.gaps(message, node)]
     return render(_COLUMNS, [row for _, row in sorted(rows, key=lambda r: r[0])], width)
@@ -77,9 +75,8 @@ def remarks(
     for step in field.path:
         if step.struct is not None and step.is_open:
             most = "up to " if part is not None else ""
-            yield (
-                f"{most}{step.count} times, every {byte_count(step.struct.length)}" if step.count > 1 else f"{most}once"
-            )
+            every = f", every {byte_count(step.struct.length)}"
+            yield f"{most}{step.count} times{every}" if step.count > 1 else f"{most}once"
     if field.curve is not None and field.curve.points:
         yield f"points {points_text(field.curve, 12)}"
     if field.const is not None:

@@ -29,19 +29,19 @@ class MessageWatch:
     def __init__(self, node: Node, vectors: MessageVectors, lines: MessageLines) -> None:
         self.node, self.message, self.vectors, self.lines = node, vectors.message, vectors, lines
 
-    def field(self, index: int, now: Field, node: Node | None = None) -> list[int]:
-        """Lines that notice that a field is another, or ``node`` is that of the message."""
-        old, node = self.message.fields[index], node or self.node
-        found = [self.lines.fields[old.name]] if self._line_notices(old, now) else []
-        needed = {one.field for one in (*old.when, *now.when)}
+    def field(self, index: int, now: Field) -> list[int]:
+        """Lines that notice that a field is another."""
+        old = self.message.fields[index]
         if now.derived is not None:
             changed = replace(self.message, fields=(*self.message.fields[:index], now))
             pairs = zip(self.lines.rows, self.vectors.rows, strict=True)
             return [line for line, row in pairs if codec.derived(changed, row.raw)[now.name] != row.raw[now.name]]
+        found = [self.lines.fields[old.name]] if self._line_notices(old, now) else []
+        needed = {one.field for one in (*old.when, *now.when)}
         others = tuple(one for one in self.message.fields if one.name in needed)
         alone = replace(self.message, fields=(now, *others), tail=None, inner=())
         rows = zip(self.lines.rows, self.vectors.rows, self._of_others[index], strict=True)
-        return found + [number for number, row, others in rows if _notices(row, old, now, node, alone, others)]
+        return found + [number for number, row, others in rows if _notices(row, old, now, self.node, alone, others)]
 
     def member(self, place: int, old: Field, now: Field) -> list[int]:
         """Lines that notice that a member is another; it begins with the field at ``place``, and an array has more of them."""
@@ -87,10 +87,10 @@ class MessageWatch:
         given = self.vectors.settings.get(old.name, [])
         if not given or old.type == "text":
             return any(_attempt(codec.raw_from_text, now, said) != _given(raw) for said, raw in given)
+        if not (now.has_formula and now.leads_back):
+            return True
         asked = [*given, *((bits, None) for bits in NEVER if old.type != "float")]
-        return not (now.has_formula and now.leads_back) or any(
-            _attempt(codec.raw_from_physical, now, float_of(bits)) != _given(raw) for bits, raw in asked
-        )
+        return any(_attempt(codec.raw_from_physical, now, float_of(bits)) != _given(raw) for bits, raw in asked)
 
     def _is_fresh(self, field: Field) -> bool:
         """Whether a new message has it: of an open end it has no element."""
@@ -130,9 +130,8 @@ def _notices(row: Row, old: Field, now: Field, node: Node, alone: Message, other
     raw, read, frame = row.raw.get(old.name), answer[0].get(now.name), answer[1]
     if raw is None or read is None:
         return raw is not read
-    if (
-        now.view and codec.decode(node, alone, row.encoded.ljust(alone.length, b"\0"))[now.name] != raw
-    ):  # it is read from what the others are encoded to, too
+    # a view is read from what the others are encoded to, too
+    if now.view and codec.decode(node, alone, row.encoded.ljust(alone.length, b"\0"))[now.name] != raw:
         return True
     if _shown(now, read) != _shown(old, raw) or _name(now, read) != _name(old, raw):
         return True

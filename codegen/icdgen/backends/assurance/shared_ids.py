@@ -36,9 +36,8 @@ class SharedIds:
     def of_node(self, node: Node, now: Node) -> dict[str, list[int]]:
         """Those that notice that a node is another, whose messages are the same."""
         nodes = tuple(now if one is node else one for one in self._icd.nodes)
-        return self._noticing(
-            replace(self._icd, nodes=nodes), lambda one: one, lambda known: any(one.node == node.name for one in known)
-        )
+        icd = replace(self._icd, nodes=nodes)
+        return self._noticing(icd, lambda one: one, lambda known: any(one.node == node.name for one in known))
 
     def _noticing(
         self, icd: Icd, now: Callable[[Message], Message], concerns: Callable[[Sequence[Message]], bool]

@@ -63,10 +63,10 @@ class Relations:
             for part in message.contains:
                 other = spoken.get(part.message)
                 if other is not None:
-                    self.contains[node.name, message.name].append(Contained(self.place(other), part.at, other.length))
-                    self.contained_in[other.node, other.name].append(
-                        Contained(self.place(message), part.at, message.length)
-                    )
+                    inner = Contained(self.place(other), part.at, other.length)
+                    outer = Contained(self.place(message), part.at, message.length)
+                    self.contains[node.name, message.name].append(inner)
+                    self.contained_in[other.node, other.name].append(outer)
         for enum in node.enums:
             url = self.links.enum(enum)
             self._errata(enum.errata, Place(enum.name, url))

@@ -151,9 +151,8 @@ def own_order_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
             continue  # if it is read otherwise, its node has turned round
         was, now = (one or getattr(node, key) for one, node in zip(own, nodes, strict=True))
         if was != now:
-            yield Found(
-                f"the {key.replace('_', ' ')} of {quote(new.name)} is {now}, was {was}", (key, "type"), was, now
-            )
+            text = f"the {key.replace('_', ' ')} of {quote(new.name)} is {now}, was {was}"
+            yield Found(text, (key, "type"), was, now)
 
 
 @rule("DIF116", "node")

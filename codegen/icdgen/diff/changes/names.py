@@ -6,16 +6,7 @@ from collections.abc import Iterator
 
 from icdgen.diff.context import Context
 from icdgen.diff.generated import Name, is_called_otherwise, may_rename
-from icdgen.diff.pairs import (
-    EnumPair,
-    FieldPair,
-    IdentifiedPair,
-    MemberPair,
-    MessagePair,
-    NodePair,
-    Pair,
-    is_of_another_node,
-)
+from icdgen.diff.pairs import EnumPair, FieldPair, IdentifiedPair, MemberPair, MessagePair, NodePair, Pair
 from icdgen.diff.rule import Found, rule
 from icdgen.icd.model import Field
 from icdgen.icd.rules.wording import count, listing, quote
@@ -55,7 +46,7 @@ TITLES = {"c": "C", "python": "Python", "rust": "Rust"}
 
 
 def _renamed(pair: IdentifiedPair, ctx: Context) -> Iterator[Found]:
-    if not is_called_otherwise(pair) or is_of_another_node(pair):
+    if not is_called_otherwise(pair) or pair.is_of_another_node:
         return
     renamed = ctx.generated.renamed(pair)
     if renamed:
@@ -84,7 +75,7 @@ def node_renamed(pair: NodePair, ctx: Context) -> Iterator[Found]:
 
 @rule("DIF306", "message", "field", "enum", "member", "node", when="gone")
 def names_gone(pair: Pair, ctx: Context) -> Iterator[Found]:
-    if _is_of_struct(pair):
+    if pair.is_of_struct:
         return
     gone: Renamed = [(name, None) for name in ctx.generated.old.get(id(pair), ())]
     text = f"the generated names of {_WHAT[type(pair)]} {quote(pair.old.name)} are gone"
@@ -107,12 +98,8 @@ def retyped(pair: FieldPair, ctx: Context) -> Iterator[Found]:
 
 @rule("DIF308", "field")
 def accessors_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    if (
-        is_called_otherwise(pair)
-        or pair.owner.is_of_another_node
-        or pair.owner.has_another_vocabulary
-        or not may_rename(pair)
-    ):
+    is_moved = pair.owner.is_of_another_node or pair.owner.has_another_vocabulary
+    if is_moved or is_called_otherwise(pair) or not may_rename(pair):
         return
     renamed = ctx.generated.renamed(pair)
     if renamed:
@@ -150,15 +137,11 @@ def declared_elsewhere(pair: MessagePair | EnumPair, ctx: Context) -> Iterator[F
 
 @rule("DIF311", "message", "field", "enum", "member", "node", when="come", severity="note", addition=True)
 def names_come(pair: Pair, ctx: Context) -> Iterator[Found]:
-    if _is_of_struct(pair):
+    if pair.is_of_struct:
         return
     come: Renamed = [(None, name) for name in ctx.generated.new.get(id(pair), ())]
     text = f"{_WHAT[type(pair)]} {quote(pair.new.name)} has generated names now"
     yield Found(text, ("name", "identifier"), "", pair.new.name, lines(come))
-
-
-def _is_of_struct(pair: Pair) -> bool:
-    return isinstance(pair, FieldPair) and pair.is_of_struct  # see DIF313
 
 
 @rule("DIF312", "field")

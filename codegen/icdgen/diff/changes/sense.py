@@ -44,7 +44,5 @@ def node_says_otherwise(pair: NodePair, ctx: Context) -> Iterator[Found]:
         old, new = getattr(pair.old, key), getattr(pair.new, key)
         if old != new:
             was, now = ("" if value is None else str(value) for value in (old, new))
-            text = (
-                f"the {key.replace('_', ' ')} of `{pair.new.name}` is {now or 'not stated'}, was {was or 'not stated'}"
-            )
-            yield Found(text, (key,), was, now)
+            what = f"the {key.replace('_', ' ')} of `{pair.new.name}`"
+            yield Found(f"{what} is {now or 'not stated'}, was {was or 'not stated'}", (key,), was, now)

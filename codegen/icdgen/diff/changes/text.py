@@ -5,18 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.diff.context import Context
-from icdgen.diff.pairs import (
-    EnumPair,
-    FieldPair,
-    IdentifiedPair,
-    MessagePair,
-    NodePair,
-    Pair,
-    differing,
-    is_of_another_node,
-    orders,
-    place_of,
-)
+from icdgen.diff.generated import is_called_otherwise
+from icdgen.diff.pairs import EnumPair, IdentifiedPair, MessagePair, NodePair, Pair, differing, orders, place_of
 from icdgen.diff.rule import Found, rule
 from icdgen.diff.where import Places
 from icdgen.icd.rules.wording import quote
@@ -50,10 +40,9 @@ def _reference(side: object) -> str:
 @rule("DIF406", "message", "field", "enum", "member", severity="note")
 def respelled(pair: IdentifiedPair, ctx: Context) -> Iterator[Found]:
     old, new = pair.old, pair.new
-    is_of_struct = isinstance(pair, FieldPair) and pair.is_of_struct
-    if is_of_struct or (old.name, old.identifier) == (new.name, new.identifier):
-        return  # see DIF313
-    if is_of_another_node(pair) or not ctx.generated.renamed(pair):
+    if pair.is_of_struct or not is_called_otherwise(pair):
+        return
+    if pair.is_of_another_node or not ctx.generated.renamed(pair):
         was, now = (f"{side.name} ({side.identifier})" if side.identifier else side.name for side in (old, new))
         text = f"{quote(new.name)} is spelled otherwise, its generated names are the same"
         yield Found(text, ("name", "identifier"), was, now)

@@ -38,9 +38,8 @@ def _resolve(arguments: list[str], usual: list[Path]) -> tuple[Input, Input]:
             return one, [git.outside(path) for path in one.paths]
         raise UserError("name what to compare with", "`icdgen diff OLD NEW`, or a git revision such as HEAD~1")
     if len(arguments) > 2:
-        raise UserError(
-            f"{len(arguments)} arguments are given, OLD and NEW are enough", "name folders for several files"
-        )
+        text = f"{len(arguments)} arguments are given, OLD and NEW are enough"
+        raise UserError(text, "name folders for several files")
     first, second = arguments
     return _one(git, first, _beside(second, usual)), _one(git, second, _beside(first, usual))
 

@@ -77,9 +77,8 @@ class Git:
         if path.startswith("./"):
             inner = here / inner
         if ".." in inner.parts or inner.is_absolute():
-            raise UserError(
-                f"{word}: the path must lie in the repository", "as `git show` takes it: REVISION:icd/a.yaml"
-            )
+            help = "as `git show` takes it: REVISION:icd/a.yaml"
+            raise UserError(f"{word}: the path must lie in the repository", help)
         if not _run("cat-file", "-t", f"{revision}:{_name(inner)}", top=self.top):
             raise UserError(f"{revision} has no {path}", f"`git ls-tree -r {revision}` lists what it has")
         return Spec(revision, [inner], word, top=self.top)
