@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import NamedTuple
 
 from icdgen.diff.change import Change
@@ -24,8 +25,8 @@ def step(changes: list[Change]) -> Step:
     breaking = [change for change in changes if change.breaks]
     additions = [change for change in changes if change.addition]
     if breaking:
-        counts = [(layer, sum(1 for c in breaking if c.layer == layer)) for layer in LAYERS]
-        said = [f"{count(number, 'change')} of {_OF[layer]}" for layer, number in counts if number]
+        counts = Counter(change.layer for change in breaking)
+        said = [f"{count(counts[layer], 'change')} of {_OF[layer]}" for layer in LAYERS if counts[layer]]
         return Step(MAJOR, f"{listing(said)}, the first: {breaking[0].message}", _codes(breaking))
     if additions:
         reason = f"nothing breaks, {count(len(additions), 'addition')}, the first: {additions[0].message}"

@@ -39,17 +39,14 @@ def papers(
         ]
         columns = ("Id", "Kind", "What", "Confidence", "Tables", "Decided in", "Touches", "Printed", "Held", "Evidence")
         yield Page("errata.html", "Errata", _OF_ERRATA, columns, groups, data=("errata.csv",)), found, ERRATA
-    assumed, absent = list(assumptions(icd, files)), list(missing(icd))
-    if assumed:
-        yield _plain("assumptions", "Assumptions", _OF_ASSUMPTIONS, ASSUMPTIONS, assumed), assumed, ASSUMPTIONS
-    if absent:
-        yield _plain("missing", "Not described", _OF_MISSING, MISSING, absent), absent, MISSING
-
-
-def _plain(name: str, title: str, says: tuple[str, ...], columns: tuple[str, ...], rows: list[list[Cell]]) -> Page:
-    """A paper whose page shows what its table has."""
-    shown = tuple(map(str.capitalize, columns))
-    return Page(f"{name}.html", title, says, shown, [Group(list(rows))], data=(f"{name}.csv",))
+    others = (
+        ("assumptions", "Assumptions", _OF_ASSUMPTIONS, ASSUMPTIONS, list(assumptions(icd, files))),
+        ("missing", "Not described", _OF_MISSING, MISSING, list(missing(icd))),
+    )
+    for name, title, says, keys, rows in others:
+        if rows:  # the page shows what the table has
+            shown = tuple(map(str.capitalize, keys))
+            yield Page(f"{name}.html", title, says, shown, [Group([*rows])], data=(f"{name}.csv",)), rows, keys
 
 
 def _folded(row: list[Cell]) -> list[Cell]:

@@ -45,6 +45,11 @@ class Element:
         return self.model.name
 
     @property
+    def part_of(self) -> str:
+        """The name of its owner."""
+        return self.owner.name if self.owner else ""
+
+    @property
     def source(self) -> Map:
         """What was read of it."""
         source = self.model.source

@@ -81,7 +81,7 @@ class Tracing:
         for one in elements:
             place = one.source.place
             yield [
-                one.kind, one.node.name, one.owner.name if one.owner else "", one.name, _text(one.row), _text(one.table),
+                one.kind, one.node.name, one.part_of, one.name, _text(one.row), _text(one.table),
                 _text(one.page), self.files.name(place.file), str(place.line), said(one), [erratum.id for erratum in one.errata],
                 str(len(one.changes)), str(_unnoticed(one)), vectors(one.noticed),
                 *([str(name) for name in self.symbols.of(language, one.model.source)] for language in self.symbols.languages),
@@ -93,9 +93,8 @@ class Tracing:
             for traced in one.changes:
                 change = traced.change
                 place = change.source.at(change.key)
-                owner = one.owner.name if one.owner else ""
                 yield [
-                    change.kind, one.node.name, owner, one.name, change.key, self.files.name(place.file), str(place.line),
+                    change.kind, one.node.name, one.part_of, one.name, change.key, self.files.name(place.file), str(place.line),
                     str(place.column), str(change.old), str(change.now), vectors(traced.noticed),
                 ]  # fmt: skip
 

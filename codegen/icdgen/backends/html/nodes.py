@@ -5,8 +5,6 @@ from __future__ import annotations
 from icdgen.backends.html import examples, protocol, texts, wire
 from icdgen.backends.html.relations import Place, Relations, document, manual
 from icdgen.describe.errata import errata_of_message
-from icdgen.icd.annex import Loggable
-from icdgen.icd.erratum import Erratum
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Message, Node
 from icdgen.icd.wire_ids import DEFAULT_BITS
 
@@ -76,38 +74,31 @@ def _decisions(node: Node) -> dict[str, int]:
 
 
 def _facts(node: Node) -> list[tuple[str, str]]:
-    facts = []
-    if node.node_type is not None:
-        facts.append(("Node type", str(node.node_type)))
-    if node.interface_version is not None:
-        facts.append(("Interface version", str(node.interface_version)))
-    if node.id_bits != DEFAULT_BITS:
-        facts.append(("Ids", f"{node.id_bits} bits"))
-    firmware = dict(node.document).get("version")
-    if firmware:
-        facts.append(("Firmware", firmware))
-    return facts
+    facts = (
+        ("Node type", node.node_type),
+        ("Interface version", node.interface_version),
+        ("Ids", f"{node.id_bits} bits" if node.id_bits != DEFAULT_BITS else None),
+        ("Firmware", dict(node.document).get("version") or None),
+    )
+    return [(label, str(value)) for label, value in facts if value is not None]
 
 
 def values(relations: Relations, node: Node) -> dict[str, object]:
     """Values of a node's page, and of the page that holds all its messages."""
     spoken = sorted(relations.icd.messages_of(node), key=lambda m: m.node != node.name)
     rows = [_row(relations, node, message) for message in spoken]
-    first = "least" if node.bit_order == "lsb0" else "most"
+    received = {m.telemetry_id: relations.place(m) for m in reversed(relations.icd.messages_of(node))}
+    numbering = f"bit 0 is the {'least' if node.bit_order == 'lsb0' else 'most'} significant"
     return {
         "node": node,
         "document": document(node),
-        "facts": [
-            *_facts(node),
-            ("Byte order", f"{node.byte_order}-endian"),
-            ("Bit numbering", f"bit 0 is the {first} significant"),
-        ],
+        "facts": [*_facts(node), ("Byte order", f"{node.byte_order}-endian"), ("Bit numbering", numbering)],
         "rows": rows,
         "kinds": [
             (kind, title, count) for kind, title in _KINDS.items() if (count := sum(m.kind == kind for m in spoken))
         ],
         "groups": sorted({message.group for message in spoken if message.group}),
-        "loggable": [_loggable(relations, node, row) for row in node.loggable],
+        "loggable": [(row, received.get(row.id)) for row in node.loggable],
         "enums": [
             (Place(enum.name, relations.links.enum(enum)), len(enum.members), enum.summary) for enum in node.enums
         ],
@@ -139,15 +130,3 @@ def _row(relations: Relations, node: Node, message: Message) -> dict[str, object
         "of": "" if own else relations.icd.node(message.node).title,
         "errata": len(errata_of_message(message)),
     }
-
-
-def _loggable(
-    relations: Relations, node: Node, row: Loggable
-) -> tuple[int, int, Place | None, str, tuple[Erratum, ...]]:
-    found = next((m for m in relations.icd.messages_of(node) if m.telemetry_id == row.id), None)
-    return row.bit, row.id, relations.place(found) if found else None, row.name, row.errata
-
-
-def mask_of(bit: int) -> int:
-    """The mask, within its byte, of a bit of the log mask."""
-    return 1 << bit % 8

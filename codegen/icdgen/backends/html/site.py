@@ -57,7 +57,6 @@ def files(icd: Icd, render: Renderer, previous: Side | None = None) -> Iterator[
         "sidebar": "",
         "changed": errata.changed,
         "hatch": drawing.hatch,
-        "mask_of": nodes.mask_of,
         "policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; base-uri 'none'; form-action 'none'",
     }
 
