@@ -325,7 +325,7 @@ def test_hostile_files_are_refused(text, says, tmp_path):
 
 
 def test_what_is_read_of_a_file_and_those_beside_it_is_bounded(tmp_path, monkeypatch):
-    monkeypatch.setattr(eds_types, "MOST_STEPS", 100)
+    monkeypatch.setattr(eds_types.Types, "most_steps", 100)
     assert "the file says more than 100 things" in refused(sheet(nested(5, 4) + container("C5", ENTRY)), tmp_path)
     monkeypatch.setattr(eds_interfaces, "MOST_STEPS", 3)
     assert "its interfaces carry more than 3 containers" in why_not("camera.xml", SHEETS)

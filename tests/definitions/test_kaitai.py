@@ -230,7 +230,7 @@ def test_hostile_files_and_what_is_no_definition_are_refused(text, says, line, t
 
 @pytest.mark.parametrize("more", [BROAD, ""])
 def test_a_small_file_that_says_much_is_bounded(more, tmp_path, monkeypatch):
-    monkeypatch.setattr(kaitai_parts, "MOST_STEPS", 2000)
+    monkeypatch.setattr(kaitai_parts.File, "most_steps", 2000)
     flags = [f"{{id: f{n}, type: u1}}" for n in range(40)]
     flags += [f"{{id: x{n}, type: u1, if: f{n} == 1}}" for n in range(40)]
     text = ksy("{id: b, type: t0}", more=more) if more else ksy(*flags)

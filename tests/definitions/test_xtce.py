@@ -196,7 +196,8 @@ MASKED = "<RestrictionCriteria><CustomAlgorithm/></RestrictionCriteria>"
     ],
 )  # fmt: skip
 def test_containers_that_cannot_be_held_are_left_out_and_end(text, says, tmp_path, monkeypatch):
-    monkeypatch.setattr(xtce_types, "MOST_STEPS", xtce_types.MOST_STEPS if "things" not in says else 20_000)
+    most = xtce_types.Types.most_steps if "things" not in says else 20_000
+    monkeypatch.setattr(xtce_types.Types, "most_steps", most)
     assert says.replace("1,000,000", "20,000") in refused(system(text), tmp_path)
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from icdgen.definitions import dbc, frames, safe_xml
 from icdgen.definitions.enumerations import Enumerations, members, special
-from icdgen.definitions.model import Definitions, Item, Network, NotHeld, unreadable
+from icdgen.definitions.model import Definitions, Item, Network, NotHeld, raws, unreadable
 from icdgen.definitions.wording import formula, limits, line, node_name, printed, summary, unit
 from icdgen.icd.fmt.emit import Spelled
 
@@ -158,7 +158,7 @@ def _message(message: Any, order: str, enums: Enumerations, to: Definitions) -> 
             placed.append((field, place))
         else:
             (by,) = field["when"]
-            same["when"] = {by: [*_listed(same["when"][by]), *_listed(field["when"][by])]}
+            same["when"] = {by: [*frames.listed(same["when"][by]), *frames.listed(field["when"][by])]}
     return frames.laid_out(made, placed, order, to)
 
 
@@ -166,10 +166,6 @@ def _is_alternative(one: Item, other: Item) -> bool:
     """Whether two are one signal that a symbol file has under several values of a multiplexer."""
     plain = [{key: value for key, value in each.items() if key not in ("when", "enum")} for each in (one, other)]
     return plain[0] == plain[1] and "when" in one and one["when"].keys() == other.get("when", {}).keys()
-
-
-def _listed(said: Any) -> list[Any]:
-    return said if isinstance(said, list) else [said]
 
 
 def signal_place(signal: Any) -> frames.Place:
@@ -210,8 +206,7 @@ def _range(signal: Any) -> tuple[int, int]:
     """The raw values that there are, from the first to the last; of floats nearly so."""
     if signal.is_float:
         return -(2**127), 2**127
-    half = 1 << signal.length - 1
-    return (-half, half - 1) if signal.is_signed else (0, 2 * half - 1)
+    return raws(signal.length, signal.is_signed)
 
 
 def _condition(message: Any, signal: Any) -> Item:

@@ -34,7 +34,7 @@ class Eds:
         """Raises `Findings` for an XML, or one beside it, that cannot be read."""
         to = Definitions(file)
         sheets = Sheets(file, data, to)
-        types, structs = Types(sheets, to), Structs()
+        types, structs = Types(to, sheets), Structs()
         sent, alone = Interfaces(sheets).sent()
         found = [one for one in (_read(sending, sheets, types, structs, to) for sending in sent) if one is not None]
         network = Network(node_name(file), _title(sheets) or node_name(file), {**ORDERS[BIG]})
@@ -42,11 +42,8 @@ class Eds:
         packets.apart(network.messages)
         _say_process([one for one in found if one.is_by_interface], to)
         _say_unsent(alone, sheets, to)
-        declared = types.enums.declared()
         network.structs = _used(list(structs.items.values()), network.messages)
-        owners = (*network.messages, *network.structs)
-        used = {one.get("enum") for owner in owners for one in owner.get("fields", ())}
-        network.enums = [one for one in declared if one["name"] in used]
+        network.declare(types.enums.declared())
         to.networks.append(network)
         return to
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from icdgen.definitions.eds_sheets import Sheets
 from icdgen.definitions.eds_values import evaluate
-from icdgen.definitions.model import Item
+from icdgen.definitions.model import Item, raws
 from icdgen.definitions.wording import limits
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def _end(text: str) -> Fraction | None:
 def limited(item: Item, bits: int, of: Range) -> Item:
     """The keys of the limits that a field of a type and of so many bits has, where they say more than its width."""
     if item["type"] in ("uint", "int"):
-        first, last = (-(1 << bits - 1), (1 << bits - 1) - 1) if item["type"] == "int" else (0, (1 << bits) - 1)
+        first, last = raws(bits, item["type"] == "int")
         return dict(limits(*of.of_integers(), Fraction(first), Fraction(last)))
     found: Item = {}
     if item["type"] == "float" and (of.low is None or of.high is None or of.low <= of.high):

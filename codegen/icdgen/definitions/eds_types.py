@@ -10,10 +10,11 @@ from icdgen.definitions import eds_ranges
 from icdgen.definitions.eds_ranges import ALL, Range
 from icdgen.definitions.eds_sheets import Sheets
 from icdgen.definitions.eds_values import CODES, TWOS, UNSIGNED, coded, whole
-from icdgen.definitions.enumerations import Enumerations, members, special
+from icdgen.definitions.enumerations import MOST_SPECIAL, special
 from icdgen.definitions.frames import BIG, LITTLE
-from icdgen.definitions.model import Definitions, Item, NotHeld
-from icdgen.definitions.wording import line, summary, unit
+from icdgen.definitions.model import Item, NotHeld
+from icdgen.definitions.reading import Reading
+from icdgen.definitions.wording import line, summary, unit, without_type
 from icdgen.definitions.xtce_calibration import calibrated
 from icdgen.icd.tails import MOST_BYTES
 
@@ -21,9 +22,7 @@ if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
 RAW_ONLY = "IMP078"
-MOST_STEPS = 500_000  # types and labels of all messages
 CONTAINER, ARRAY, SUBRANGE = "ContainerDataType", "ArrayDataType", "SubRangeDataType"
-_SPECIAL = 16  # names that a field may have as special values
 _DEEPEST = 20  # types that are based on each other
 _WORD = 64  # bits of the largest number
 _FLOATS = {"ieee754_2008_single": 32, "ieee754_2008_double": 64}
@@ -62,26 +61,12 @@ class Piece:
 
 
 @dataclass
-class Types:
+class Types(Reading):
     """Makes pieces of types, and enumerations of those with labels."""
 
+    most_steps = 500_000  # types and labels of all messages
+
     sheets: Sheets
-    to: Definitions
-    enums: Enumerations = field(default_factory=Enumerations)
-    steps: int = 0
-    warned: set[object] = field(default_factory=set)
-
-    def step(self, count: int = 1) -> None:
-        """Counts what is done, so that a small file cannot ask for much. Raises `NotHeld`."""
-        self.steps += count
-        if self.steps > MOST_STEPS:
-            raise NotHeld(f"with it the file says more than {MOST_STEPS:,} things")
-
-    def is_new(self, what: object) -> bool:
-        """Whether something is to be said for the first time."""
-        is_new = what not in self.warned
-        self.warned.add(what)
-        return is_new
 
     def chain(self, type_: Element) -> list[Element]:
         """A type, and those of which it is a range. Raises `NotHeld`."""
@@ -155,9 +140,10 @@ class Types:
         values = {"true": int(not is_inverse), "false": int(is_inverse)}
         made = Piece({"type": "bool"}, bits, code="", values=values)
         if bits > 1 or is_inverse:
-            named = [{"value": values[name], "name": name.capitalize()} for name in ("false", "true")]
+            order = sorted(values, key=values.__getitem__)
+            named: list[Item] = [{"value": values[one], "name": one.capitalize()} for one in order]
             made.item = {"type": "enum"}
-            self._enum(made, type_, sorted(named, key=lambda one: int(one["value"])))
+            self.enums.give(made.item, _called(type_), self._owner(type_), named)
         return made
 
     def _text(self, encoding: Element | None, type_: Element) -> Piece:
@@ -213,18 +199,13 @@ class Types:
             made.values.setdefault(label, raw)
         if not choices:
             return
-        is_signed = made.item["type"] == "int"
-        low, high = (-(1 << made.bits - 1), (1 << made.bits - 1) - 1) if is_signed else (0, (1 << made.bits) - 1)
-        to = self.to if self.is_new(f"labels of {id(type_)}") else Definitions("")  # it is said once of a type
-        named = members(choices, low, high, f"`{_called(type_)}`", to)
-        if is_signed == (min(choices) < 0):
-            made.item["type"] = "enum"
-            self._enum(made, type_, named)
-        elif len(named) <= _SPECIAL:
-            made.item |= special(named)
+        notes = self.heard(f"labels of {id(type_)}")  # it is said once of a type
+        left = self.enums.hold(made.item, made.bits, choices, _called(type_), self._owner(type_), notes)
+        if len(left) <= MOST_SPECIAL:
+            made.item |= special(left)
 
-    def _enum(self, made: Piece, type_: Element, named: list[Item]) -> None:
-        self.enums.give(made.item, _called(type_), self.sheets.package(type_).rsplit("/", 1)[-1], named)
+    def _owner(self, type_: Element) -> str:
+        return self.sheets.package(type_).rsplit("/", 1)[-1]
 
     def _range(self, chain: list[Element], entry: Element) -> Range:
         found = ALL
@@ -267,6 +248,5 @@ def described(element: Element) -> dict[str, str]:
 
 
 def _called(type_: Element) -> str:
-    """What an enumeration is called: the type, without the word."""
-    name = line(type_.get("name"), 60)
-    return re.sub("[ _]?([Tt]ype|_t)$", "", name) or name
+    """What an enumeration is called."""
+    return without_type(line(type_.get("name"), 60))

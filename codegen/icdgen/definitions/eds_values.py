@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from fractions import Fraction
 
-from icdgen.definitions.model import NotHeld
+from icdgen.definitions.model import NotHeld, raws
 from icdgen.definitions.wording import line
 
 UNSIGNED, TWOS = "unsigned", "twosComplement"
@@ -114,10 +114,9 @@ def _whole(text: str) -> int | None:
 
 def coded(value: int, code: str, bits: int) -> int | None:
     """The raw value by which a number is sent: signed of two's complement, else its bits. None where it does not fit."""
-    if code == TWOS:
-        return value if -(1 << bits - 1) <= value < 1 << bits - 1 else None
-    if code == UNSIGNED:
-        return value if 0 <= value < 1 << bits else None
+    if code in (TWOS, UNSIGNED):
+        low, high = raws(bits, code == TWOS)
+        return value if low <= value <= high else None
     if code in ("BCD", "packedBCD"):
         width = 8 if code == "BCD" else 4
         if value < 0 or len(str(value)) > bits // width:

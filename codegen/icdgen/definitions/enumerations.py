@@ -6,11 +6,12 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from icdgen.definitions.model import Definitions, Item
+from icdgen.definitions.model import Definitions, Item, raws
 from icdgen.definitions.wording import line
 
 SAME_NAME = "IMP073"
 BEYOND = "IMP074"
+MOST_SPECIAL = 16  # names that a field may have as special values
 _LONGEST = 400
 
 
@@ -64,6 +65,18 @@ class Enumerations:
         values = tuple((one["value"], one["to"] if "to" in one else one["value"], str(one["name"])) for one in named)
         self.uses.append((to, name, owner, values))
 
+    def hold(
+        self, to: Item, bits: int, choices: Mapping[int, str], name: str, owner: str, notes: Definitions
+    ) -> list[Item]:
+        """Makes an integer one of an enumeration if a value has a sign as it has. Else it stays a number; its named values."""
+        is_signed = to["type"] == "int"
+        named = members(choices, *raws(bits, is_signed), f"`{name}`", notes)
+        if not named or is_signed != (min(choices) < 0):
+            return named
+        to["type"] = "enum"
+        self.give(to, name, owner, named)
+        return []
+
     def declared(self) -> list[Item]:
         """The enumerations; their fields say `enum` from now on."""
         kinds: dict[str, set[object]] = {}
@@ -73,14 +86,6 @@ class Enumerations:
         for to, name, owner, values in self.uses:
             called = name if len(kinds[name]) == 1 else f"{owner} {name}"
             to["enum"] = called
-            made.setdefault(
-                called,
-                {
-                    "name": called,
-                    "members": [
-                        {"value": value, **({"to": last} if last != value else {}), "name": text}
-                        for value, last, text in values
-                    ],
-                },
-            )
+            held = [{"value": one, **({"to": last} if last != one else {}), "name": text} for one, last, text in values]
+            made.setdefault(called, {"name": called, "members": held})
         return list(made.values())

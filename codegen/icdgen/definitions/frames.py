@@ -99,10 +99,11 @@ def _owned(name: str, placed: list[tuple[Item, Place]], order: str, to: Definiti
 def _exclude(one: Item, other: Item) -> bool:
     """Whether two fields are never there together."""
     first, second = one.get("when", {}), other.get("when", {})
-    return any(not set(_listed(first[key])) & set(_listed(second[key])) for key in first if key in second)
+    return any(not set(listed(first[key])) & set(listed(second[key])) for key in first if key in second)
 
 
-def _listed(said: object) -> list[object]:
+def listed(said: object) -> list[object]:
+    """The values of a condition, which may be one."""
     return said if isinstance(said, list) else [said]
 
 

@@ -7,10 +7,11 @@ from collections import Counter
 
 from icdgen.definitions.frames import ORDERS, usual
 from icdgen.definitions.kaitai_layout import Layout
-from icdgen.definitions.kaitai_parts import File, Key, Part, TooMuch, Undecided
+from icdgen.definitions.kaitai_parts import File, Key, Part, Undecided
 from icdgen.definitions.kaitai_types import Type, declared, mapping
 from icdgen.definitions.kaitai_yaml import parse
 from icdgen.definitions.model import Definitions, Item, Network, NotHeld, again
+from icdgen.definitions.reading import TooMuch
 from icdgen.definitions.wording import line, node_name, shortest, summary
 from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS, REST
 
@@ -54,9 +55,7 @@ class Kaitai:
             made: Item = {"name": called, "id": _ID, "kind": "telemetry", "length": -(-layout.at // 8)}
             made |= summary(str(body.get("doc") or "")) if len(layouts) == 1 else {}
             network.messages.append({**made, "fields": _fields(layout, order)})
-        declared_enums = shared.enums.declared()
-        used = {one.get("enum") for owner in (*network.messages, *network.structs) for one in owner["fields"]}
-        network.enums = [one for one in declared_enums if one["name"] in used]
+        network.declare(shared.enums.declared())
         to.networks.append(network)
         return to
 

@@ -6,10 +6,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from icdgen.definitions.kaitai_expressions import Masked, counted, equalities, line_of, masked, number
-from icdgen.definitions.kaitai_parts import Counter, Ended, File, Key, Label, Part, Scope, TooMuch, Undecided
+from icdgen.definitions.kaitai_parts import Counter, Ended, File, Key, Label, Part, Scope, Undecided
 from icdgen.definitions.kaitai_types import Piece, Type, built_in, contents, named, sized
 from icdgen.definitions.kaitai_yaml import integer
-from icdgen.definitions.model import Item, NotHeld
+from icdgen.definitions.model import Item, NotHeld, raws
+from icdgen.definitions.reading import TooMuch
 from icdgen.definitions.wording import line, summary, unit
 from icdgen.icd.located import Map
 from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS, REST
@@ -202,9 +203,9 @@ class Layout:
         if said is None or item["type"] not in ("uint", "int", "enum", "bool") or "count" in item:
             return
         equal = said.get("eq") if isinstance(said, Map) else said
-        whole, is_signed = (1 << part.bits) - 1, item["type"] == "int"
+        whole = (1 << part.bits) - 1
         if isinstance(said, Map) and item["type"] in ("uint", "int"):
-            low, high = (-(whole >> 1) - 1, whole >> 1) if is_signed else (0, whole)
+            low, high = raws(part.bits, item["type"] == "int")
             item |= {
                 key: said[key] for key in ("min", "max") if type(said.get(key)) is int and low <= said[key] <= high
             }

@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from icdgen.definitions.enumerations import Enumerations
 from icdgen.definitions.frames import Place
 from icdgen.definitions.kaitai_types import Piece, Type
-from icdgen.definitions.model import Definitions, Item, NotHeld
+from icdgen.definitions.model import Item, NotHeld
+from icdgen.definitions.reading import Reading
 from icdgen.definitions.wording import line
-
-MOST_STEPS = 100_000  # attributes of all messages
 
 Key = tuple[tuple[str, ...], int, tuple[int, ...]]  # a field by its path, bits of it, and the values that are asked for
 
@@ -21,10 +19,6 @@ class Undecided(Exception):
 
     def __init__(self, key: Key, options: list[int | None]) -> None:
         self.key, self.options = key, options
-
-
-class TooMuch(NotHeld):
-    """The file says more than is read of one."""
 
 
 class Ended(Exception):
@@ -107,29 +101,13 @@ class Scope:
 
 
 @dataclass
-class File:
+class File(Reading):
     """What all messages of a file share."""
 
-    to: Definitions
-    enums: Enumerations = field(default_factory=Enumerations)
+    most_steps = 100_000  # attributes of all messages
+
     structs: dict[int, Item] = field(default_factory=dict)  # by the type
-    steps: int = 0
-    said: set[str] = field(default_factory=set)
-
-    def step(self) -> None:
-        """Counts what is done, so that a small file cannot ask for much. Raises `TooMuch`."""
-        self.steps += 1
-        if self.steps > MOST_STEPS:
-            raise TooMuch(f"with it the file says more than {MOST_STEPS:,} things")
-
-    def heard(self, what: str) -> Definitions:
-        """Where to note faults of something: nowhere once they have been."""
-        is_new = what not in self.said
-        self.said.add(what)
-        return self.to if is_new else Definitions("")
 
     def note(self, code: str, message: str, help: str, severity: str, at: int | None) -> None:
         """Once, however many messages it concerns."""
-        if message not in self.said:
-            self.said.add(message)
-            self.to.warn(code, message, help, severity, at)
+        self.heard(message).warn(code, message, help, severity, at)

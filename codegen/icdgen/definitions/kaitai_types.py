@@ -9,7 +9,7 @@ from typing import Any
 from icdgen.definitions.enumerations import Enumerations, members
 from icdgen.definitions.frames import BIG, LITTLE
 from icdgen.definitions.kaitai_yaml import integer
-from icdgen.definitions.model import Definitions, Item, NotHeld
+from icdgen.definitions.model import Definitions, Item, NotHeld, raws
 from icdgen.definitions.wording import line
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.tails import MOST_BYTES
@@ -173,8 +173,7 @@ def named(item: Item, bits: int, reference: str, within: Type, enums: Enumeratio
     if item["type"] not in ("uint", "int"):
         raise NotHeld(f"it has names for values, and is of the type {item['type']}")
     is_signed = item["type"] == "int"
-    low, high = (-(1 << bits - 1), (1 << bits - 1) - 1) if is_signed else (0, (1 << bits) - 1)
-    found = members(choices, low, high, f"`{reference}`", to)
+    found = members(choices, *raws(bits, is_signed), f"`{reference}`", to)
     if found and is_signed == (min(choices) < 0):
         item["type"] = "enum"
         enums.give(item, reference.rsplit("::", 1)[-1], within.name, found)

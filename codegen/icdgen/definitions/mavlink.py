@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from icdgen.definitions import kinds, safe_xml
-from icdgen.definitions.enumerations import BEYOND, members
-from icdgen.definitions.model import Definitions, Item, Network, NotHeld, unreadable
+from icdgen.definitions.enumerations import BEYOND, MOST_SPECIAL, members
+from icdgen.definitions.model import Definitions, Item, Network, NotHeld, raws, unreadable
 from icdgen.definitions.wording import line, node_name, summary, unit
 from icdgen.icd.fmt.emit import Spelled
 
@@ -32,7 +32,6 @@ _SCALED = {
 }  # fmt: skip
 _SPELLED = {"m/s/s": "m/s^2", "bits/s": "bit/s", "bytes": "byte"}
 _NUMBER = re.compile(r"\s*(-?(?:0[xX][0-9A-Fa-f]+|[0-9]+))\s*(?:(<<|\*\*)\s*([0-9]{1,2})\s*)?\Z")
-_SPECIAL = 16  # names that a field may have as special values
 _X25 = {"kind": "crc", "width": 16, "polynomial": Spelled("0x1021"), "init": Spelled("0xFFFF"),
         "reflect_in": True, "reflect_out": True, "xor_out": 0}  # fmt: skip
 
@@ -96,8 +95,7 @@ class MavLink2:
         in_order = {one["name"]: seeds[one["name"]] for one in network.messages}
         seeds.clear()
         seeds |= in_order
-        used = {one.get("enum") for message in network.messages for one in message.get("fields", ())}
-        network.enums = [one for name, one in sorted(enums.items()) if name in used]
+        network.declare(one for _, one in sorted(enums.items()))
         to.networks.append(network)
         return to
 
@@ -250,11 +248,8 @@ def _held(owner: str, field: _Field, enums: dict[str, Item], version: int, to: D
         one["const"] = version
     if one["type"] != "enum":
         symbol = of.get("units", "")
-        held, factor = (
-            _SCALED.get(symbol, (_SPELLED.get(symbol, symbol), "1"))
-            if kind != "float"
-            else (_SPELLED.get(symbol, symbol), "1")
-        )
+        as_it_is = (_SPELLED.get(symbol, symbol), "1")
+        held, factor = as_it_is if kind == "float" else _SCALED.get(symbol, as_it_is)
         one |= unit(held)
         if kind != "float" and "special" not in one and (formula := _formula(factor, of.get("multiplier", ""))):
             one["formula"] = formula
@@ -292,7 +287,7 @@ def _named(where: str, enum: Item, kind: str, bits: int, to: Definitions) -> Ite
     if is_signed == (kind == "int"):
         return {"type": "enum", "enum": enum["name"]}
     named = [member for member in enum["members"] if not member["value"] >> (bits - (kind == "int"))]
-    if len(named) > _SPECIAL:
+    if len(named) > MOST_SPECIAL:
         return {}
     return {"special": [{"value": member["value"], "meaning": member["name"]} for member in named]}
 
@@ -306,7 +301,7 @@ def _invalid(text: str, kind: str, bits: int) -> Item:
     value = (1 << int(most[2]) - (not most[1])) - 1 if most else _number(text)
     if value is None:
         return {}
-    low, high = (-(1 << bits - 1), (1 << bits - 1) - 1) if kind == "int" else (0, (1 << bits) - 1)
+    low, high = raws(bits, kind == "int")
     return {"value": value, "meaning": "not known"} if kind == "float" or low <= value <= high else {}
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -33,13 +33,20 @@ class Network:
     protocol: Item | None = None
     seeds: dict[str, int] = field(default_factory=dict)  # those of ``protocol``: of each message one
 
+    @property
+    def fields(self) -> Iterator[Item]:
+        """Those of all messages and structs."""
+        return (one for owner in (*self.messages, *self.structs) for one in owner.get("fields", ()))
+
+    def declare(self, enums: Iterable[Item]) -> None:
+        """Takes those enumerations that a field has."""
+        used = {one.get("enum") for one in self.fields}
+        self.enums = [one for one in enums if one["name"] in used]
+
     def tree(self) -> Item:
         """The ICD as plain mappings and lists."""
         tree: Item = {"icdgen": 1, "node": {"name": self.name, "title": self.title, **self.head}}
-        used = (
-            one["unit"] for owner in (*self.messages, *self.structs) for one in owner.get("fields", ()) if "unit" in one
-        )
-        if declared := units.declared(used):
+        if declared := units.declared(one["unit"] for one in self.fields if "unit" in one):
             tree["units"] = declared
         for key in ("protocol", "enums", "structs", "messages"):
             if value := getattr(self, key):
@@ -86,10 +93,9 @@ def unreadable(file: str, message: str, help: str = "", line: int = 1) -> Findin
     return Findings([Finding(UNREADABLE, message, Place(file, line), help)])
 
 
-def unique(names: Iterable[str]) -> bool:
-    """Whether no name is there twice."""
-    listed = list(names)
-    return len(set(listed)) == len(listed)
+def raws(bits: int, is_signed: bool) -> tuple[int, int]:
+    """The least and the largest raw value of an integer."""
+    return (-(1 << bits - 1), (1 << bits - 1) - 1) if is_signed else (0, (1 << bits) - 1)
 
 
 def again(item: Item, said: Item) -> Item:

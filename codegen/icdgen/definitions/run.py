@@ -42,7 +42,7 @@ def read(path: Path, reader: Reader) -> Read:
     _name_apart(found)
     for network in found.networks:
         if network.messages:
-            made.identifiers += settle(network, found).identifiers
+            made.identifiers += settle(network, found)
         if network.messages:
             made.trees[network.name] = network.tree()
     if not made.trees:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import tempfile
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
@@ -30,16 +29,12 @@ class _Line(NamedTuple):
     number: object
 
 
-@dataclass
-class Settled:
-    """What was done: names with the identifiers that they got."""
+def settle(network: Network, to: Definitions) -> list[str]:
+    """Changes the network until nothing is found; what had to go is noted in ``to``. Names with the identifiers that they got.
 
-    identifiers: list[str] = field(default_factory=list)
-
-
-def settle(network: Network, to: Definitions) -> Settled:
-    """Changes the network until nothing is found; what had to go is noted in ``to``. Raises `Findings` if it is too large."""
-    made, tries = Settled(), {}  # type: ignore[var-annotated]
+    Raises `Findings` if it is too large.
+    """
+    tries: dict[int, int] = {}
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, f"{network.name}.yaml")
         for _ in range(ROUNDS):
@@ -65,8 +60,7 @@ def settle(network: Network, to: Definitions) -> Settled:
             if not gone and not renamed:
                 break
     named = {id(line.item): line for line in lines.values() if id(line.item) in tries}
-    made.identifiers = [f"{one.what} `{one.item['name']}`: `{one.item['identifier']}`" for one in named.values()]
-    return made
+    return [f"{one.what} `{one.item['name']}`: `{one.item['identifier']}`" for one in named.values()]
 
 
 def _identifier(line: _Line, code: str, attempt: int) -> str:

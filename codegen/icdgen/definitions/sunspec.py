@@ -79,9 +79,7 @@ class SunSpec:
                 to.left_out(model.name, why)
             else:
                 network.structs += model.structs
-        declared = enums.declared()
-        used = {one.get("enum") for owner in (*network.messages, *network.structs) for one in owner["fields"]}
-        network.enums = [one for one in declared if one["name"] in used]
+        network.declare(enums.declared())
         return to
 
 

@@ -79,6 +79,11 @@ def _number(key: str, value: Fraction) -> dict[str, int | float]:
     return {key: number} if "e" not in str(number) else {}
 
 
+def without_type(name: str) -> str:
+    """The name of a type without the word for it."""
+    return re.sub("[ _]?([Tt]ype|_t)$", "", name) or name
+
+
 def shortest(paths: list[tuple[str, ...]]) -> list[str]:
     """Of each path the last words that no other ends with."""
     lengths = [1] * len(paths)

@@ -35,7 +35,7 @@ class Xtce:
         to = Definitions(file)
         root = safe_xml.parse(file, data)
         names = Names(file, root)
-        types = Types(names, to)
+        types = Types(to, names)
         found = list(_all(names, types, to))
         network = Network(
             node_name(file), line(called(root), 100) or node_name(file), {**ORDERS[BIG], **described(root)}
@@ -43,9 +43,7 @@ class Xtce:
         packets.fill(network, found, to)
         network.messages = _paired(network.messages)
         packets.apart(network.messages)
-        declared = types.enums.declared()
-        used = {one.get("enum") for message in network.messages for one in message.get("fields", ())}
-        network.enums = [one for one in declared if one["name"] in used]
+        network.declare(types.enums.declared())
         to.networks.append(network)
         return to
 

@@ -7,7 +7,7 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from icdgen.definitions.model import NotHeld
+from icdgen.definitions.model import NotHeld, raws
 from icdgen.definitions.wording import line, printed
 from icdgen.icd import curve
 from icdgen.icd.formula import FormulaError
@@ -73,7 +73,7 @@ def _table(points: list[Element], goes_on: bool) -> dict[str, Any]:
 
 def ended(said: dict[str, Any], bits: int, is_signed: bool) -> dict[str, Any]:
     """The keys of a table of integers: level lines at its ends are what `clamp` says, and beyond all values is nothing."""
-    low, high = (-(1 << bits - 1), (1 << bits - 1) - 1) if is_signed else (0, (1 << bits) - 1)
+    low, high = raws(bits, is_signed)
     points = list(said["points"])
     (first, *_), (last, *_) = points[0], points[-1]
     if not (Fraction(first) <= low and high <= Fraction(last)):

@@ -8,10 +8,11 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from icdgen.definitions.enumerations import Enumerations, members, special
+from icdgen.definitions.enumerations import MOST_SPECIAL, special
 from icdgen.definitions.frames import BIG, LITTLE
-from icdgen.definitions.model import Definitions, Item, NotHeld
-from icdgen.definitions.wording import line, summary, unit
+from icdgen.definitions.model import Item, NotHeld
+from icdgen.definitions.reading import Reading
+from icdgen.definitions.wording import line, summary, unit, without_type
 from icdgen.definitions.xtce_calibration import NUMBER, calibration, decimal, ended, fixed, formula, number
 from icdgen.definitions.xtce_names import Names, alias, beside
 from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS
@@ -20,9 +21,7 @@ if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
 RAW_ONLY = "IMP078"
-MOST_STEPS = 1_000_000  # entries, members and labels of all messages
 _MOST_NAMED = 1024  # values of a range of labels
-_SPECIAL = 16  # names that a field may have as special values
 _DEEPEST = 20  # types that say what another says
 _ENCODINGS = ("IntegerDataEncoding", "FloatDataEncoding", "StringDataEncoding", "BinaryDataEncoding")
 _LINE = (("slope", "1"), ("intercept", "0"))
@@ -43,20 +42,12 @@ class Piece:
 
 
 @dataclass
-class Types:
+class Types(Reading):
     """Makes pieces of types, and enumerations of those with labels."""
 
-    names: Names
-    to: Definitions
-    enums: Enumerations = field(default_factory=Enumerations)
-    steps: int = 0
-    warned: set[str] = field(default_factory=set)
+    most_steps = 1_000_000  # entries, members and labels of all messages
 
-    def step(self, count: int = 1) -> None:
-        """Counts what is done, so that a small file cannot ask for much. Raises `NotHeld`."""
-        self.steps += count
-        if self.steps > MOST_STEPS:
-            raise NotHeld(f"with it the file says more than {MOST_STEPS:,} things")
+    names: Names
 
     def piece(self, element: Element, where: str) -> Piece:
         """Raises `NotHeld` with the reason."""
@@ -146,18 +137,14 @@ class Types:
             self.step(last - first + 1)
             for value in range(first, last + 1):
                 choices.setdefault(value, one.get("label", ""))
-        bits, is_signed = made.bits, made.item["type"] == "int"
-        low, high = (-(1 << bits - 1), (1 << bits - 1) - 1) if is_signed else (0, (1 << bits) - 1)
-        to = self.to if self._is_new(f"labels of {id(element)}") else Definitions("")  # it is said once of a type
-        named = members(choices, low, high, f"`{_called(element)}`", to)
         made.values = {label: value for value, label in reversed(choices.items())}
-        if not named:
-            return
-        if is_signed == (min(choices) < 0):
-            made.item["type"] = "enum"
-            self.enums.give(made.item, _called(element), self.names.system(element).rsplit("/", 1)[-1], named)
-        elif len(named) <= _SPECIAL:
-            made.item |= special(named)
+        notes = self.heard(f"labels of {id(element)}")  # it is said once of a type
+        left = self.enums.hold(made.item, made.bits, choices, _called(element), self._owner(element), notes)
+        if len(left) <= MOST_SPECIAL:
+            made.item |= special(left)
+
+    def _owner(self, element: Element) -> str:
+        return self.names.system(element).rsplit("/", 1)[-1]
 
     def _flag(self, made: Piece, chain: list[Element], element: Element) -> None:
         if made.item["type"] not in ("uint", "int"):
@@ -168,7 +155,7 @@ class Types:
         if made.bits > 1:
             named = [{"value": 0, "name": line(zero, 60)}, {"value": 1, "name": line(one, 60)}]
             made.item["type"] = "enum"
-            self.enums.give(made.item, _called(element), self.names.system(element).rsplit("/", 1)[-1], named)
+            self.enums.give(made.item, _called(element), self._owner(element), named)
 
     def _calibrated(self, made: Piece, chain: list[Element], encoding: Element | None, kind: str, where: str) -> bool:
         """Adds the formula. False if there is a calibration that cannot be said, so that the raw value is all that is held."""
@@ -184,13 +171,8 @@ class Types:
         return True
 
     def _raw_only(self, where: str, why: str) -> None:
-        if self._is_new(where):
+        if self.is_new(where):
             self.to.warn(RAW_ONLY, f"{where}: {why}", "its raw values are held, without the unit")
-
-    def _is_new(self, what: str) -> bool:
-        is_new = what not in self.warned
-        self.warned.add(what)
-        return is_new
 
     def _limits(self, item: Item, chain: list[Element]) -> Item:
         """The keys of the range that is valid, if there is one and it is that of the value that is held."""
@@ -372,6 +354,5 @@ def _attribute(chain: list[Element], name: str, default: str) -> str:
 
 
 def _called(element: Element) -> str:
-    """What an enumeration is called: the type, without the word."""
-    name = element.get("name", "")
-    return alias(element) or re.sub("[ _]?([Tt]ype|_t)$", "", name) or name
+    """What an enumeration is called."""
+    return alias(element) or without_type(element.get("name", ""))
