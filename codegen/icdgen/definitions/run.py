@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from icdgen.definitions import kinds
-from icdgen.definitions.model import UNREADABLE, Definitions, Item, Reader, unreadable
+from icdgen.definitions.model import Definitions, Item, Reader, unreadable
 from icdgen.definitions.settle import settle
 from icdgen.importer.targets import Target
 
@@ -58,6 +58,3 @@ def _name_apart(found: Definitions) -> None:
         taken[network.name] += 1
         if taken[network.name] > 1:
             network.name = f"{network.name[:36]}_{taken[network.name]}"
-
-
-__all__ = ["TOLD", "UNREADABLE", "Read", "read"]

@@ -56,9 +56,23 @@ class Row:
     cells: list[str]
     page: int | None = None
     line: int | None = None
-    joined: bool = False  # put together from parts that a page break had torn apart
     mended: str = ""  # what the reader had to do to it, in words
     edges: tuple[float, ...] = ()  # of its cells, where rules on the page part them
+
+    @classmethod
+    def of(cls, text: str, width: int, page: int | None, line: int | None = None) -> Row:
+        """A row of so many cells, of which only the first one holds something: a heading over rows below."""
+        return cls([text, *[""] * (width - 1)], page, line)
+
+    @property
+    def text(self) -> str:
+        """What stands in it, as if it were a line of text."""
+        return " ".join(filter(None, self.cells))
+
+    @property
+    def shown(self) -> str:
+        """Its cells for a finding."""
+        return " | ".join(filter(None, self.cells))
 
 
 @dataclass(slots=True)
@@ -68,6 +82,21 @@ class Header:
     kind: str  # "fields" | "enumeration" | "list" | "loggable"
     roles: list[str]
     titles: list[str]
+
+    @property
+    def known(self) -> int:
+        """How many cells have a role."""
+        return sum(map(bool, self.roles))
+
+    @property
+    def known_words(self) -> int:
+        """How many words these cells have."""
+        return sum(len(title.split()) for title, role in zip(self.titles, self.roles, strict=True) if role)
+
+    @property
+    def has_offsets(self) -> bool:
+        """Whether a column says where fields stand."""
+        return "at" in self.roles or "at_bytes" in self.roles
 
 
 @dataclass(slots=True)
@@ -85,6 +114,10 @@ class Table:
     doubts: list[str] = field(default_factory=list)  # what makes the reading less than certain
     order: int | None = None  # which table of the document it is
     section: str = ""  # the heading above it
+
+    @property
+    def all_rows(self) -> list[Row]:
+        return self.head + self.rows
 
     @property
     def spot(self) -> Spot:

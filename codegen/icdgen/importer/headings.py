@@ -28,14 +28,14 @@ def match(cells: list[str], profile: Profile, loose: bool = False) -> Header | N
             1 for text, role in zip(texts, given, strict=True)
             if text and not role and profile.labels.get(tuple(sorted(text))) != "fields"
         )  # fmt: skip
-        has_offsets = kind != "fields" or "at" in there or "at_bytes" in there
+        header = Header(kind, given, cells)
+        has_offsets = kind != "fields" or header.has_offsets
         if not has_offsets and not loose:
             continue
-        known = sum(bool(role) for role in given)
-        score = known - 0.6 * unknown
+        score = header.known - 0.6 * unknown
         score -= 0 if has_offsets else 0.7  # rather something else that fits as well
-        if known > unknown and score > most:
-            best, most = Header(kind, given, cells), score
+        if header.known > unknown and score > most:
+            best, most = header, score
     return best
 
 

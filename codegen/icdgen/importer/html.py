@@ -99,7 +99,7 @@ def _table(one: Found, result: Result, troubles: list[Trouble], pictures: _Pictu
 
 
 def _as_read(table: Table) -> str:
-    width = max([len(row.cells) for row in (*table.head, *table.rows)] + [1])
+    width = max([len(row.cells) for row in table.all_rows] + [1])
     rows = [_row(row.cells, width, "td") for row in table.head]
     if table.header:
         rows.append(_row(table.header.titles, width, "th"))

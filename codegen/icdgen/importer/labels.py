@@ -9,8 +9,6 @@ from icdgen.importer.profile import Profile
 from icdgen.importer.words import folded, growing_squeezed, grows, plain
 
 _VALUE = re.compile(r"(?:0[xX][0-9A-Fa-f]+|[0-9]+)(?:\s*/\s*(?:0[xX][0-9A-Fa-f]+|[0-9]+))?\Z")
-
-
 _COUNTED = frozenset({"byte", "bytes", "octet", "octets"})
 
 
@@ -63,9 +61,13 @@ def begins(text: str, profile: Profile) -> bool:
 
 def leads(text: str, profile: Profile) -> str:
     """What a line begins with, if that is a label without a number: "description", "fields" ..., else ""."""
-    words = plain(text).split()
+    return split(plain(text), profile)[0]
+
+
+def split(text: str, profile: Profile) -> tuple[str, str]:
+    """The meaning of the label that a line begins with, and what stands behind it; "" and all of it if there is none."""
+    words = text.split()
     for length in range(min(5, len(words)), 0, -1):
-        what = meaning(" ".join(words[:length]), profile)
-        if what:
-            return what
-    return ""
+        if what := meaning(" ".join(words[:length]), profile):
+            return what, " ".join(words[length:])
+    return "", text

@@ -15,9 +15,6 @@ from icdgen.importer.words import folded
 
 DEFAULT = Path(__file__).with_name("profile.yaml")
 CODE = "IMP001"
-KINDS = ("fields", "enumeration", "list", "loggable")
-TITLES = ("telecommand", "telemetry", "configuration", "enumeration", "telecommand list", "telemetry list",
-          "configuration list")  # fmt: skip
 _PLACEHOLDER = re.compile(r"\\?\{(name|node|unit|number|table|title|id|hex|kind|length)\\?\}")
 
 
@@ -38,7 +35,6 @@ class Profile:
     """A vocabulary, ready for use."""
 
     data: dict[str, Any]
-    name: str = ""
     own: dict[str, Any] = field(default_factory=dict)  # what was laid over the profile that comes with icdgen
 
     @cached_property
@@ -196,7 +192,7 @@ def load(path: Path | None = None) -> Profile:
     tree = source.read(path)
     _check(tree)
     own = plain(tree)
-    return Profile(_laid_over(_without_moved(base, own), own), str(path), own)
+    return Profile(_laid_over(_without_moved(base, own), own), own)
 
 
 def _without_moved(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:

@@ -28,7 +28,7 @@ def mend(document: Document, profile: Profile) -> None:
 
 def _words(table: Table, pattern: re.Pattern[str], meant: str, printed: str, document: Document) -> None:
     count = 0
-    for row in (*table.head, *table.rows):
+    for row in table.all_rows:
         for index, cell in enumerate(row.cells):
             row.cells[index], times = pattern.subn(lambda _: meant, cell)
             count += times
@@ -43,7 +43,7 @@ def _words(table: Table, pattern: re.Pattern[str], meant: str, printed: str, doc
 def _group(table: Table, entry: dict[str, Any], document: Document) -> None:
     for index, row in enumerate(table.rows):
         if row.cells and number(row.cells[0]) == entry["before"]:
-            heading = Row([entry["group"], *[""] * (len(row.cells) - 1)], row.page, row.line)
+            heading = Row.of(entry["group"], len(row.cells), row.page, row.line)
             table.rows.insert(index, heading)
             document.troubles.append(
                 Trouble("IMP028", f"{table.title}: the group heading `{entry['group']}` is put back before "

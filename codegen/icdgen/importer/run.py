@@ -85,5 +85,5 @@ def _nothing(document: Document, found: Survey) -> Trouble:
 
 
 def _first_cells(table: Table) -> list[str]:
-    rows = [table.header.titles] if table.header else [row.cells for row in (*table.head, *table.rows)]
+    rows = [table.header.titles] if table.header else [row.cells for row in table.all_rows]
     return next(([c for c in cells if c] for cells in rows if any(cells)), [])

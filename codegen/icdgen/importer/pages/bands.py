@@ -5,12 +5,12 @@ from __future__ import annotations
 import itertools
 import math
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from icdgen.importer.document import Header, Row
 from icdgen.importer.pages.columns import index_of
 from icdgen.importer.pages.extract import Word
-from icdgen.importer.pages.lines import Line, lines
+from icdgen.importer.pages.lines import Line, lines, words_of
 from icdgen.importer.words import join
 
 _UNIT = r"(?:(?:[Bb]its?|[Bb]ytes?|[Oo]ctets?)\s*)?"
@@ -30,10 +30,12 @@ class Band:
     """A stretch of a table between two rules. ``edges`` are those of its cells."""
 
     page: int
-    top: float
-    bottom: float
     edges: list[float]
-    words: list[Word] = field(default_factory=list)
+    words: list[Word]
+
+    def of(self, found: list[Line]) -> Band:
+        """What these lines of it are."""
+        return Band(self.page, self.edges, words_of(found))
 
     def texts(self, known: frozenset[str]) -> list[str]:
         """The texts of its cells."""
@@ -42,7 +44,7 @@ class Band:
     def parts(self) -> list[list[Word]]:
         made: list[list[Word]] = [[] for _ in self.edges[1:]]
         for word in self.words:
-            made[index_of((word.x0 + word.x1) / 2, self.edges)].append(word)
+            made[index_of(word.centre, self.edges)].append(word)
         return made
 
 
@@ -72,16 +74,16 @@ def aligned(band: Band, edges: list[float]) -> Band:
         covered = [i for i, o in enumerate(overlaps) if o > 0.5 * (edges[i + 1] - edges[i])]
         target = covered[0] if covered else overlaps.index(max(overlaps))
         a, b = edges[target], edges[target + 1]
-        if all(a <= (w.x0 + w.x1) / 2 <= b for w in part):
+        if all(a <= w.centre <= b for w in part):
             moved += part
         else:  # its lines, whole
             moved += [line.words[0]._replace(text=line.text, x0=a + 1, x1=b - 1) for line in lines(part)]
-    return Band(band.page, band.top, band.bottom, edges, moved)
+    return Band(band.page, edges, moved)
 
 
 def rows(band: Band, header: Header, known: frozenset[str], torn: bool = False) -> list[Row]:
     """The rows of a band whose cells are those of ``header``. ``torn``: it may begin with the rest of a row."""
-    key = next((i for i, role in enumerate(header.roles) if role in KEYS[header.kind]), 0)
+    key = _key_column(header)
     found = lines(band.words)
     if header.kind == "list" and (groups := [i for i, line in enumerate(found) if _is_group(line, band.edges, key)]):
         return _around(band, found, groups, header, known)
@@ -90,19 +92,22 @@ def rows(band: Band, header: Header, known: frozenset[str], torn: bool = False) 
         return [Row(band.texts(known), band.page)] if band.words else []
     made = []
     for first, last in _stretches(found, keyed, _leading(band), torn):
-        words = [word for line in found[first:last] for word in line.words]
-        made.append(Row(Band(band.page, band.top, band.bottom, band.edges, words).texts(known), band.page))
+        made.append(Row(band.of(found[first:last]).texts(known), band.page))
     return made
 
 
 def has_keys(band: Band, header: Header) -> bool:
     """Whether a line has a key in the key column and words in another one."""
-    key = next((i for i, role in enumerate(header.roles) if role in KEYS[header.kind]), 0)
+    key = _key_column(header)
     for line in lines(band.words):
-        columns = {index_of((w.x0 + w.x1) / 2, band.edges) for w in line.words}
+        columns = {index_of(w.centre, band.edges) for w in line.words}
         if len(columns) > 1 and is_key(_text_in(line, band.edges, key)):
             return True
     return False
+
+
+def _key_column(header: Header) -> int:
+    return next((i for i, role in enumerate(header.roles) if role in KEYS[header.kind]), 0)
 
 
 def _is_group(line: Line, edges: list[float], key: int) -> bool:
@@ -116,17 +121,16 @@ def _around(band: Band, found: list[Line], groups: list[int], header: Header, kn
     made: list[Row] = []
     start = 0
     for index in [*groups, len(found)]:
-        words = [word for line in found[start:index] for word in line.words]
-        if words:
-            made += rows(Band(band.page, band.top, band.bottom, band.edges, words), header, known)
+        if start < index:
+            made += rows(band.of(found[start:index]), header, known)
         if index < len(found):
-            made.append(Row([found[index].text, *[""] * (len(band.edges) - 2)], band.page))
+            made.append(Row.of(found[index].text, len(band.edges) - 1, band.page))
         start = index + 1
     return made
 
 
 def _text_in(line: Line, edges: list[float], column: int) -> str:
-    return " ".join(w.text for w in line.words if index_of((w.x0 + w.x1) / 2, edges) == column)
+    return " ".join(w.text for w in line.words if index_of(w.centre, edges) == column)
 
 
 def _leading(band: Band) -> float:

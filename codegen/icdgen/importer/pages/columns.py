@@ -9,7 +9,7 @@ from typing import NamedTuple
 from icdgen.importer import headings
 from icdgen.importer.document import Header
 from icdgen.importer.pages.extract import Word
-from icdgen.importer.pages.lines import Line, runs, text_of
+from icdgen.importer.pages.lines import Line, runs, words_of
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import folded, join
 
@@ -36,25 +36,25 @@ def find(lines: list[Line], profile: Profile, loose: bool = True) -> Columns | N
         found = _in_one_line(block[0], profile) if count == 1 else None
         for cells in filter(None, (found, _clustered(block))):
             header = headings.match([_text(cell) for cell in cells], profile)
-            if header and (best is None or _known(header) > _known(best.header)):
-                spans = [(min(w.x0 for w in cell), max(w.x1 for w in cell)) for cell in cells]
-                best = Columns(header, spans, count)
+            if header and (best is None or header.known_words > best.header.known_words):
+                best = Columns(header, [_extent(cell) for cell in cells], count)
     if best is None and loose:
         for cells in filter(None, (_in_one_line(lines[0], profile), _clustered(lines[:1]))):
             header = headings.match([_text(cell) for cell in cells], profile, loose=True)
             if header and header.kind == "fields" and _is_sure(header):
-                return Columns(header, [(min(w.x0 for w in cell), max(w.x1 for w in cell)) for cell in cells], 1)
+                return Columns(header, [_extent(cell) for cell in cells], 1)
     return best
 
 
 def _is_sure(header: Header) -> bool:
     """Whether headings without offsets are no line of prose: all of them are known, or all but one of four or more."""
-    known = sum(map(bool, header.roles))
-    return header.titles[0][:1].isupper() and (known == len(header.roles) or known == len(header.roles) - 1 >= 3)
+    unknown = len(header.roles) - header.known
+    return header.titles[0][:1].isupper() and (unknown == 0 or (unknown == 1 and header.known >= 3))
 
 
-def _known(header: Header) -> int:
-    return sum(len(title.split()) for title, role in zip(header.titles, header.roles, strict=True) if role)
+def _extent(cell: list[Word]) -> tuple[float, float]:
+    """From left to right."""
+    return min(w.x0 for w in cell), max(w.x1 for w in cell)
 
 
 def _text(cell: list[Word]) -> str:
@@ -74,9 +74,8 @@ def _clustered(block: list[Line]) -> list[list[Word]]:
     for run in sorted((run for line in block for run in runs(line, 0.45)), key=lambda r: (r[0].top, r[0].x0)):
         x0, x1 = run[0].x0, run[-1].x1
         for cell in cells:
-            if min(x1, max(w.x1 for w in cell)) - max(x0, min(w.x0 for w in cell)) > 0.3 * min(
-                x1 - x0, max(w.x1 for w in cell) - min(w.x0 for w in cell)
-            ):
+            left, right = _extent(cell)
+            if min(x1, right) - max(x0, left) > 0.3 * min(x1 - x0, right - left):
                 cell.extend(run)
                 break
         else:
@@ -93,7 +92,7 @@ def side_by_side(block: list[Line]) -> str:
 
 def boundaries(spans: list[tuple[float, float]], lines: list[Line], x0: float, x1: float) -> list[float]:
     """Edges of the columns whose headings stand at ``spans``; between two, where the fewest words stand in the way."""
-    words = [word for line in lines for word in line.words]
+    words = words_of(lines)
     edges = [min([x0, spans[0][0], *(w.x0 for w in words)]) - 1]
     last = max([x1, spans[-1][1], *(w.x1 for w in words)]) + 1
     centres = [(a + b) / 2 for a, b in spans]
@@ -109,7 +108,7 @@ def _river(
 ) -> float:
     """The middle of the gap that the fewest words cross: one with words on both sides of it, then one that ends where
     the heading begins, then where most words begin, then the widest."""
-    middles = sorted((w.x0 + w.x1) / 2 for w in words)
+    middles = sorted(w.centre for w in words)
     begins = sorted(w.x0 for w in words)
     near = [w for w in words if w.x1 > low and w.x0 < high]
     starts, ends = sorted(w.x0 for w in near), sorted(w.x1 for w in near)
@@ -137,14 +136,6 @@ def _river(
 def _any_between(values: list[float], low: float, high: float) -> bool:
     """Whether one of the sorted values lies between."""
     return bisect_right(values, low) < bisect_left(values, high)
-
-
-def cells(line: Line, edges: list[float]) -> list[str]:
-    """The texts of the line's cells between ``edges``."""
-    parts: list[list[Word]] = [[] for _ in edges[1:]]
-    for word in line.words:
-        parts[index_of((word.x0 + word.x1) / 2, edges)].append(word)
-    return [text_of(part) if part else "" for part in parts]
 
 
 def index_of(x: float, edges: list[float]) -> int:

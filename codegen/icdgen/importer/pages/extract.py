@@ -29,6 +29,10 @@ class Word(NamedTuple):
     style: str  # font, slant and colour, to tell captions and headings from text
 
     @property
+    def centre(self) -> float:
+        return (self.x0 + self.x1) / 2
+
+    @property
     def middle(self) -> float:
         return (self.top + self.bottom) / 2
 

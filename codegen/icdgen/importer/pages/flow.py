@@ -71,7 +71,7 @@ def items(pages: list[Page], profile: Profile) -> list[Item]:
     loose = {}
     for page in pages:
         inside = ruled[page.number]
-        words = [w for w in page.words if not any(r.holds((w.x0 + w.x1) / 2, w.middle) for r in inside)]
+        words = [w for w in page.words if not any(r.holds(w) for r in inside)]
         loose[page.number] = lines(words)
     body = _body(loose)
     kept = furniture.without(pages, loose, lambda line, near: _is_of_a_table(line, near, profile))
@@ -136,14 +136,14 @@ class _Flow:
         return made
 
     def ruled(self, page: Page, region: Region) -> Piece:
-        inside = [w for w in page.words if region.holds((w.x0 + w.x1) / 2, w.middle)]
+        inside = [w for w in page.words if region.holds(w)]
         cuts = region.cuts()
         bands = []
         for top, bottom in itertools.pairwise(cuts):
             if bottom - top < 3:
                 continue
             words = [w for w in inside if top <= w.middle < bottom]
-            bands.append(Band(page.number, top, bottom, region.separators(top, bottom), words))
+            bands.append(Band(page.number, region.separators(top, bottom), words))
         return Piece(Box(page.number, region.x0, region.top, region.x1, region.bottom), bands, ruled=True)
 
     def next(self, page: Page, rest: list[Line], first: bool) -> tuple[int, Item | None]:

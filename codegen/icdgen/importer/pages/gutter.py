@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from icdgen.importer.pages.extract import Page
-from icdgen.importer.pages.lines import Line, lines, runs
+from icdgen.importer.pages.lines import Line, lines, runs, words_of
 from icdgen.importer.pages.rules import Region
 
 NARROWEST = 6.0  # points of white between the columns
@@ -14,7 +14,7 @@ FULL = 0.8  # of the column's width
 
 def parts(page: Page, regions: list[Region], found: list[Line]) -> list[tuple[list[Region], list[Line]]]:
     """The regions and lines of the page, column by column."""
-    words = [word for line in found for word in line.words]
+    words = words_of(found)
     middle = _middle(page, regions, found)
     if middle is None:
         return [(regions, found)]
@@ -27,7 +27,7 @@ def parts(page: Page, regions: list[Region], found: list[Line]) -> list[tuple[li
 
 def _middle(page: Page, regions: list[Region], found: list[Line]) -> float | None:
     """Where the white between two columns lies; None where there is none, or hardly any text left of it."""
-    spans = [(word.x0, word.x1) for line in found for word in line.words] + [(r.x0, r.x1) for r in regions]
+    spans = [(word.x0, word.x1) for word in words_of(found)] + [(r.x0, r.x1) for r in regions]
     low, high = 0.4 * page.width, 0.6 * page.width
     best, at = (0.0, 0.0), low
     for x0, x1 in sorted((x0, x1) for x0, x1 in spans if x1 > low and x0 < high):
@@ -36,7 +36,7 @@ def _middle(page: Page, regions: list[Region], found: list[Line]) -> float | Non
     if best[0] < NARROWEST:
         return None
     middle = best[1]
-    column = lines([word for line in found for word in line.words if word.x1 <= middle])
+    column = lines(word for word in words_of(found) if word.x1 <= middle)
     right = max((line.x1 for line in column), default=0.0)
     text = [line for line in column if _is_text(line)]
     full = [line for line in text if line.x1 - line.x0 > FULL * (right - min(line.x0 for line in text))]

@@ -71,6 +71,11 @@ def text_of(words: list[Word]) -> str:
     return text
 
 
+def words_of(found: Iterable[Line]) -> list[Word]:
+    """The words of several lines."""
+    return [word for line in found for word in line.words]
+
+
 def runs(line: Line, gap: float = 0.6) -> list[list[Word]]:
     """The line's words in runs; ``gap`` (of the type size) is how far apart runs stand at least."""
     found = [[line.words[0]]]

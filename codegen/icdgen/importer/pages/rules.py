@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from icdgen.importer.pages.extract import Fill, Page, Rule
+from icdgen.importer.pages.extract import Page, Rule, Word
 
 SNAP = 1.8  # points: rules nearer than this are one
 REACH = 4.0  # points: rules that come as near as this meet
@@ -27,8 +27,8 @@ class Region:
     across: list[Rule] = field(default_factory=list)
     down: list[Rule] = field(default_factory=list)
 
-    def holds(self, x: float, y: float) -> bool:
-        return self.x0 - 1 <= x <= self.x1 + 1 and self.top - 1 <= y <= self.bottom + 1
+    def holds(self, word: Word) -> bool:
+        return self.x0 - 1 <= word.centre <= self.x1 + 1 and self.top - 1 <= word.middle <= self.bottom + 1
 
     def cuts(self) -> list[float]:
         """The heights at which rows begin and end."""
@@ -180,20 +180,10 @@ def _outermost(regions: list[Region]) -> list[Region]:
 
 def row_marks(page: Page, x0: float, x1: float) -> list[float]:
     """Heights at which a rule or the edge of a shaded row runs over most of the width from ``x0`` to ``x1``."""
+    shallow = [fill for fill in page.fills if fill.bottom - fill.top < 0.5 * page.height]
+    edges = [Rule(y, fill.x0, fill.x1) for fill in shallow for y in (fill.top, fill.bottom)]
     found = []
-    for y, length in _lengths([_clipped(r, x0, x1) for r in page.across if r.end > x0 and r.start < x1]):
-        if length >= 0.7 * (x1 - x0):
-            found.append(y)
-    edges = [Rule(y, f.x0, f.x1) for f in page.fills if _shallow(f, page) for y in (f.top, f.bottom)]
-    for y, length in _lengths([_clipped(r, x0, x1) for r in edges if r.end > x0 and r.start < x1]):
-        if length >= 0.7 * (x1 - x0):
-            found.append(y)
+    for rules in (page.across, edges):
+        inside = [r._replace(start=max(r.start, x0), end=min(r.end, x1)) for r in rules if r.end > x0 and r.start < x1]
+        found += [y for y, length in _lengths(inside) if length >= 0.7 * (x1 - x0)]
     return distinct(found)
-
-
-def _shallow(fill: Fill, page: Page) -> bool:
-    return fill.bottom - fill.top < 0.5 * page.height
-
-
-def _clipped(rule: Rule, x0: float, x1: float) -> Rule:
-    return rule._replace(start=max(rule.start, x0), end=min(rule.end, x1))

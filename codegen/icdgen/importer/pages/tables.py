@@ -10,7 +10,7 @@ from icdgen.importer.document import Block, Header, Row, Table
 from icdgen.importer.pages import bands, captions, columns
 from icdgen.importer.pages.bands import Band
 from icdgen.importer.pages.flow import Item, Mark, Piece
-from icdgen.importer.pages.lines import Line, lines
+from icdgen.importer.pages.lines import Line, lines, words_of
 from icdgen.importer.pages.rules import row_marks
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import CONTINUED, squeezed
@@ -100,7 +100,7 @@ class Builder:
             return None
         if number is None and between == 1 and last is not None and self.is_group(draft, last):
             assert draft.table.header is not None
-            draft.table.rows.append(Row([last.text, *[""] * (len(draft.table.header.roles) - 1)], last.box.page))
+            draft.table.rows.append(Row.of(last.text, len(draft.table.header.roles), last.box.page))
             self.out.remove(last)
         if torn and (draft.table.header is not None or not draft.table.head):
             return None
@@ -151,11 +151,10 @@ class Builder:
             if header is None:
                 return own.kind == "fields" and bool(draft.table.head)
             return follows and own.kind == header.kind and own.roles == header.roles
-        if header is None:
-            last, box = draft.table.boxes[-1], piece.box
-            return follows and abs(box.x0 - last.x0) < 8 and abs(box.x1 - last.x1) < 8
         last, box = draft.table.boxes[-1], piece.box
-        return abs((box.x1 - box.x0) - (last.x1 - last.x0)) < 8
+        if header is None:
+            return follows and abs(box.x0 - last.x0) < 8 and abs(box.x1 - last.x1) < 8
+        return abs(box.width - last.width) < 8
 
     def header_of(self, piece: Piece) -> Header | None:
         for band in piece.bands[:3]:
@@ -199,8 +198,8 @@ class Builder:
         titles = [squeezed(title) for title in header.titles]
         found = lines(band.words)
         for count in range(1, min(5, len(found) + 1)):
-            if [squeezed(text) for text in _part(band, found[:count]).texts(self.known)] == titles:
-                return _part(band, found[count:])
+            if [squeezed(text) for text in band.of(found[:count]).texts(self.known)] == titles:
+                return band.of(found[count:])
         return None
 
     def lower_half(self, draft: Draft, texts: list[str]) -> Header | None:
@@ -210,7 +209,7 @@ class Builder:
         if len(texts) != len(header.titles):
             return None
         whole = headings.match([f"{a} {b}".strip() for a, b in zip(header.titles, texts, strict=True)], self.profile)
-        return whole if whole and sum(map(bool, whole.roles)) > sum(map(bool, header.roles)) else None
+        return whole if whole and whole.known > header.known else None
 
     def is_new(self, draft: Draft, texts: list[str]) -> bool:
         """Whether a band is the first of another message within the same rules."""
@@ -248,27 +247,27 @@ class Builder:
 
     def labelled(self, rows: list[Row]) -> int:
         """How many values have a label that the vocabulary knows."""
-        found = (labels.parse(" ".join(c for c in row.cells if c), self.profile) for row in rows)
+        found = (labels.parse(row.text, self.profile) for row in rows)
         return sum(1 for parts in found for one in parts if one.what and one.value)
 
     def split(self, band: Band) -> tuple[list[Line], Header, Band] | None:
         """A band without rules between its rows: lines above the headings, headings, the rest."""
         found = lines(band.words)
         for start in range(min(8, len(found))):
-            best: tuple[int, int, Header] | None = None
+            best: tuple[int, Header] | None = None
             for count in range(1, min(4, len(found) - start) + 1):
-                header = headings.match(_part(band, found[start : start + count]).texts(self.known), self.profile)
-                if header is not None and (best is None or sum(map(bool, header.roles)) >= best[0]):
-                    best = sum(map(bool, header.roles)), count, header
+                header = headings.match(band.of(found[start : start + count]).texts(self.known), self.profile)
+                if header is not None and (best is None or header.known >= best[1].known):
+                    best = count, header
             if best is not None:
-                return found[:start], best[2], _part(band, found[start + best[1] :])
+                return found[:start], best[1], band.of(found[start + best[0] :])
         return None
 
     def body(self, draft: Draft, band: Band, torn: bool) -> None:
         assert draft.table.header is not None and draft.edges is not None
         header = draft.table.header
         if len(band.edges) < len(draft.edges):
-            plain = Band(band.page, band.top, band.bottom, draft.edges, band.words)
+            plain = Band(band.page, draft.edges, band.words)
             if bands.has_keys(plain, header):  # rules part the headings only, the rows stand below them all the same
                 band = plain
         draft.table.rows += bands.rows(bands.aligned(band, draft.edges), header, self.known, torn)
@@ -297,12 +296,6 @@ class Builder:
                     draft.table.rows += bands.rows(band, header, self.known)
 
 
-def _part(band: Band, found: list[Line]) -> Band:
-    """Some lines of a band, down to its end."""
-    top = found[0].top if found else band.bottom
-    return Band(band.page, top, band.bottom, band.edges, [word for line in found for word in line.words])
-
-
 def _bands(piece: Piece, edges: list[float]) -> list[Band]:
     """The body of a piece, cut where rules or shading cut it."""
     if not piece.lines or piece.page is None:
@@ -311,9 +304,9 @@ def _bands(piece: Piece, edges: list[float]) -> list[Band]:
     cuts = [top, *(y for y in row_marks(piece.page, edges[0], edges[-1]) if top < y < bottom), bottom + 1]
     made = []
     for upper, lower in pairwise(cuts):
-        words = [w for line in piece.lines for w in line.words if upper <= w.middle < lower]
+        words = [word for word in words_of(piece.lines) if upper <= word.middle < lower]
         if words:
-            made.append(Band(piece.page.number, upper, lower, edges, words))
+            made.append(Band(piece.page.number, edges, words))
     return made
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import logging
 import os
-import re
 import signal
 import zlib
 from collections.abc import Callable, Iterator
@@ -24,7 +23,6 @@ from icdgen.importer.profile import Profile
 FEW = 12  # pages; below this, starting processes costs more than it saves
 MOST_PAGES = 5000
 MOST_CONTENTS = 6_000_000  # bytes of a page: a table has some ten thousand; drawings with more would take minutes
-_WORD = re.compile(r"[^\s]+")
 
 
 def read(

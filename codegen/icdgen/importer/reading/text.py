@@ -8,7 +8,7 @@ from pathlib import Path
 
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.importer import headings, labels
-from icdgen.importer.document import Block, Document, Header, Heading, Row, Table, Text
+from icdgen.importer.document import Block, Document, Heading, Row, Table, Text
 from icdgen.importer.profile import Profile
 from icdgen.importer.understand import grids
 from icdgen.importer.words import CONTINUED, plain, table_number
@@ -72,7 +72,7 @@ class _Reader:
             self.blocks.append(Text(plain(text), self.page, number))
 
     def row(self, row: Row) -> None:
-        if self.raw and (labels.begins(" ".join(c for c in row.cells if c), self.profile) or grids.is_heading(row)):
+        if self.raw and (labels.begins(row.text, self.profile) or grids.is_heading(row)):
             self.close()
         self.raw.append(row)
 
@@ -90,7 +90,7 @@ class _Reader:
                 found = headings.match(row.cells, self.profile, loose=True)
                 both = _stacked(row.cells, rows[index].cells) if index < len(rows) else None
                 stacked = headings.match(both, self.profile) if both else None
-                if stacked and (found is None or _known(stacked) > _known(found)):
+                if stacked and (found is None or stacked.known_words > found.known_words):
                     found = stacked
                     index += 1
                 if found is None:
@@ -141,10 +141,6 @@ class _Caption:
 def _table(blocks: Sequence[Block | _Caption], index: int, step: int) -> int | None:
     near = index + step
     return near if 0 <= near < len(blocks) and isinstance(blocks[near], Table) else None
-
-
-def _known(header: Header) -> int:
-    return sum(len(t.split()) for t, role in zip(header.titles, header.roles, strict=True) if role)
 
 
 def _stacked(upper: list[str], lower: list[str]) -> list[str] | None:

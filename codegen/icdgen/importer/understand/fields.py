@@ -74,7 +74,7 @@ def read(table: Table, profile: Profile, length: int | None, troubles: list[Trou
                                 "error"))  # fmt: skip
         raise Unreadable
     made: list[ReadField] = []
-    implicit = not _positions(header)
+    implicit = not header.has_offsets
     if implicit and lines:
         troubles.append(Trouble("IMP038", f"{table.title}: it prints no offsets; they follow from the widths", table.spot,
                                 "compare the length with the page", "note"))  # fmt: skip
@@ -139,13 +139,9 @@ def _elements(array: ReadField) -> list[ReadField]:
     return [replace(array, name=name, at=at, count=0) for name, at in places]
 
 
-def _positions(header: Header) -> bool:
-    return "at" in header.roles or "at_bytes" in header.roles
-
-
 def _positions_named(header: Header, table: Table) -> None:
     """A column `Bits` without one for offsets holds positions where its cells are ranges or count down: ``7:4``, ``3``."""
-    if _positions(header) or "bits" not in header.roles:
+    if header.has_offsets or "bits" not in header.roles:
         return
     column = header.roles.index("bits")
     cells = [row.cells[column] for row in table.rows if column < len(row.cells) and row.cells[column]]
@@ -170,7 +166,7 @@ def _line(entry: Entry, header: Header, table: Table, profile: Profile, troubles
         entry, f"{table.title}, field `{name}`" if name else table.title, types.read(entry.get("type"), profile)
     )
     at_unit = width_unit = 0
-    if _positions(header):
+    if header.has_offsets:
         text = entry.get("at") or entry.get("at_bytes")
         if span := numbers.span(text):
             line.at, line.width = span

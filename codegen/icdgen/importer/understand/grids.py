@@ -42,7 +42,7 @@ class Grid:
 
 def find(table: Table, profile: Profile) -> tuple[Grid, list[Row]] | None:
     """The heading row of the grid that a table is, and the rows below it; None for a table that is none."""
-    rows = [*table.head, *table.rows]
+    rows = table.all_rows
     for index, row in enumerate(rows[:4]):
         columns, words = _columns(row.cells)
         if _width(columns) < FEWEST or len(columns) < 2 or index + 1 == len(rows):
@@ -165,8 +165,7 @@ def _register(grid: Grid, row: Row, table: Table, profile: Profile, troubles: li
     value = around.value(address) if _ADDRESS.match(address) else None
     name = cells.get(grid.roles.get("name", -1), "")
     if value is None:
-        text = " | ".join(cell for cell in row.cells if cell)
-        troubles.append(Trouble("IMP023", f"{table.title}: the row `{text[:80]}` has no address", table.spot_of(row),
+        troubles.append(Trouble("IMP023", f"{table.title}: the row `{row.shown[:80]}` has no address", table.spot_of(row),
                                 "the row was left out", "error"))  # fmt: skip
         return None
     message = ReadMessage("", "", table, names=[name] if name else [])

@@ -19,7 +19,7 @@ def listing(table: Table, profile: Profile, troubles: list[Trouble]) -> ReadList
     kind, node = list_title(table.caption, profile)
     two = table.header is not None and "set_id" in table.header.roles and "get_id" in table.header.roles
     kind = kind or ("configuration" if two else "")
-    made = ReadList(kind, node, [], table)
+    made = ReadList(kind, node, [])
     for entry in entries(table, troubles):
         title = f"{table.title}, `{entry.get('name')}`"
         length = None
@@ -35,7 +35,7 @@ def listing(table: Table, profile: Profile, troubles: list[Trouble]) -> ReadList
         named = descriptions.profile_caption_in(entry.get("description"), profile)
         made.rows.append(
             Listed(kind, entry.get("name"), length, ids["id"], ids["set_id"], ids["get_id"], entry.group, entry.spot,
-                   *(named or (None, "")))
+                   named[0] if named else None)
         )  # fmt: skip
     return made
 
@@ -80,7 +80,7 @@ def enum_name(caption: str, profile: Profile) -> str:
 
 def log(table: Table, troubles: list[Trouble]) -> ReadLog:
     """The frames that can be logged, by the bit of the mask."""
-    made = ReadLog([], table)
+    made = ReadLog([])
     for entry in entries(table, troubles):
         bit = _bit(entry.get("mask")) if entry.get("mask") else number(entry.get("bit"))
         frame = numbers.whole(entry.get("id"), "the id", table.title, entry.spot, troubles)
@@ -89,7 +89,7 @@ def log(table: Table, troubles: list[Trouble]) -> ReadLog:
             troubles.append(Trouble("IMP023", f"{table.title}: `{text}` is not a mask with one bit", entry.spot,
                                     "the row was left out", "error"))  # fmt: skip
         elif frame is not None:
-            made.bits.append(LogBit(bit, frame, entry.get("name"), entry.spot))
+            made.bits.append(LogBit(bit, frame, entry.get("name")))
     return made
 
 

@@ -27,7 +27,7 @@ def read(table: Table, profile: Profile, troubles: list[Trouble], about: Around 
     if table.header is None:
         if not has_id:
             return None
-    elif not has_id and not said.ids and _is_loose(table.header.roles) and not _is_titled(table, profile):
+    elif not has_id and not said.ids and not table.header.has_offsets and not _is_titled(table, profile):
         return None
     message = ReadMessage("", "", table)
     _ids(message, values, both)
@@ -72,7 +72,7 @@ def _labelled(table: Table, profile: Profile) -> list[labels.Labelled]:
     pending = ""
     torn: labels.Labelled | None = None  # its value stands beside the first line of a label that may have more
     for row in table.head:
-        text = " ".join(cell for cell in row.cells if cell)
+        text = row.text
         what = labels.leads(text, profile)
         if what == "description" or (what == "fields" and not any(c.isdigit() for c in text)):
             pending, torn = "", None
@@ -113,11 +113,6 @@ def _below(label: str, values: list[str], profile: Profile) -> list[labels.Label
         else:
             words = words[1:]
     return made
-
-
-def _is_loose(roles: list[str]) -> bool:
-    """Whether headings alone do not make a table a message's: it prints no offsets."""
-    return "at" not in roles and "at_bytes" not in roles
 
 
 def _is_titled(table: Table, profile: Profile) -> bool:
@@ -183,12 +178,9 @@ def _names(caption: str, profile: Profile, message: ReadMessage) -> list[str]:
 
 def _summary(table: Table, profile: Profile) -> str:
     for row in table.head:
-        text = " ".join(cell for cell in row.cells if cell)
-        if labels.leads(text, profile) == "description":
-            words = text.split()
-            for length in range(min(5, len(words)), 0, -1):
-                if labels.meaning(" ".join(words[:length]), profile) == "description":
-                    return " ".join(words[length:]).lstrip(":- ")
+        what, rest = labels.split(row.text, profile)
+        if what == "description":
+            return rest.lstrip(":- ")
     return ""
 
 

@@ -82,7 +82,6 @@ class Listed:
     group: str
     spot: Spot
     table_number: int | None = None  # of the detail table it names
-    title: str = ""
     used: bool = False
 
 
@@ -93,7 +92,6 @@ class ReadList:
     kind: str
     node: str
     rows: list[Listed]
-    table: Table
 
 
 @dataclass(slots=True)
@@ -101,13 +99,11 @@ class LogBit:
     bit: int
     id: int
     name: str
-    spot: Spot
 
 
 @dataclass(slots=True)
 class ReadLog:
     bits: list[LogBit]
-    table: Table
 
 
 Thing = ReadMessage | ReadEnum | ReadList | ReadLog

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from icdgen.importer.document import Header, Row, Spot, Table, Trouble
 from icdgen.importer.pages.bands import KEYS, is_key
@@ -20,8 +20,6 @@ class Entry:
     cells: dict[str, str]
     spot: Spot
     group: str = ""
-    joined: bool = False
-    notes: list[str] = field(default_factory=list)
 
     def get(self, role: str) -> str:
         return self.cells.get(role, "")
@@ -39,12 +37,12 @@ def entries(table: Table, troubles: list[Trouble], stands_alone: StandsAlone | N
         cells = _by_role(row, header)
         spot = table.spot_of(row)
         if _has_key(cells, header) or (stands_alone is not None and stands_alone(cells)):
-            made.append(Entry(cells, spot, group, notes=[row.mended] if row.mended else []))
+            made.append(Entry(cells, spot, group))
             if row.mended:
                 troubles.append(Trouble("IMP021", f"a row of {table.title}: {row.mended}", spot, _LOOK, "note"))
         elif not any(row.cells):
             continue
-        elif header.kind == "fields" and _REPEATS.search(text := " ".join(cell for cell in row.cells if cell)):
+        elif header.kind == "fields" and _REPEATS.search(text := row.text):
             table.doubts.append("it has a repeated block")
             troubles.append(Trouble("IMP037", f"{table.title}: `{text[:80]}`: a repeated block, which import does not read",
                                     spot, BY_HAND, "error"))  # fmt: skip
@@ -56,8 +54,9 @@ def entries(table: Table, troubles: list[Trouble], stands_alone: StandsAlone | N
             )
         else:
             table.doubts.append("a row before the first one has no key")
-            text = " | ".join(c for c in row.cells if c)
-            troubles.append(Trouble("IMP022", f"{table.title}: the row `{text[:80]}` belongs to no row", spot, _LOOK))
+            troubles.append(
+                Trouble("IMP022", f"{table.title}: the row `{row.shown[:80]}` belongs to no row", spot, _LOOK)
+            )
         if any(surplus := row.cells[len(header.roles) :]):
             shown = " | ".join(cell for cell in surplus if cell)
             troubles.append(Trouble("IMP027", f"{table.title}: cells right of the last heading were left out: "
@@ -129,15 +128,12 @@ def _tear(
             target = "description" if "description" in header.roles else "name"
         before = entry.cells.get(target, "")
         if squeezed(cell) and squeezed(before).endswith(squeezed(cell)) and len(squeezed(cell)) > 12:
-            entry.notes.append("a repeated rest of a torn row was dropped")
-            continue
+            continue  # the rest of a torn row, repeated
         entry.cells[target] = join([before, cell])
-        entry.joined = True
-    text = " | ".join(c for c in row.cells if c)
     about = entry.get("name") or entry.get("id")
     cells = _by_role(row, header)
     doubtful = same_page and bool(cells.get("name")) and len([c for c in cells.values() if c]) > 1
     troubles.append(
-        Trouble("IMP020", f"{table.title}: the row `{about}` was torn; joined to it: `{text[:100]}`", spot, _LOOK,
+        Trouble("IMP020", f"{table.title}: the row `{about}` was torn; joined to it: `{row.shown[:100]}`", spot, _LOOK,
                 "warning" if doubtful else "note")
     )  # fmt: skip

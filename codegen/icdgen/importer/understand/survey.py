@@ -112,7 +112,7 @@ def classify(
 def _is_repeated(table: Table, made: Survey) -> bool:
     """Whether rows without headings are the repeated block of the message before, which then cannot be held."""
     messages = made.of(ReadMessage)
-    cells = [cell for row in (*table.head, *table.rows)[:1] for cell in row.cells]
+    cells = [cell for row in table.all_rows[:1] for cell in row.cells]
     figure = next((cell for cell in cells if grows(cell)), "")
     if not figure or not messages:
         return False
@@ -122,7 +122,7 @@ def _is_repeated(table: Table, made: Survey) -> bool:
 
 def _is_grid(table: Table) -> bool:
     """Whether something without a caption is a table for all that: two rows or more of two cells or more."""
-    rows = [row for row in (*table.head, *table.rows) if sum(bool(cell) for cell in row.cells) > 1]
+    rows = [row for row in table.all_rows if sum(map(bool, row.cells)) > 1]
     return len(rows) + (table.header is not None) > 1
 
 
@@ -155,15 +155,11 @@ def _without_table(made: Survey, sections: list[Heading], bare: list[Heading], p
 
 def _not_understood(table: Table, said: Said) -> Trouble:
     """That nobody knows what a table is; where an id stands above it, a message is missing."""
-    rows = [row for row in (*table.head, *table.rows) if any(row.cells)]
-    cells = [cell for cell in rows[0].cells if cell] if rows else []
-    begins = f"; it begins with `{' | '.join(cells)[:100]}`" if cells else ""
+    shown = next((row.shown for row in table.all_rows if any(row.cells)), "")
+    begins = f"; it begins with `{shown[:100]}`" if shown else ""
     id = f", though what stands above it gives the id {' '.join(said.ids)}" if said.ids else ""
     return Trouble(
         "IMP030", f"{table.title}: none of the tables that icdgen knows{id}{begins}", table.spot,
         "if it describes a message or an enumeration add its headings to the profile, else name it under `background:`",
         "error" if id else "note" if table.number is None else "warning",
     )  # fmt: skip
-
-
-__all__ = ["BACKGROUND", "UNKNOWN", "Found", "ReadEnum", "ReadList", "ReadLog", "ReadMessage", "Survey", "survey"]
