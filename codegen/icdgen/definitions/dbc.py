@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import Any
 
 from icdgen.definitions.model import Definitions
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 NOT_UNDERSTOOD = "IMP075"
 REPAIRED = "IMP076"

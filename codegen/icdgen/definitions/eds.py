@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from xml.etree.ElementTree import Element
 
 from icdgen.definitions import eds_sheets, packets, safe_xml
 from icdgen.definitions.eds_interfaces import Interfaces, Sending
@@ -12,9 +12,6 @@ from icdgen.definitions.eds_types import Types, described
 from icdgen.definitions.frames import BIG, ORDERS
 from icdgen.definitions.model import Definitions, Item, Network, NotHeld
 from icdgen.definitions.wording import line, node_name
-
-if TYPE_CHECKING:
-    from xml.etree.ElementTree import Element
 
 PROCESS, UNSENT = "IMP083", "IMP084"
 _SPACE = "ccsds.org/schema/sois/seds"

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from xml.etree.ElementTree import Element
 
 from icdgen.definitions import packets
 from icdgen.definitions.eds_sheets import Sheets
 from icdgen.definitions.eds_types import CONTAINER
 from icdgen.definitions.eds_values import whole
 from icdgen.definitions.model import NotHeld, unreadable
-
-if TYPE_CHECKING:
-    from xml.etree.ElementTree import Element
 
 _SETS = {"RequiredInterfaceSet": True, "ProvidedInterfaceSet": False}
 MOST_STEPS = 200_000  # containers that interfaces carry, and those on which they are based

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from xml.etree.ElementTree import Element
 
 from icdgen.definitions import eds_parts, eds_ranges, packets
 from icdgen.definitions.eds_parts import Line, Part, Told
@@ -16,9 +16,6 @@ from icdgen.definitions.frames import BIG, LITTLE
 from icdgen.definitions.model import Item, NotHeld, again
 from icdgen.definitions.wording import line, shortest
 from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS, REST
-
-if TYPE_CHECKING:
-    from xml.etree.ElementTree import Element
 
 UNCHECKED = "IMP082"
 MOST_FIELDS = 5000  # of a message

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
+from xml.etree.ElementTree import Element
 
 from icdgen.definitions import eds_ranges
 from icdgen.definitions.eds_sheets import Sheets
@@ -13,9 +14,6 @@ from icdgen.definitions.eds_values import coded, evaluate
 from icdgen.definitions.model import Item, NotHeld, again
 from icdgen.definitions.wording import line
 from icdgen.icd.fmt.emit import Spelled
-
-if TYPE_CHECKING:
-    from xml.etree.ElementTree import Element
 
 _INTEGERS = ("uint", "int")
 _MOST_FIXED = 64  # bits of a text that is a constant

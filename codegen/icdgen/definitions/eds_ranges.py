@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
+from xml.etree.ElementTree import Element
 
 from icdgen.definitions.eds_sheets import Sheets
 from icdgen.definitions.eds_values import evaluate
 from icdgen.definitions.model import Item, raws
 from icdgen.definitions.wording import limits
-
-if TYPE_CHECKING:
-    from xml.etree.ElementTree import Element
 
 _TYPES = {  # what is said of the ends: None where there is none, else whether it is part of the range
     "inclusivemininclusivemax": (True, True), "inclusiveminexclusivemax": (True, False),

@@ -5,15 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from xml.etree.ElementTree import Element
 
 from icdgen.definitions import kinds, safe_xml
 from icdgen.definitions.eds_values import evaluate
 from icdgen.definitions.model import Definitions, NotHeld, unreadable
 from icdgen.definitions.wording import line
-
-if TYPE_CHECKING:
-    from xml.etree.ElementTree import Element
 
 ROOTS = ("PackageFile", "DataSheet")
 _PARAMETERS = "DesignParameters"

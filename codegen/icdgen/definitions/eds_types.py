@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from xml.etree.ElementTree import Element
 
 from icdgen.definitions import eds_ranges
 from icdgen.definitions.eds_ranges import ALL, Range
@@ -17,9 +17,6 @@ from icdgen.definitions.reading import Reading
 from icdgen.definitions.wording import line, summary, unit, without_type
 from icdgen.definitions.xtce_calibration import calibrated
 from icdgen.icd.tails import MOST_BYTES
-
-if TYPE_CHECKING:
-    from xml.etree.ElementTree import Element
 
 RAW_ONLY = "IMP078"
 CONTAINER, ARRAY, SUBRANGE = "ContainerDataType", "ArrayDataType", "SubRangeDataType"
@@ -137,11 +134,11 @@ class Types(Reading):
         is_inverse = encoding is not None and self.sheets.attribute(encoding, "falseValue").lower() == "nonzeroisfalse"
         if bits > _WORD:
             raise NotHeld(f"the flag `{type_.get('name', '')}` has {bits} bits")
-        values = {"true": int(not is_inverse), "false": int(is_inverse)}
+        names = ("True", "False") if is_inverse else ("False", "True")
+        values = {name.lower(): value for value, name in enumerate(names)}
         made = Piece({"type": "bool"}, bits, code="", values=values)
         if bits > 1 or is_inverse:
-            order = sorted(values, key=values.__getitem__)
-            named: list[Item] = [{"value": values[one], "name": one.capitalize()} for one in order]
+            named: list[Item] = [{"value": value, "name": name} for value, name in enumerate(names)]
             made.item = {"type": "enum"}
             self.enums.give(made.item, _called(type_), self._owner(type_), named)
         return made

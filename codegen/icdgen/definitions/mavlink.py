@@ -7,16 +7,14 @@ import re
 from collections.abc import Iterator
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
+from xml.etree.ElementTree import Element
 
 from icdgen.definitions import kinds, safe_xml
 from icdgen.definitions.enumerations import BEYOND, MOST_SPECIAL, members
 from icdgen.definitions.model import Definitions, Item, Network, NotHeld, raws, unreadable
 from icdgen.definitions.wording import line, node_name, summary, unit
 from icdgen.icd.fmt.emit import Spelled
-
-if TYPE_CHECKING:
-    from xml.etree.ElementTree import Element
 
 TWICE = "IMP077"
 MOST_FILES = 100

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Any
+from typing import Any
+from xml.etree.ElementTree import Element, ParseError, TreeBuilder
 
 from icdgen.definitions.model import unreadable
-
-if TYPE_CHECKING:
-    from xml.etree.ElementTree import Element
 
 _ROOT = re.compile(r"<(?:[\w.-]+:)?([A-Za-z][\w.-]*)")
 _SKIPPED = re.compile(r"<!--.*?-->|<\?.*?\?>|<!.*?>", re.DOTALL)
@@ -26,8 +24,6 @@ def parse(file: str, data: bytes, lines: dict[Element, int] | None = None) -> El
 
     Raises `Findings` for what is no XML, or has a document type (`<!DOCTYPE`).
     """
-    from xml.etree.ElementTree import ParseError, TreeBuilder
-
     from defusedxml import DefusedXmlException
     from defusedxml.ElementTree import DefusedXMLParser
 

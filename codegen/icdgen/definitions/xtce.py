@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator
-from typing import TYPE_CHECKING
+from xml.etree.ElementTree import Element
 
 from icdgen.definitions import packets, safe_xml
 from icdgen.definitions.frames import BIG, ORDERS
@@ -12,9 +12,6 @@ from icdgen.definitions.wording import line, node_name
 from icdgen.definitions.xtce_layout import Layout, Part, Told
 from icdgen.definitions.xtce_names import Names, beside, called
 from icdgen.definitions.xtce_types import Types, described
-
-if TYPE_CHECKING:
-    from xml.etree.ElementTree import Element
 
 _TELECOMMAND, _TELEMETRY = packets.TELECOMMAND, packets.TELEMETRY
 _HAZARDOUS = frozenset({"vital", "critical", "severe"})

@@ -5,15 +5,13 @@ from __future__ import annotations
 import re
 from decimal import Decimal
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import Any
+from xml.etree.ElementTree import Element
 
 from icdgen.definitions.model import NotHeld, raws
 from icdgen.definitions.wording import line, printed
 from icdgen.icd import curve
 from icdgen.icd.formula import FormulaError
-
-if TYPE_CHECKING:
-    from xml.etree.ElementTree import Element
 
 NUMBER = re.compile(r"\s*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]{1,3})?)\s*\Z")
 _INTEGER = re.compile(r"\s*([-+]?[0-9]{1,40})\s*\Z")

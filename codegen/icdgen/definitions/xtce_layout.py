@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
+from xml.etree.ElementTree import Element
 
 from icdgen.definitions.frames import LITTLE, ORDERS, Place, laid_out
 from icdgen.definitions.model import Definitions, Item, NotHeld, again
@@ -13,9 +14,6 @@ from icdgen.definitions.xtce_calibration import fixed, number
 from icdgen.definitions.xtce_names import Names, beside, called
 from icdgen.definitions.xtce_types import Piece, Types, described, meant, repeated
 from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS
-
-if TYPE_CHECKING:
-    from xml.etree.ElementTree import Element
 
 OPEN = "IMP080"
 MOST_FIELDS = 5000  # of a message

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import posixpath
-from typing import TYPE_CHECKING
+from xml.etree.ElementTree import Element
 
 from icdgen.definitions import safe_xml
 from icdgen.definitions.model import NotHeld, unreadable
 from icdgen.definitions.wording import line
-
-if TYPE_CHECKING:
-    from xml.etree.ElementTree import Element
 
 ICD = (
     "ICD"  # the name space of names, and the beginning of what is said beside XTCE, as `icdgen --lang xtce` writes them

@@ -6,7 +6,8 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import Any
+from xml.etree.ElementTree import Element
 
 from icdgen.definitions.enumerations import MOST_SPECIAL, special
 from icdgen.definitions.frames import BIG, LITTLE
@@ -16,9 +17,6 @@ from icdgen.definitions.wording import line, summary, unit, without_type
 from icdgen.definitions.xtce_calibration import NUMBER, calibration, decimal, ended, fixed, formula, number
 from icdgen.definitions.xtce_names import Names, alias, beside
 from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS
-
-if TYPE_CHECKING:
-    from xml.etree.ElementTree import Element
 
 RAW_ONLY = "IMP078"
 _MOST_NAMED = 1024  # values of a range of labels
