@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from pathlib import Path
 from typing import Any
 
 from icdgen.icd.wire_ids import DEFAULT_BITS
 from icdgen.importer import icd_trees, references
 from icdgen.importer.document import Document, Trouble
-from icdgen.importer.parts import NodeParts
 from icdgen.importer.profile import Profile
-from icdgen.importer.understand.model import ReadEnum, ReadList, ReadMessage
+from icdgen.importer.understand.model import NodeParts, ReadEnum, ReadList, ReadMessage
 from icdgen.importer.understand.survey import Found, Survey
 from icdgen.importer.words import folded, squeezed, table_name
 
@@ -19,52 +19,32 @@ from icdgen.importer.words import folded, squeezed, table_name
 def assemble(document: Document, survey: Survey, profile: Profile, prose: bool = False) -> dict[str, dict[str, Any]]:
     """The trees by node name; appends to ``survey.troubles``. ``prose``: keep descriptions as summaries."""
     nodes = _parts_by_node(document, survey, profile)
-    everything = survey.of(ReadEnum)
+    everything = [enum for _, enum in survey.of(ReadEnum)]
     for node in nodes:
         _merge_enums(node, survey)
     for node in nodes:
         references.listed(node, survey.troubles)
     _includes(nodes)
     for node in nodes:
-        references.enums(node, nodes, everything, _runs(survey), survey.troubles)
+        references.enums(node, nodes, everything, survey.troubles)
     for node in nodes:
         references.complete(node, survey.troubles, icd_trees.head(node, document, profile).get("id_bits", DEFAULT_BITS))
-    held = [node for node in nodes if node.messages or node.enums or node.logs]
-    return {node.name: icd_trees.tree(node, document, profile, prose, survey.troubles) for node in held}
-
-
-def _runs(survey: Survey) -> dict[int, int]:
-    """Table (by identity) -> its run of numbers."""
-    return {id(one.table): one.run for one in survey.found}
+    return {one.name: icd_trees.tree(one, document, profile, prose, survey.troubles) for one in nodes if one.holds}
 
 
 def _parts_by_node(document: Document, survey: Survey, profile: Profile) -> list[NodeParts]:
     """Each thing to its node."""
     keys = _keys(survey, profile)
-    used = [key for key, one in zip(keys, survey.found, strict=True) if one.thing is not None]
-    order = list(dict.fromkeys(key for key in used if key))
-    nodes = {key: _node(key, profile) for key in order}
-    if not nodes and any(one.thing for one in survey.found):
+    used = [(key, one.thing) for key, one in zip(keys, survey.found, strict=True) if one.thing is not None]
+    nodes = {key: _node(key, profile) for key, _ in used if key}
+    if used and not nodes:
         nodes = {"": _node(_document_name(document), profile)}
     first = next(iter(nodes), "")
-    for key, one in zip(keys, survey.found, strict=True):
-        if one.thing is not None:
-            _put(nodes.get(key) or nodes[first], one)
+    for key, thing in used:
+        nodes.get(key, nodes[first]).add(thing)
     if len(nodes) == 1:
         next(iter(nodes.values())).shared = False
-    return [n for n in nodes.values() if n.messages or n.enums or n.logs]
-
-
-def _put(node: NodeParts, one: Found) -> None:
-    thing = one.thing
-    if isinstance(thing, ReadMessage):
-        node.messages.append(thing)
-    elif isinstance(thing, ReadEnum):
-        node.enums.append(thing)
-    elif isinstance(thing, ReadList):
-        node.lists.append(thing)
-    elif thing is not None:
-        node.logs.append(thing)
+    return [node for node in nodes.values() if node.holds]
 
 
 def _keys(survey: Survey, profile: Profile) -> list[str]:
@@ -73,7 +53,7 @@ def _keys(survey: Survey, profile: Profile) -> list[str]:
     for one, listed in survey.of(ReadList):
         for row in listed.rows:
             if row.table_number is not None:
-                by_number[(one.run, row.table_number)] = listed.node
+                by_number[one.table.run, row.table_number] = listed.node
     numbered = [one.table.number for one in survey.found if one.table.number is not None]
     restarts = len(set(numbered)) < len(numbered) and not any(listed.node for _, listed in survey.of(ReadList))
     keys, current, twins = [], "", _twins(survey)
@@ -82,9 +62,13 @@ def _keys(survey: Survey, profile: Profile) -> list[str]:
         if told is None and isinstance(one.thing, ReadList) and one.thing.node:
             current = one.thing.node
         if told is None and not profile.nodes and restarts:
-            told = f"part {one.run}"
+            told = f"part {one.table.run}"
         number = one.table.number
-        key = told if told is not None else (by_number.get((one.run, number)) if number is not None else "") or current
+        key = (
+            told
+            if told is not None
+            else (by_number.get((one.table.run, number)) if number is not None else "") or current
+        )
         if told is not None:
             current = told
         keys.append(key)
@@ -109,7 +93,7 @@ def _twins(survey: Survey) -> dict[int, int]:
 def _by_profile(one: Found, profile: Profile) -> str | None:
     for words in profile.nodes:
         if words.tables is not None or words.group is not None:
-            in_group = words.group is None or words.group == one.run
+            in_group = words.group is None or words.group == one.table.run
             number = one.table.number
             in_tables = words.tables is None or (number is not None and words.tables[0] <= number <= words.tables[1])
             if in_group and in_tables:
@@ -149,8 +133,6 @@ def _node(key: str, profile: Profile) -> NodeParts:
 
 
 def _document_name(document: Document) -> str:
-    from pathlib import Path
-
     words = re.findall("[A-Za-z0-9]+", Path(document.file).stem)
     return " ".join(words[:3]) or "device"
 
@@ -166,11 +148,9 @@ def _includes(nodes: list[NodeParts]) -> None:
 def _merge_enums(node: NodeParts, survey: Survey) -> None:
     """Tables that print the same enumeration become one, that which fields point to standing first; those that only
     share its name are told apart."""
-    runs = _runs(survey)
-    order = {id(one.table): index for index, one in enumerate(survey.found)}
     pointed = {
-        (one.run, field.described.enum_table)
-        for one, message in survey.of(ReadMessage)
+        (message.table.run, field.described.enum_table)
+        for _, message in survey.of(ReadMessage)
         for field in message.fields
         if field.described.enum_table is not None
     }
@@ -182,8 +162,8 @@ def _merge_enums(node: NodeParts, survey: Survey) -> None:
             kept[one.name] = one
             continue
         if [(m.value, m.name) for m in first.members] == [(m.value, m.name) for m in one.members]:
-            is_meant = (runs.get(id(one.table)), one.table.number) in pointed
-            if is_meant and (runs.get(id(first.table)), first.table.number) not in pointed:
+            is_meant, first_is = ((enum.table.run, enum.table.number) in pointed for enum in (one, first))
+            if is_meant and not first_is:
                 one.also = [first.table, *first.also]
                 kept[one.name] = one
             else:
@@ -197,4 +177,4 @@ def _merge_enums(node: NodeParts, survey: Survey) -> None:
         )  # fmt: skip
         one.name = name
         kept[name] = one
-    node.enums = sorted(kept.values(), key=lambda e: order[id(e.table)])
+    node.enums = sorted(kept.values(), key=lambda enum: enum.table.order or 0)

@@ -113,6 +113,7 @@ class Table:
     line: int | None = None
     doubts: list[str] = field(default_factory=list)  # what makes the reading less than certain
     order: int | None = None  # which table of the document it is
+    run: int = 1  # which run of ascending numbers it is in
     section: str = ""  # the heading above it
 
     @property

@@ -9,9 +9,8 @@ from icdgen.icd import units
 from icdgen.icd.fmt.emit import Spelled
 from icdgen.icd.units import SIGNS, SPELLINGS, STANDARD
 from icdgen.importer.document import Document, Table, Trouble
-from icdgen.importer.parts import NodeParts
 from icdgen.importer.profile import Profile
-from icdgen.importer.understand.model import Listed, ReadEnum, ReadField, ReadMessage
+from icdgen.importer.understand.model import Listed, NodeParts, ReadEnum, ReadField, ReadMessage
 from icdgen.importer.words import squeezed, table_name
 
 

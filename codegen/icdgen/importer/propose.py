@@ -44,18 +44,17 @@ def proposal(
     which nothing says the kind."""
     lines = [f"captions: [{', '.join(captions)}]   # ?", ""] if captions else []
     guesses: dict[str, dict[str, list[str]]] = {"fields": {}, "enumeration": {}}
-    names: dict[str, str] = {}
+    names: dict[str, None] = {}
     for columns in unread:
         kind, roles = _roles(columns, profile)
         for column, role in roles:
             if kind and role and column.title and column.title not in guesses[kind].setdefault(role, []):
                 guesses[kind][role].append(column.title)
             if role == "type":
-                names |= {cell: "?" for cell in column.filled if types.read(cell, profile) is None and len(cell) < 24}
-    for columns in partly:
-        for column in columns:
-            if folded(column.title) in profile.headings["fields"].get("type", ()):
-                names |= {cell: "?" for cell in column.filled if types.read(cell, profile) is None and len(cell) < 24}
+                names |= _unknown_types(column, profile)
+    for column in (column for columns in partly for column in columns):
+        if folded(column.title) in profile.headings["fields"].get("type", ()):
+            names |= _unknown_types(column, profile)
     if any(guesses.values()):
         lines.append("headings:")
         for kind, roles_of in guesses.items():
@@ -75,28 +74,27 @@ def proposal(
     return lines
 
 
+def _unknown_types(column: Column, profile: Profile) -> dict[str, None]:
+    """The names of types that nobody knows, in order."""
+    return dict.fromkeys(cell for cell in column.filled if len(cell) < 24 and types.read(cell, profile) is None)
+
+
 def _defaults(kindless: int) -> str:
-    plural = "s" if kindless != 1 else ""
+    if not kindless:
+        return "# defaults: {kind: telemetry}"
     return (
-        f"defaults: {{kind: telemetry}}   # ? of {kindless} message{plural} nothing says the kind"
-        if kindless
-        else "# defaults: {kind: telemetry}"
+        f"defaults: {{kind: telemetry}}   # ? of {kindless} message{'s' if kindless != 1 else ''} nothing says the kind"
     )
 
 
 def _quoted(text: str) -> str:
-    return (
-        text
-        if re.fullmatch(r"[A-Za-z][\w ()./-]*[\w)]|[A-Za-z]", text) and text.casefold() not in _WORDS
-        else f'"{_escaped(text)}"'
-    )
+    if re.fullmatch(r"[A-Za-z][\w ()./-]*[\w)]|[A-Za-z]", text) and text.casefold() not in _WORDS:
+        return text
+    escaped = "".join(c for c in text if c.isprintable()).replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{escaped}"'
 
 
 _WORDS = {"y", "n", "yes", "no", "on", "off", "true", "false", "null"}
-
-
-def _escaped(text: str) -> str:
-    return "".join(c for c in text if c.isprintable()).replace("\\", "\\\\").replace('"', '\\"')
 
 
 def _labels(labelled: Counter[str]) -> list[str]:
@@ -149,28 +147,17 @@ def _roles(columns: list[Column], profile: Profile) -> tuple[str, list[tuple[Col
         figures = figures[1:]
     if "bits" not in taken and "bits_bytes" not in taken and figures:
         give(_unit("bits", figures[0], figures), figures[0])
-    give(
-        "type",
-        (
-            max(free, key=lambda c: _types(c, profile), default=None)
-            if any(_types(c, profile) > 0.5 for c in free)
-            else None
-        ),
-    )
+    typed = [c for c in free if _types(c, profile) > 0.5]
+    give("type", max(typed, key=lambda c: _types(c, profile), default=None))
     give("unit", next((c for c in free if c.share(_is_unit) > 0.6), None))
     give("formula", next((c for c in free if c.share(_is_formula) > 0.6), None))
     words = [c for c in free if c.share(lambda cell: any(x.isalpha() for x in cell)) > 0.8]
-    give(
-        "name",
-        max((c for c in words if len(c.filled) >= 0.5 * len(c.cells)), key=lambda c: len(set(c.filled)), default=None),
-    )
-    few = [
-        c
-        for c in free
-        if c in words and len(set(c.filled)) <= max(2, 0.6 * len(c.filled)) and max(map(len, c.filled)) < 20
-    ]
-    give("type", next(iter(few), None))
-    give("description", max((c for c in free if c in words), key=lambda c: sum(map(len, c.filled)), default=None))
+    dense = [c for c in words if len(c.filled) >= 0.5 * len(c.cells)]
+    give("name", max(dense, key=lambda c: len(set(c.filled)), default=None))
+    words = [c for c in words if c in free]
+    few = (c for c in words if len(set(c.filled)) <= max(2, 0.6 * len(c.filled)) and max(map(len, c.filled)) < 20)
+    give("type", next(few, None))
+    give("description", max((c for c in words if c in free), key=lambda c: sum(map(len, c.filled)), default=None))
     kind = "fields" if "name" in taken and ({"at", "at_bytes", "bits", "bits_bytes", "type"} & taken) else ""
     return kind, [(column, guessed.get(id(column), "")) for column in columns]
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
+
 from icdgen.icd.wire_ids import DEFAULT_BITS
-from icdgen.importer.document import DOUBTFUL, Trouble
-from icdgen.importer.parts import NodeParts
+from icdgen.importer.document import DOUBTFUL, LIKELY, Trouble
 from icdgen.importer.understand import messages
-from icdgen.importer.understand.model import Listed, ReadEnum, ReadField, ReadMessage
-from icdgen.importer.understand.survey import Found
+from icdgen.importer.understand.model import Listed, NodeParts, ReadEnum, ReadField, ReadMessage
 from icdgen.importer.words import plain, squeezed, table_name
 
 
@@ -17,7 +17,7 @@ def listed(node: NodeParts, troubles: list[Trouble]) -> None:
     for message in node.messages:
         row = _row_of(message, rows)
         if row is None:
-            message.name = message.names[0] if message.names else ""
+            message.name = next(iter(message.names), "")
             if any(one.kind in ("", message.kind) for one in node.lists):
                 troubles.append(Trouble("IMP062", f"{message.table.title}: no list table names it", message.table.spot,
                                         "compare with the list tables"))  # fmt: skip
@@ -31,13 +31,9 @@ def listed(node: NodeParts, troubles: list[Trouble]) -> None:
     for row in rows:
         if not row.used:
             node.missing.append(row)
-            where = (
-                f"table {table_name(row.table_number)} is named for it"
-                if row.table_number
-                else "no table is named for it"
-            )
+            which = f"table {table_name(row.table_number)}" if row.table_number else "no table"
             troubles.append(
-                Trouble("IMP061", f"`{row.name}` is listed, and {where}, but no table describes it", row.spot,
+                Trouble("IMP061", f"`{row.name}` is listed, and {which} is named for it, but no table describes it", row.spot,
                         "held under `missing:`; was its table not understood?", sure=DOUBTFUL)
             )  # fmt: skip
 
@@ -57,34 +53,23 @@ def _row_of(message: ReadMessage, rows: list[Listed]) -> Listed | None:
 
 def _name(message: ReadMessage, row: Listed) -> None:
     """The name that caption and list agree on; the caption's where they do not."""
-    for name in message.names:
-        if plain(name) == plain(row.name):
-            message.name = name
-            return
-    message.name = message.names[0] if message.names else row.name
+    alike = [name for name in message.names if plain(name) == plain(row.name)]
+    message.name = next(iter(alike + message.names), row.name)
 
 
 def _compare(message: ReadMessage, row: Listed, troubles: list[Trouble]) -> None:
-    mine = {
-        "name": message.name,
-        "length": message.length,
-        "id": message.id,
-        "set_id": message.set_id,
-        "get_id": message.get_id,
-    }
-    theirs = {"name": row.name, "length": row.length, "id": row.id, "set_id": row.set_id, "get_id": row.get_id}
-    for key, value in theirs.items():
-        own = mine[key]
+    for key, what in _SAID.items():
+        own, value = getattr(message, key), getattr(row, key)
         if value is None or value == own or (key == "name" and plain(str(value)) == plain(str(own))):
             continue
         if own is None:
             setattr(message, key, value)
-            troubles.append(Trouble("IMP063", f"{message.table.title}: it does not say its {_SAID[key]}; the list says {value}",
+            troubles.append(Trouble("IMP063", f"{message.table.title}: it does not say its {what}; the list says {value}",
                                     message.table.spot, "taken from the list"))  # fmt: skip
             continue
         message.listed[key] = value
         troubles.append(
-            Trouble("IMP060", f"{message.table.title}: its {_SAID[key]} is `{own}`, the list (table {table_name(row.spot.table)}) "
+            Trouble("IMP060", f"{message.table.title}: its {what} is `{own}`, the list (table {table_name(row.spot.table)}) "
                     f"says `{value}`", message.table.spot, "the detail table is held, `listed:` keeps the other")
         )  # fmt: skip
 
@@ -92,30 +77,26 @@ def _compare(message: ReadMessage, row: Listed, troubles: list[Trouble]) -> None
 _SAID = {"name": "name", "length": "length", "id": "id", "set_id": "set id", "get_id": "get id"}
 
 
-def enums(
-    node: NodeParts,
-    nodes: list[NodeParts],
-    everything: list[tuple[Found, ReadEnum]],
-    runs: dict[int, int],
-    troubles: list[Trouble],
-) -> None:
+def enums(node: NodeParts, nodes: list[NodeParts], everything: list[ReadEnum], troubles: list[Trouble]) -> None:
     """Finds the enumeration of each enum field, and brings it within reach of the node."""
     for message in node.messages:
-        run = runs.get(id(message.table), 1)
         for field in message.fields:
-            if field.type == "enum":
-                _resolve(node, nodes, everything, run, message, field, troubles)
+            if field.type == "enum" and (chosen := _meant(node, everything, message, field, troubles)):
+                field.enum = _within_reach(node, nodes, chosen)
+            elif field.type == "enum":
+                field.type = "uint"
 
 
-def _resolve(
-    node: NodeParts, nodes: list[NodeParts], everything: list[tuple[Found, ReadEnum]], run: int, message: ReadMessage,
-    field: ReadField, troubles: list[Trouble],
-) -> None:  # fmt: skip
+def _meant(
+    node: NodeParts, everything: list[ReadEnum], message: ReadMessage, field: ReadField, troubles: list[Trouble]
+) -> ReadEnum | None:
+    """The enumeration that a field points to; None, and a finding, if there is none."""
     said = field.described
     where = f"{message.table.title}, field `{field.name}`"
-    numbered = next((enum for f, enum in everything if f.run == run and f.table.number == said.enum_table), None)
-    if numbered is None and said.enum_table is not None:
-        numbered = next((enum for f, enum in everything if f.table.number == said.enum_table), None)
+    of_number = [enum for enum in everything if enum.table.number == said.enum_table]
+    numbered = next((enum for enum in of_number if enum.table.run == message.table.run), None)
+    if said.enum_table is not None:
+        numbered = numbered or next(iter(of_number), None)
     titled = _by_title(said.enum_title, everything, node)
     chosen = numbered or titled
     if numbered and said.enum_title and titled is not None and squeezed(titled.name) != squeezed(numbered.name):
@@ -134,23 +115,17 @@ def _resolve(
             what = "it does not say where its values stand"
         troubles.append(Trouble("IMP050", f"{where}: {what}", field.spot,
                                 "held as uint; give it an enumeration by an erratum", "error"))  # fmt: skip
-        field.type = "uint"
-        return
-    field.enum = _within_reach(node, nodes, chosen)
+    return chosen
 
 
-def _by_title(title: str, everything: list[tuple[Found, ReadEnum]], node: NodeParts) -> ReadEnum | None:
+def _by_title(title: str, everything: list[ReadEnum], node: NodeParts) -> ReadEnum | None:
     wanted = squeezed(title)
     if not wanted:
         return None
-    near = [*node.enums, *(enum for _, enum in everything)]
-    for enum in near:
-        if wanted in (squeezed(enum.name), squeezed(enum.table.caption)):
-            return enum
-    for enum in near:  # a torn title
-        if len(wanted) > 5 and squeezed(enum.table.caption).startswith(wanted):
-            return enum
-    return None
+    near = [*node.enums, *everything]
+    whole = (enum for enum in near if wanted in (squeezed(enum.name), squeezed(enum.table.caption)))
+    torn = (enum for enum in near if len(wanted) > 5 and squeezed(enum.table.caption).startswith(wanted))
+    return next(itertools.chain(whole, torn), None)
 
 
 def _within_reach(node: NodeParts, nodes: list[NodeParts], enum: ReadEnum) -> str:
@@ -165,47 +140,52 @@ def _within_reach(node: NodeParts, nodes: list[NodeParts], enum: ReadEnum) -> st
 
 
 def complete(node: NodeParts, troubles: list[Trouble], id_bits: int = DEFAULT_BITS) -> None:
-    """What a message still lacks, and bits that no field covers."""
-    most = (1 << id_bits) - 1
-    kept = []
-    for message in node.messages:
-        title, spot = message.table.title, message.table.spot
-        if not message.lacks and (large := [i for i in message.ids if i is not None and i > most]):
-            wider = "in the profile, `node: {id_bits: 16}` makes room"
-            message.lacks = f"its id {large[0]} (0x{large[0]:X}) is above {most}: {wider}"
-        if message.lacks:
-            if message.lacks != "-":
-                troubles.append(Trouble("IMP037", f"{title}: {message.lacks}", spot, "it was left out", "error"))
-            continue
-        if all(value is None for value in message.ids) or not message.kind:
-            what = "no id" if message.kind else "nothing that says whether it is a telecommand or telemetry"
-            troubles.append(Trouble("IMP031", f"{title}: {what}; it was left out", spot,
-                                    "in the profile: `patterns: [\"{name} ({id})\"]`, or `defaults: {kind: telemetry}`"
-                                    if message.kind else "in the profile: `defaults: {kind: telemetry}`, or words under `kinds:`",
-                                    "error"))  # fmt: skip
-            continue
-        if not message.name:
-            message.name = (
-                f"Table {table_name(message.table.number)}" if message.table.number else f"Message {message.id}"
-            )
-            troubles.append(
-                Trouble("IMP025", f"{title}: nothing names the message", spot, "name it in the ICD", "error")
-            )
-        needed = max((f.end + 7) // 8 for f in message.fields) if message.fields else 0
-        if message.length is None:
-            message.length = needed
-            severity = "error" if messages.gaps(message) else "warning"
-            troubles.append(Trouble("IMP032", f"{title}: it does not say its length; the fields need {needed} "
-                                    f"byte{'s' if needed != 1 else ''}", spot, "look at the page", severity))  # fmt: skip
-        elif needed > message.length:
-            troubles.append(Trouble("IMP033", f"{title}: its fields need {needed} bytes, its length is {message.length}",
-                                    spot, "look at the page; `icdgen check` tells the fields"))  # fmt: skip
-        if message.length and not message.fields:
-            troubles.append(Trouble("IMP034", f"{title}: it has {message.length} bytes and no field", spot,
-                                    "look at the page", sure=DOUBTFUL))  # fmt: skip
-        elif free := messages.gaps(message):
-            bits = ", ".join(f"{a}" if a == b else f"{a} to {b}" for a, b in free)
-            troubles.append(Trouble("IMP035", f"{title}: no field covers bit {bits}", spot,
-                                    "such bits are reserved; make sure that no row was lost", "note"))  # fmt: skip
-        kept.append(message)
-    node.messages = kept
+    """What messages still lack, and bits that no field covers; those that cannot be held are left out."""
+    node.messages = [message for message in node.messages if _is_held(message, (1 << id_bits) - 1, troubles)]
+
+
+def _is_held(message: ReadMessage, most: int, troubles: list[Trouble]) -> bool:
+    """Whether an ICD can hold the message; ``most`` is the largest id."""
+
+    def say(code: str, what: str, help: str, severity: str = "warning", sure: str = LIKELY) -> None:
+        troubles.append(Trouble(code, f"{message.table.title}: {what}", message.table.spot, help, severity, sure))
+
+    if not message.lacks and (large := [i for i in message.ids if i is not None and i > most]):
+        wider = "in the profile, `node: {id_bits: 16}` makes room"
+        message.lacks = f"its id {large[0]} (0x{large[0]:X}) is above {most}: {wider}"
+    if message.lacks:
+        if message.lacks != "-":
+            say("IMP037", message.lacks, "it was left out", "error")
+        return False
+    by_kind = "`defaults: {kind: telemetry}`"
+    if not message.kind:
+        what = "nothing that says whether it is a telecommand or telemetry; it was left out"
+        say("IMP031", what, f"in the profile: {by_kind}, or words under `kinds:`", "error")
+        return False
+    if all(value is None for value in message.ids):
+        say(
+            "IMP031",
+            "no id; it was left out",
+            f'in the profile: `patterns: ["{{name}} ({{id}})"]`, or {by_kind}',
+            "error",
+        )
+        return False
+    if not message.name:
+        number = message.table.number
+        message.name = f"Table {table_name(number)}" if number else f"Message {message.id}"
+        say("IMP025", "nothing names the message", "name it in the ICD", "error")
+    needed = max(((field.end + 7) // 8 for field in message.fields), default=0)
+    if message.length is None:
+        message.length = needed
+        severity = "error" if messages.gaps(message) else "warning"
+        what = f"it does not say its length; the fields need {needed} byte{'s' if needed != 1 else ''}"
+        say("IMP032", what, "look at the page", severity)
+    elif needed > message.length:
+        what = f"its fields need {needed} bytes, its length is {message.length}"
+        say("IMP033", what, "look at the page; `icdgen check` tells the fields")
+    if message.length and not message.fields:
+        say("IMP034", f"it has {message.length} bytes and no field", "look at the page", sure=DOUBTFUL)
+    elif free := messages.gaps(message):
+        bits = ", ".join(f"{a}" if a == b else f"{a} to {b}" for a, b in free)
+        say("IMP035", f"no field covers bit {bits}", "such bits are reserved; make sure that no row was lost", "note")
+    return True

@@ -166,31 +166,27 @@ def _look_over(pages: list[Page], document: Document, name: str) -> None:
         help = "run it through a text recognition first, for instance `ocrmypdf`, and check its figures twice"
         raise _refused(name, f"the PDF holds only {what}: there is no text layer", help)
     for page in pages:
-        if page.failed:
-            document.troubles.append(
-                Trouble("IMP010", f"the page cannot be read ({page.failed})", Spot(page.number),
-                        "what stands on it is missing from the ICD", "error")
-            )  # fmt: skip
-        elif not page.words and page.images:
-            document.troubles.append(
-                Trouble("IMP011", "the page is a picture without text", Spot(page.number),
-                        "look whether it shows a table: it is missing from the ICD")
-            )  # fmt: skip
-        if page.unseen:
-            document.troubles.append(
-                Trouble("IMP013", f"{page.unseen} words stand outside the visible page; they were left out",
-                        Spot(page.number), "look whether the page is cut off", "note")
-            )  # fmt: skip
-        if page.turned:
-            document.troubles.append(
-                Trouble("IMP014", f"{page.turned} words stand on their side; they were left out", Spot(page.number),
-                        "look whether a table has turned labels, or stands on its side as a whole", "note")
-            )  # fmt: skip
-        if page.unmapped:
-            document.troubles.append(
-                Trouble("IMP012", f"{page.unmapped} characters of the page have no meaning: the PDF does not say which they are",
-                        Spot(page.number), "compare what was read with the page")
-            )  # fmt: skip
+        document.troubles += [trouble._replace(spot=Spot(page.number)) for trouble in _of_page(page)]
+
+
+def _of_page(page: Page) -> Iterator[Trouble]:
+    """What of a page cannot be read; where it stands is added."""
+    if page.failed:
+        help = "what stands on it is missing from the ICD"
+        yield Trouble("IMP010", f"the page cannot be read ({page.failed})", help=help, severity="error")
+    elif not page.words and page.images:
+        help = "look whether it shows a table: it is missing from the ICD"
+        yield Trouble("IMP011", "the page is a picture without text", help=help)
+    if page.unseen:
+        what = f"{page.unseen} words stand outside the visible page; they were left out"
+        yield Trouble("IMP013", what, help="look whether the page is cut off", severity="note")
+    if page.turned:
+        what = f"{page.turned} words stand on their side; they were left out"
+        help = "look whether a table has turned labels, or stands on its side as a whole"
+        yield Trouble("IMP014", what, help=help, severity="note")
+    if page.unmapped:
+        what = f"{page.unmapped} characters of the page have no meaning: the PDF does not say which they are"
+        yield Trouble("IMP012", what, help="compare what was read with the page")
 
 
 def _captions(page: Page, profile: Profile) -> int:

@@ -9,7 +9,7 @@ from itertools import pairwise
 from icdgen.icd.units import SPELLINGS, STANDARD
 from icdgen.importer.document import DOUBTFUL, Header, Table, Trouble
 from icdgen.importer.profile import Profile
-from icdgen.importer.understand import bitfields, counting, descriptions, formulas, numbers, types
+from icdgen.importer.understand import counting, descriptions, formulas, numbers, types
 from icdgen.importer.understand.counting import Extent, Units
 from icdgen.importer.understand.model import ReadField
 from icdgen.importer.understand.rows import Entry, entries
@@ -256,7 +256,7 @@ def _field(
         return ReadField(name, at, bits // count, kind, described, entry.spot, count)
     made = ReadField(name, at, bits, kind, described, entry.spot)
     if kind == "uint" and bits <= MOST_BITS:
-        found = bitfields.read(entry.get("description"), bits)
+        found = descriptions.bits(entry.get("description"), bits)
         if found is None:
             troubles.append(Trouble("IMP040", f"{line.where}: the bits that it names overlap, or do not fit into it: "
                                     f"`{entry.get('description')[:160]}`", entry.spot, "read the page"))  # fmt: skip

@@ -1,12 +1,13 @@
-"""What was read of a manual, before it is dealt out to nodes."""
+"""What was read of a manual, and what of it belongs to each node."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 from icdgen.importer.document import Spot, Table
-from icdgen.importer.understand.bitfields import Bits
-from icdgen.importer.understand.descriptions import Described
+from icdgen.importer.profile import NodeWords
+from icdgen.importer.understand.descriptions import Bits, Described
 
 
 @dataclass(slots=True)
@@ -107,3 +108,31 @@ class ReadLog:
 
 
 Thing = ReadMessage | ReadEnum | ReadList | ReadLog
+
+
+@dataclass
+class NodeParts:
+    """What belongs to one node, before it becomes an ICD."""
+
+    name: str
+    title: str
+    shared: bool = False
+    words: NodeWords | None = None
+    messages: list[ReadMessage] = field(default_factory=list)
+    enums: list[ReadEnum] = field(default_factory=list)
+    lists: list[ReadList] = field(default_factory=list)
+    logs: list[ReadLog] = field(default_factory=list)
+    include: list[str] = field(default_factory=list)
+    missing: list[Listed] = field(default_factory=list)
+
+    def add(self, thing: Thing) -> None:
+        """Puts it to its like."""
+        by_kind: dict[type, list[Any]] = {
+            ReadMessage: self.messages, ReadEnum: self.enums, ReadList: self.lists, ReadLog: self.logs,
+        }  # fmt: skip
+        by_kind[type(thing)].append(thing)
+
+    @property
+    def holds(self) -> bool:
+        """Whether there is anything for an ICD."""
+        return bool(self.messages or self.enums or self.logs)
