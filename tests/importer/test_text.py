@@ -181,3 +181,10 @@ def test_a_text_without_anything_to_import_is_a_finding(tmp_path, data, message)
     with pytest.raises(Findings) as error:
         imported(tmp_path / "pump.txt")
     assert message in error.value.findings[0].message
+
+
+def test_a_field_that_names_no_table_has_none_of_the_enumerations_without_numbers(tmp_path):
+    tables = MESSAGE.replace(" Possible values are in Table 8: PumpMode Enumeration Values", "")
+    result, tree = read(tmp_path, tables + ENUM.replace("Table 8: PumpMode Enumeration Values", "PumpMode"))
+    assert "field `Mode`: it does not say where its values stand" in found(result, "IMP050")[0]
+    assert tree["messages"][0]["fields"][1]["type"] == "uint"

@@ -93,10 +93,9 @@ def _meant(
     """The enumeration that a field points to; None, and a finding, if there is none."""
     said = field.described
     where = f"{message.table.title}, field `{field.name}`"
-    of_number = [enum for enum in everything if enum.table.number == said.enum_table]
-    numbered = next((enum for enum in of_number if enum.table.run == message.table.run), None)
-    if said.enum_table is not None:
-        numbered = numbered or next(iter(of_number), None)
+    of_number = [enum for enum in everything if enum.table.number == said.enum_table is not None]
+    of_number.sort(key=lambda enum: enum.table.run != message.table.run)  # where numbers start anew, several have it
+    numbered = next(iter(of_number), None)
     titled = _by_title(said.enum_title, everything, node)
     chosen = numbered or titled
     if numbered and said.enum_title and titled is not None and squeezed(titled.name) != squeezed(numbered.name):
