@@ -21,10 +21,13 @@ _NOBODY = ("", "Vector__XXX")  # as a DBC names a sender that is not known
 
 
 class _Database:
-    """What the four kinds have in common. ``form`` is cantools' name of one."""
+    """What the four kinds have in common. ``name`` is cantools' name of one, too, and ``begins`` tells a file of it."""
 
     needs: tuple[str, ...] = ("cantools",)
-    name = form = title = ""
+    name = title = begins = ""
+
+    def knows(self, start: str) -> bool:
+        return re.search(self.begins, start) is not None
 
     def read(self, file: str, data: bytes) -> Definitions:
         """Raises `Findings` for a file that cantools cannot read."""
@@ -37,46 +40,38 @@ class _Database:
     def database(self, file: str, data: bytes, to: Definitions) -> Any:
         """cantools' own reading."""
         try:
-            return self.load(data, to)
+            return self.load(_text(data), to)
         except Exception as error:  # its parsers raise whatever comes up
             found = re.search(r"at line (\d+)", str(error))
             said = line(str(error), 300) or type(error).__name__
             raise unreadable(file, f"not {self.title}: {said}", "", int(found[1]) if found else 1) from None
 
-    def load(self, data: bytes, to: Definitions) -> Any:
+    def load(self, text: str, to: Definitions) -> Any:
         """What `database` asks of cantools."""
-        return self.parsed(_text(data))
-
-    def parsed(self, text: str) -> Any:
         from cantools import database
 
-        logging.getLogger("cantools").addHandler(
-            _UNHEARD
-        )  # what it notes by the way is found again, and said as a finding
-        return database.load_string(text, self.form, strict=False)
+        # What it notes by the way is found again, and said as a finding.
+        logging.getLogger("cantools").addHandler(_UNHEARD)
+        return database.load_string(text, self.name, strict=False)
 
 
 class Dbc(_Database):
     """Vector's CAN databases."""
 
-    name = form = "dbc"
+    name = "dbc"
     title = "a CAN database (DBC)"
+    begins = r"(?m)^(?:BO_ \d+ |BU_\s*:)"
 
-    def knows(self, start: str) -> bool:
-        return bool(re.search(r"^(?:BO_ \d+ |BU_\s*:)", start, re.MULTILINE))
-
-    def load(self, data: bytes, to: Definitions) -> Any:
-        return dbc.mended(_text(data).replace("\r\n", "\n"), self.parsed, to)
+    def load(self, text: str, to: Definitions) -> Any:
+        return dbc.mended(text.replace("\r\n", "\n"), lambda mended: super(Dbc, self).load(mended, to), to)
 
 
 class Sym(_Database):
     """PEAK's symbol files."""
 
-    name = form = "sym"
+    name = "sym"
     title = "a symbol file (SYM)"
-
-    def knows(self, start: str) -> bool:
-        return bool(re.match(r"\s*FormatVersion\s*=", start))
+    begins = r"\A\s*FormatVersion\s*="
 
 
 class _Xml(_Database):
@@ -94,14 +89,14 @@ class _Xml(_Database):
 class Kcd(_Xml):
     """Kayak's CAN definitions."""
 
-    name, form, root = "kcd", "kcd", "NetworkDefinition"
+    name, root = "kcd", "NetworkDefinition"
     title = "a CAN definition (KCD)"
 
 
 class Arxml(_Xml):
     """AUTOSAR's system descriptions, as far as they describe CAN."""
 
-    name, form, root = "arxml", "arxml", "AUTOSAR"
+    name, root = "arxml", "AUTOSAR"
     title = "an AUTOSAR system description (ARXML)"
     most_bytes = 64_000_000  # it says everything at length
 

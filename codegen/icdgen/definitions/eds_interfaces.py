@@ -93,7 +93,7 @@ class Interfaces:
             one.interface = one.interface if len(found[one.container]) > 1 else ""
         return sent, alone
 
-    def _leaves(self, container: Element) -> Iterator[Element]:
+    def _leaves(self, container: Element) -> list[Element]:
         """The containers of the file that are based on one, and on which none is based; it itself if there are none."""
         left, seen = [container], {container}
         leaves: list[Element] = []
@@ -111,7 +111,7 @@ class Interfaces:
             left += reversed(more)
             if not more and one in self._is_own and not self._is_abstract(one):
                 leaves.append(one)
-        yield from leaves
+        return leaves
 
     def _circles(self) -> set[Element]:
         """Types that use themselves, or those that do: nothing else would tell of them."""

@@ -187,10 +187,14 @@ class Layout:
         piece.item |= summary(str(one.get("doc") or "")) | unit(_unit(one))
         part = Part(where, piece.item, piece, self.at, counter=counter)
         self._valid(part, one.get("valid"), scope)
+        self._fit(part)
+        return part
+
+    def _fit(self, part: Part) -> None:
+        """Adds a part if there is room for it. Raises `NotHeld`."""
         if self.ends and self.at + part.bits > self.ends[-1]:
             raise NotHeld("it goes beyond the bytes that are there for it")
         self._add(part)
-        return part
 
     def _add(self, part: Part) -> None:
         self.parts.append(part)
@@ -242,10 +246,7 @@ class Layout:
         known = self.file.structs.setdefault(id(inner), {"name": inner.name, "length": layout.at // 8, "parts": layout})
         if known["length"] != layout.at // 8:
             raise NotHeld("they are not as long as elsewhere")
-        part = Part(where, item, Piece(item, layout.at), self.at, counter=counter)
-        if self.ends and self.at + part.bits > self.ends[-1]:
-            raise NotHeld("it goes beyond the bytes that are there for it")
-        self._add(part)
+        self._fit(Part(where, item, Piece(item, layout.at), self.at, counter=counter))
 
     def _as_bytes(self, one: Map, where: tuple[str, ...], why: NotHeld, known: bool) -> None:
         """Holds what cannot be told further as bytes: as many as it has, or all that are left. Raises `NotHeld` in a struct."""
@@ -255,28 +256,30 @@ class Layout:
             size = sized(one) if known and "repeat" not in one else None
         except NotHeld:
             size = None
-        line_number = one.place.line
-        message = f"`{' '.join(where)}` is not held: {why}"
+        is_end = self.open or size is None
         if self.open:
-            self.file.note(AS_BYTES, message, "nothing of it is held", "error", line_number)
-            raise Ended
-        self._align()
-        if size is None and self.ends:
-            size = (self.ends[-1] - self.at) // 8
+            held = "nothing of it is held"
+        elif size is not None:
+            held = "its bytes are held"
             self._bytes(where, 8 * size)
+        elif self.ends:
+            held = "its bytes are held, with those of what follows"
+            self._align()
+            if self.ends[-1] > self.at:
+                self._bytes(where, self.ends[-1] - self.at)
             self.at = self.ends[-1]
-            self.file.note(AS_BYTES, message, "its bytes are held, with those of what follows", "error", line_number)
+        else:
+            held = "the bytes up to the end of the frame are held"
+            self._bytes(where, 0)
+        self.file.note(AS_BYTES, f"`{' '.join(where)}` is not held: {why}", held, "error", one.place.line)
+        if is_end:
             raise Ended
-        self._bytes(where, 8 * (size or 0), is_open=size is None)
-        if size is None:
-            self.file.note(AS_BYTES, message, "the bytes up to the end of the frame are held", "error", line_number)
-            raise Ended
-        self.file.note(AS_BYTES, message, "its bytes are held", "error", line_number)
 
-    def _bytes(self, where: tuple[str, ...], bits: int, is_open: bool = False) -> None:
-        if bits > 0 or is_open:
-            item: Item = {"type": "bytes"}
-            self._add(Part(where, item, Piece(item, bits), self.at, is_whole=False))
+    def _bytes(self, where: tuple[str, ...], bits: int) -> None:
+        """Bytes without a meaning; 0 bits are all that are left."""
+        self._align()
+        item: Item = {"type": "bytes"}
+        self._add(Part(where, item, Piece(item, bits), self.at, is_whole=False))
 
     # what depends on values
 

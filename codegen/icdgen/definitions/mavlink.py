@@ -6,6 +6,7 @@ import os
 import re
 from collections.abc import Iterator
 from fractions import Fraction
+from itertools import accumulate
 from pathlib import Path
 from typing import Any, NamedTuple
 from xml.etree.ElementTree import Element
@@ -54,6 +55,7 @@ class MavLink2:
     name = "mavlink"
     title = "a MAVLink dialect"
     needs: tuple[str, ...] = ("defusedxml",)
+    starts_with = "0xFD"
     id_bits = 24
     has_extensions = True
 
@@ -77,13 +79,12 @@ class MavLink2:
             )
             for element in root.iterfind("messages/message"):
                 name, id = element.get("name", ""), _number(element.get("id", ""))
-                if id is None or id >> self.id_bits:
-                    if id is None or self.has_extensions:
-                        to.total += 1
-                        to.left_out(name, f"its id is `{element.get('id', '')}`")
-                    continue
+                if id is not None and id >> self.id_bits and not self.has_extensions:
+                    continue  # of version 2 alone
                 to.total += 1
                 try:
+                    if id is None or id >> self.id_bits:
+                        raise NotHeld(f"its id is `{element.get('id', '')}`")
                     seeds[name], made = self._message(element, name, id, enums, version, to)
                 except NotHeld as why:
                     to.left_out(name, why)
@@ -121,22 +122,31 @@ class MavLink2:
         made["length"] = at // 8
         if at <= 8:
             made.pop("may_end_early", None)  # one byte is always sent
-        if not fields:
-            return _extra(name, base), made
-        return _extra(name, base), {**made, "fields": fields}
+        return _extra(name, base), {**made, "fields": fields} if fields else made
 
     def envelope(self) -> Item:
-        """The section `protocol`; the system and the component are those that are usual."""
-        header = [
-            {"at": 0, "bits": 8, "role": "sync", "value": Spelled("0xFD")},
-            {"at": 8, "bits": 8, "role": "length"},
-            {"at": 16, "bits": 8, "role": "constant", "value": 0},  # incompatibility flags: no signature
-            {"at": 24, "bits": 8, "role": "flags"},
-            {"at": 32, "bits": 8, "role": "sequence"},
-            *_senders(40),
-            {"at": 56, "bits": 24, "role": "id"},
+        """The section `protocol`; the system and the component are those of a ground station and of an autopilot."""
+        flags: list[Item] = [
+            {"bits": 8, "role": "constant", "value": 0},  # incompatibility flags: no signature
+            {"bits": 8, "role": "flags"},
         ]
-        return _stream(header)
+        parts: list[Item] = [
+            {"bits": 8, "role": "sync", "value": Spelled(self.starts_with)},
+            {"bits": 8, "role": "length"},
+            *(flags if self.has_extensions else ()),
+            {"bits": 8, "role": "sequence"},
+            {"bits": 8, "role": "source", "value": {"telecommand": 255, "telemetry": 1}},
+            {"bits": 8, "role": "type", "value": {"telecommand": 190, "telemetry": 1}},
+            {"bits": self.id_bits, "role": "id"},
+        ]
+        places = accumulate((one["bits"] for one in parts), initial=0)
+        header = [{"at": at, **one} for at, one in zip(places, parts, strict=False)]
+        trailer = [{"at": 0, "bits": 16, "role": "checksum", "checksum": "x25"}]
+        checksum = {**_X25, "covers": {"from": "length", "to": "data"}, "seeds": {}}
+        return {
+            "stream": {"delimited_by": "length", "header": header, "trailer": trailer},
+            "checksums": {"x25": checksum},
+        }
 
 
 class MavLink1(MavLink2):
@@ -144,38 +154,12 @@ class MavLink1(MavLink2):
 
     name = "mavlink1"
     title = "a MAVLink dialect, of version 1"
+    starts_with = "0xFE"
     id_bits = 8
     has_extensions = False
 
     def knows(self, start: str) -> bool:
         return False  # the XML is the same: `--kind mavlink1` asks for it
-
-    def envelope(self) -> Item:
-        header = [
-            {"at": 0, "bits": 8, "role": "sync", "value": Spelled("0xFE")},
-            {"at": 8, "bits": 8, "role": "length"},
-            {"at": 16, "bits": 8, "role": "sequence"},
-            *_senders(24),
-            {"at": 40, "bits": 8, "role": "id"},
-        ]
-        return _stream(header)
-
-
-def _senders(at: int) -> list[Item]:
-    """System and component: those of a ground station, and of an autopilot."""
-    return [
-        {"at": at, "bits": 8, "role": "source", "value": {"telecommand": 255, "telemetry": 1}},
-        {"at": at + 8, "bits": 8, "role": "type", "value": {"telecommand": 190, "telemetry": 1}},
-    ]
-
-
-def _stream(header: list[Item]) -> Item:
-    trailer = [{"at": 0, "bits": 16, "role": "checksum", "checksum": "x25"}]
-    checksum = {**_X25, "covers": {"from": "length", "to": "data"}, "seeds": {}}
-    return {
-        "stream": {"delimited_by": "length", "header": header, "trailer": trailer},
-        "checksums": {"x25": checksum},
-    }
 
 
 def _with_included(file: str, data: bytes) -> Iterator[tuple[str, Element]]:
@@ -265,12 +249,9 @@ def _formula(factor: str, multiplier: str) -> str:
         scale = Fraction(found[1]) if found else Fraction(1)
     except ValueError:
         return ""
-    parts = [
-        part for part in (factor if factor != "1" else "", found[1].lower() if found and scale != 1 else "") if part
-    ]
-    return (
-        "raw" + "".join(f"*{part}" for part in parts) + (f"/{found[2]}" if found and found[2] else "") if parts else ""
-    )
+    text = "" if factor == "1" else f"*{factor}"
+    text += f"*{found[1].lower()}" if found and scale != 1 else ""
+    return f"raw{text}" + (f"/{found[2]}" if found and found[2] else "") if text else ""
 
 
 def _named(where: str, enum: Item, kind: str, bits: int, to: Definitions) -> Item:

@@ -40,9 +40,8 @@ class Sent(Protocol):
     name: str
     kind: str
     header: Header | None  # None where it does not begin with one
-    front: (
-        tuple[Hashable, int] | None
-    )  # what it begins with, as in `told`, and its bits, if a header can have it as an id
+    # What it begins with, as in `told`, and its bits, if a header can have it as an id:
+    front: tuple[Hashable, int] | None
     told: dict[Hashable, int]  # by what tells it: the only value of that
 
     def message(self, id: int, start: int, to: Definitions) -> Item:
@@ -97,12 +96,8 @@ def _packets(found: Sequence[Sent], network: Network, to: Definitions) -> None:
                 {"at": 3, "bits": 1, "role": "constant", "value": {TELECOMMAND: 1, TELEMETRY: 0}},
                 {"at": 4, "bits": 1, "role": "flags", **_usual(held)},
                 {"at": 5, "bits": APID_BITS, "role": "id"},
-                {
-                    "at": 16,
-                    "bits": 2,
-                    "role": "type",
-                    "value": 3,
-                },  # a packet of its own, unless the sender says otherwise
+                # a packet of its own, unless the sender says otherwise
+                {"at": 16, "bits": 2, "role": "type", "value": 3},
                 {"at": 18, "bits": 14, "role": "sequence", "per": "id"},
                 {"at": 32, "bits": 16, "role": "length", "plus": -1},
             ],
