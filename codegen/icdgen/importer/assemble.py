@@ -91,22 +91,19 @@ def _twins(survey: Survey) -> dict[int, int]:
 
 
 def _by_profile(one: Found, profile: Profile) -> str | None:
+    number = one.table.number
     for words in profile.nodes:
         if words.tables is not None or words.group is not None:
             in_group = words.group is None or words.group == one.table.run
-            number = one.table.number
             in_tables = words.tables is None or (number is not None and words.tables[0] <= number <= words.tables[1])
             if in_group and in_tables:
                 return words.name
-            continue
-        if not words.match:
+        elif not words.match:
             return words.name  # a profile with one node and nothing to choose by
-        texts = list(one.headings)
-        if isinstance(one.thing, ReadList):
-            texts = [one.thing.node or one.table.caption]
-            if any(_says(text, match) for text in texts for match in words.match):
+        elif isinstance(one.thing, ReadList):
+            text = one.thing.node or one.table.caption
+            if any(_says(text, match) for match in words.match):
                 return words.name
-            continue
     return None
 
 

@@ -45,15 +45,10 @@ def findings(troubles: Sequence[Trouble], file: str, colour: bool = False) -> li
         lines += [f"  = help: {printable(trouble.help)}"] if trouble.help else []
         lines.append("")
     if notes:
-        lines += [f"{_paint('note', 'note', colour)}[{t.code}] {_short(t)}: {printable(t.message)}" for t in notes]
+        note = _paint("note", "note", colour)
+        lines += [f"{note}[{t.code}] {t.spot.place or 'the document'}: {printable(t.message)}" for t in notes]
         lines.append("")
     return lines
-
-
-def _short(trouble: Trouble) -> str:
-    if trouble.spot.page is None and trouble.spot.line is None:
-        return "the document"
-    return f"page {trouble.spot.page}" if trouble.spot.page is not None else f"line {trouble.spot.line}"
 
 
 def summary(result: Result) -> list[str]:

@@ -27,16 +27,6 @@ class Box(NamedTuple):
     def height(self) -> float:
         return self.bottom - self.top
 
-    def join(self, other: Box) -> Box:
-        """The smallest box around both, which stand on one page."""
-        return Box(
-            self.page,
-            min(self.x0, other.x0),
-            min(self.top, other.top),
-            max(self.x1, other.x1),
-            max(self.bottom, other.bottom),
-        )
-
 
 class Spot(NamedTuple):
     """Where something stands in the manual: a page of a PDF, a line of a text, the number of a table."""
@@ -44,9 +34,12 @@ class Spot(NamedTuple):
     page: int | None = None
     line: int | None = None
     table: int | None = None
-    order: int | None = (
-        None  # which table of the document it is, counted from 0: numbers may be missing, or occur twice
-    )
+    order: int | None = None  # which table it is, counted from 0: numbers may be missing, or occur twice
+
+    @property
+    def place(self) -> str:
+        """``page 12``, ``line 482``; "" for the document as a whole."""
+        return f"page {self.page}" if self.page is not None else f"line {self.line}" if self.line is not None else ""
 
 
 @dataclass(slots=True)

@@ -78,7 +78,7 @@ def _stake(troubles: list[Trouble]) -> tuple[int, int]:
 def _list(troubles: list[Trouble], linked: bool = False) -> str:
     items = []
     for t in troubles:
-        place = f" (page {t.spot.page})" if t.spot.page else f" (line {t.spot.line})" if t.spot.line else ""
+        place = f" ({t.spot.place})" if t.spot.place else ""
         help = f" <i>{html.escape(t.help)}.</i>" if t.help else ""
         if linked and t.spot.order is not None:
             place += f' <a href="#table-{t.spot.order}">table</a>'

@@ -16,24 +16,21 @@ from icdgen.importer.words import squeezed, table_name
 
 def tree(node: NodeParts, document: Document, profile: Profile, prose: bool, troubles: list[Trouble]) -> dict[str, Any]:
     """The ICD of a node as plain mappings and lists, in the order of the manual."""
-    made: dict[str, Any] = {"icdgen": 1, "node": head(node, document, profile)}
-    if node.include:
-        made["include"] = node.include
-    if declared := _units(node, troubles):
-        made["units"] = declared
-    if node.enums:
-        made["enums"] = [_enum(one, prose) for one in node.enums]
-    if node.messages:
-        made["messages"] = [_message(one, prose) for one in node.messages]
-        if announced := _announced(made["messages"]):
-            made["formula_for"] = announced
-    if node.logs:
-        made["loggable"] = [
-            {"bit": b.bit, "id": b.id, **({"name": b.name} if b.name else {})} for log in node.logs for b in log.bits
-        ]
-    if missing := [entry for row in node.missing if (entry := _missing(row))]:
-        made["missing"] = missing
-    return made
+    messages = [_message(one, prose) for one in node.messages]
+    return {"icdgen": 1, "node": head(node, document, profile)} | _given(
+        include=node.include,
+        units=_units(node, troubles),
+        enums=[_enum(one, prose) for one in node.enums],
+        messages=messages,
+        formula_for=_announced(messages),
+        loggable=[{"bit": b.bit, "id": b.id} | _given(name=b.name) for log in node.logs for b in log.bits],
+        missing=[entry for row in node.missing if (entry := _missing(row))],
+    )
+
+
+def _given(**keys: Any) -> dict[str, Any]:
+    """The keys under which something stands."""
+    return {key: value for key, value in keys.items() if value}
 
 
 def _announced(messages: list[dict[str, Any]]) -> dict[str, str]:
@@ -69,15 +66,9 @@ def _source(table: Table) -> dict[str, Any]:
 
 
 def _enum(one: ReadEnum, prose: bool) -> dict[str, Any]:
-    made: dict[str, Any] = {"name": one.name}
-    if source := _source(one.table):
-        made["source"] = source
-    if also := [s for s in (_source(table) for table in one.also) if s]:
-        made["also"] = also
-    made["members"] = [
-        {"value": m.value, "name": m.name, **_prose(m.name, m.summary, prose)} for m in one.members
-    ]  # fmt: skip
-    return made
+    also = [source for table in one.also if (source := _source(table))]
+    members = [{"value": m.value, "name": m.name, **_prose(m.name, m.summary, prose)} for m in one.members]
+    return {"name": one.name, **_given(source=_source(one.table), also=also, members=members)}
 
 
 def _prose(name: str, text: str, wanted: bool) -> dict[str, Any]:
@@ -86,41 +77,26 @@ def _prose(name: str, text: str, wanted: bool) -> dict[str, Any]:
 
 
 def _message(one: ReadMessage, prose: bool) -> dict[str, Any]:
-    made: dict[str, Any] = {"name": one.name}
-    for key in ("id", "set_id", "get_id"):
-        if (value := getattr(one, key)) is not None:
-            made[key] = value
-    made |= {"kind": one.kind, "length": one.length}
-    if one.group:
-        made["group"] = one.group
-    if source := _source(one.table):
-        made["source"] = source
-    made |= _prose(one.name, one.summary, prose)
-    if one.listed:
-        made["listed"] = one.listed
-    if one.fields:
-        made["fields"] = [_field(f, prose) for f in one.fields]
-    return made
+    ids = {key: value for key in ("id", "set_id", "get_id") if (value := getattr(one, key)) is not None}
+    return {
+        "name": one.name, **ids, "kind": one.kind, "length": one.length,
+        **_given(group=one.group, source=_source(one.table)),
+        **_prose(one.name, one.summary, prose),
+        **_given(listed=one.listed, fields=[_field(field, prose) for field in one.fields]),
+    }  # fmt: skip
 
 
 def _field(one: ReadField, prose: bool) -> dict[str, Any]:
-    made: dict[str, Any] = {"at": one.at, "bits": one.bits, "name": one.name, "type": one.type}
-    if one.count:
-        made["count"] = one.count
-    if one.enum:
-        made["enum"] = one.enum
     said = one.described
-    if said.unit:
-        made["unit"] = SIGNS.get(said.unit, said.unit)
-    if said.formula:
-        made["formula"] = said.formula
-    if said.formula_for:
-        made["formula_for"] = said.formula_for
-    if said.const:
-        made["const"] = Spelled(said.const)
-    if one.bitfields:
-        made["bitfields"] = [{"at": bits.at, "bits": bits.bits, "name": bits.name} for bits in one.bitfields]
-    return made | _prose(one.name, said.rest, prose)
+    return {
+        "at": one.at, "bits": one.bits, "name": one.name, "type": one.type,
+        **_given(
+            count=one.count, enum=one.enum, unit=SIGNS.get(said.unit, said.unit), formula=said.formula,
+            formula_for=said.formula_for, const=said.const and Spelled(said.const),
+            bitfields=[bits._asdict() for bits in one.bitfields],
+        ),
+        **_prose(one.name, said.rest, prose),
+    }  # fmt: skip
 
 
 def _units(node: NodeParts, troubles: list[Trouble]) -> list[dict[str, Any]]:

@@ -23,7 +23,7 @@ class NodeWords:
     """What a profile says about one node: the words by which it is found, and the head of its file."""
 
     name: str
-    match: list[str] = field(default_factory=list)  # words in list captions or section headings
+    match: list[str] = field(default_factory=list)  # words in list captions
     tables: tuple[int, int] | None = None  # first and last table, where no words tell
     group: int | None = None  # which run of table numbers, where the numbers start anew
     head: dict[str, Any] = field(default_factory=dict)

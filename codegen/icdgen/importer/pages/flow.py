@@ -5,8 +5,8 @@ from __future__ import annotations
 import itertools
 import re
 from collections import Counter
+from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Any
 
 from icdgen.importer import headings, labels
 from icdgen.importer.document import Box
@@ -14,7 +14,7 @@ from icdgen.importer.pages import columns, furniture, gutter
 from icdgen.importer.pages.bands import Band, is_key
 from icdgen.importer.pages.columns import Columns
 from icdgen.importer.pages.extract import Page
-from icdgen.importer.pages.lines import Line, lines, runs, text_of
+from icdgen.importer.pages.lines import Line, box_around, lines, runs, text_of
 from icdgen.importer.pages.rules import Region, joined, regions
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import folded
@@ -48,21 +48,12 @@ class Mark:
     text: str
     box: Box
     size: float
-    style: str
     number: str = ""
     strong: bool = False  # reads like a heading without a number
     cells: list[tuple[float, str]] = field(default_factory=list)  # where its runs of words begin, and they
 
 
 Item = Piece | Mark
-
-
-@dataclass(slots=True)
-class Type:
-    """The size and style that most of the text is set in."""
-
-    size: float
-    style: str
 
 
 def items(pages: list[Page], profile: Profile) -> list[Item]:
@@ -73,25 +64,13 @@ def items(pages: list[Page], profile: Profile) -> list[Item]:
         inside = ruled[page.number]
         words = [w for w in page.words if not any(r.holds(w) for r in inside)]
         loose[page.number] = lines(words)
-    body = _body(loose)
     kept = furniture.without(pages, loose, lambda line, near: _is_of_a_table(line, near, profile))
     made: list[Item] = []
-    flow = _Flow(profile, body)
+    flow = _Flow(profile, itertools.chain.from_iterable(loose.values()))
     for page in pages:
-        parts = gutter.parts(page, ruled[page.number], kept[page.number])
-        for regions_of, lines_of in parts:
+        for regions_of, lines_of in gutter.parts(page, ruled[page.number], kept[page.number]):
             made += flow.page(page, regions_of, lines_of)
     return made
-
-
-def _body(loose: dict[int, list[Line]]) -> Type:
-    sizes: Counter[Any] = Counter()
-    styles: Counter[Any] = Counter()
-    for found in loose.values():
-        for line in found:
-            sizes[round(line.size, 1)] += len(line.text)
-            styles[line.style] += len(line.text)
-    return Type(sizes.most_common(1)[0][0] if sizes else 10.0, styles.most_common(1)[0][0] if styles else "")
 
 
 def _is_of_a_table(line: Line, near: list[Line], profile: Profile) -> bool:
@@ -110,8 +89,16 @@ def _is_of_a_table(line: Line, near: list[Line], profile: Profile) -> bool:
 class _Flow:
     """Goes through the pages; knows the columns of the table that may go on."""
 
-    def __init__(self, profile: Profile, body: Type) -> None:
-        self.profile, self.body = profile, body
+    def __init__(self, profile: Profile, text: Iterable[Line]) -> None:
+        """``text``: all lines, of which most are set in one size and style."""
+        self.profile = profile
+        sizes: Counter[float] = Counter()
+        styles: Counter[str] = Counter()
+        for line in text:
+            sizes[round(line.size, 1)] += len(line.text)
+            styles[line.style] += len(line.text)
+        self.body_size = max(sizes, key=sizes.__getitem__, default=10.0)
+        self.body_style = max(styles, key=styles.__getitem__, default="")
         self.open: Columns | None = None  # of a table without vertical rules that the next page may continue
         self.size = 0.0  # of its type
         self.extent = (0.0, 0.0)  # of that table, from left to right
@@ -158,7 +145,7 @@ class _Flow:
         length, found = self.head_length(rest)
         if found is not None or length:
             return self.table(page, rest, length, found)
-        if first and self.open is not None and self.continues(rest):
+        if first and self.continues(rest):
             return self.continuation(page, rest)
         self.open = None
         kind, number, text = "text", "", line.text
@@ -166,10 +153,10 @@ class _Flow:
         if heading and self.stands_out(line) and len(line.text) < 120:
             kind, number, text = "heading", heading["number"], heading["text"]
         strong = kind == "text" and self.stands_out(line) and len(text) < 80 and not text.endswith((".", ":", ",", ";"))
-        return 1, Mark(kind, text, _box(page, [line]), line.size, line.style, number, strong, _cells(line))
+        return 1, Mark(kind, text, box_around(page.number, [line]), line.size, number, strong, _cells(line))
 
     def stands_out(self, line: Line) -> bool:
-        return line.size > self.body.size + 0.6 or line.style != self.body.style
+        return line.size > self.body_size + 0.6 or line.style != self.body_style
 
     def is_caption(self, line: Line) -> bool:
         match = self.profile.caption.match(line.text)
@@ -192,7 +179,7 @@ class _Flow:
             taken += 1
         text = " ".join(line.text for line in rest[:taken])
         cells = _cells(rest[0]) if taken == 1 else []
-        return taken, Mark("caption", text, _box(page, rest[:taken]), rest[0].size, rest[0].style, cells=cells)
+        return taken, Mark("caption", text, box_around(page.number, rest[:taken]), rest[0].size, cells=cells)
 
     def head_length(self, rest: list[Line]) -> tuple[int, Columns | None]:
         """How many lines above the headings a table has that begins here, and its headings; (0, None): none begins."""
@@ -245,12 +232,13 @@ class _Flow:
         head = self.head(rest[:length])
         if found is None:
             self.open = None
-            return length, Piece(_box(page, rest[:length]), [], ruled=False, head=head)
+            return length, Piece(box_around(page.number, rest[:length]), [], ruled=False, head=head)
         start = length + found.lines
         end = self.end(page, rest, start, found)
         x0, x1 = min(line.x0 for line in rest[:start]), max(line.x1 for line in rest[:start])
+        body = self.cells(rest[start:end], found)
         piece = Piece(
-            _box(page, rest[:end]), [], ruled=False, columns=found, head=head, lines=self.cells(rest[start:end], found), page=page,
+            box_around(page.number, rest[:end]), [], ruled=False, columns=found, head=head, lines=body, page=page,
             top=rest[start - 1].bottom, extent=(x0, x1),
         )  # fmt: skip
         self.open, self.size = found, rest[min(start, end - 1)].size
@@ -292,14 +280,10 @@ class _Flow:
             return True
         if _HEADING.match(line.text) and self.stands_out(line) and line.size > size + 0.6:
             return True
-        if (
-            self.reads_on(line, found.spans)
-            and not self.has_key(line, found)
-            and not self.is_group(rest[index:], found)
-        ):
+        if self.is_prose(rest[index:], found):
             return True
         gap = line.top - rest[index - 1].bottom if index else 0
-        return gap > 2.2 * line.size and not self.has_key(line, found)
+        return gap > 2.2 * line.size and not self.has_key(line)
 
     def begins_anew(self, rest: list[Line], index: int) -> bool:
         """Whether headings begin with the line: below the line above, not beside it as a part of a cell does."""
@@ -308,21 +292,25 @@ class _Flow:
             return False
         return columns.find(rest[index : index + 3], self.profile, loose=False) is not None
 
-    def has_key(self, line: Line, found: Columns) -> bool:
+    def is_prose(self, rest: list[Line], found: Columns) -> bool:
+        """Whether the first line is of a paragraph, and none of a table with these columns."""
+        return self.reads_on(rest[0], found.spans) and not self.has_key(rest[0]) and not self.is_group(rest, found)
+
+    def has_key(self, line: Line) -> bool:
         first = runs(line, 0.45)[0]
         return is_key(" ".join(w.text for w in first))
 
     def is_row(self, line: Line, found: Columns) -> bool:
         """Whether the line can only be of a table: a key, a cell gone on, or several cells."""
         return (
-            self.has_key(line, found)
+            self.has_key(line)
             or _begins_in_a_column(line, found.spans)
             or len(runs(line, 0.9)) >= min(3, len(found.spans))
         )
 
     def is_group(self, rest: list[Line], found: Columns) -> bool:
         """Whether a line is a group heading of a list, however far it reaches: the next line has a key."""
-        return found.header.kind == "list" and len(rest) > 1 and self.has_key(rest[1], found)
+        return found.header.kind == "list" and len(rest) > 1 and self.has_key(rest[1])
 
     def reads_on(self, line: Line, spans: list[tuple[float, float]]) -> bool:
         """Whether text runs across three headings or more, as it does in a paragraph and not in a cell."""
@@ -335,27 +323,20 @@ class _Flow:
     def continues(self, rest: list[Line]) -> bool:
         """Whether the lines at the top of a page go on with the table before."""
         line = rest[0]
-        if self.open is None:
-            return False
-        if line.x0 < self.extent[0] - 8:
-            return False
-        if (
-            self.reads_on(line, self.open.spans)
-            and not self.has_key(line, self.open)
-            and not self.is_group(rest, self.open)
-        ):
+        if self.open is None or line.x0 < self.extent[0] - 8 or self.is_prose(rest, self.open):
             return False
         if _HEADING.match(line.text) and line.size > self.size + 0.6:
             return False
-        near = rest[:8]
-        return any(self.has_key(one, self.open) for one in near) or self.is_row(line, self.open)
+        return any(map(self.has_key, rest[:8])) or self.is_row(line, self.open)
 
     def continuation(self, page: Page, rest: list[Line]) -> tuple[int, Piece]:
         assert self.open is not None
         end = max(1, self.end(page, rest, 0, self.open))
         body = self.cells(rest[:end], self.open)
         top = rest[0].top - 1
-        piece = Piece(_box(page, rest[:end]), [], ruled=False, lines=body, page=page, top=top, extent=self.extent)
+        piece = Piece(
+            box_around(page.number, rest[:end]), [], ruled=False, lines=body, page=page, top=top, extent=self.extent
+        )
         return end, piece
 
 
@@ -384,13 +365,3 @@ def _lowest_rule(page: Page, rest: list[Line], start: int, found: Columns) -> fl
     head = [r for r in wide if start < len(rest) and r.at < rest[start].top + 2] if start < len(rest) else wide
     below = [r.at for r in wide if r not in head]
     return max(below) if below else float("inf")
-
-
-def _box(page: Page, found: list[Line]) -> Box:
-    return Box(
-        page.number,
-        min(line.x0 for line in found),
-        min(line.top for line in found),
-        max(line.x1 for line in found),
-        max(line.bottom for line in found),
-    )

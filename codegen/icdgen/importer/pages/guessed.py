@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import itertools
 
-from icdgen.importer.document import Box, Row, Table
+from icdgen.importer.document import Row, Table
 from icdgen.importer.pages.flow import Mark
+from icdgen.importer.pages.lines import box_around
 
 FEWEST_CELLS = 3
 FEWEST_LINES = 3
@@ -61,9 +62,7 @@ def _end(marks: list[Mark], start: int) -> int:
 
 
 def _table(marks: list[Mark]) -> Table:
-    box: Box = marks[0].box
-    for mark in marks[1:]:
-        box = box.join(mark.box)
+    box = box_around(marks[0].box.page, [mark.box for mark in marks])
     columns = [x for x, _ in marks[0].cells]
     made = Table(page=box.page, boxes=[box])
     for mark in marks:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
+from icdgen.importer.document import Box
 from icdgen.importer.pages.extract import SMALL, Word
 from icdgen.importer.words import SUPERSCRIPTS
 
@@ -74,6 +75,12 @@ def text_of(words: list[Word]) -> str:
 def words_of(found: Iterable[Line]) -> list[Word]:
     """The words of several lines."""
     return [word for line in found for word in line.words]
+
+
+def box_around(page: int, things: Sequence[Line | Box]) -> Box:
+    """The smallest box around things on one page."""
+    x0, top = min(one.x0 for one in things), min(one.top for one in things)
+    return Box(page, x0, top, max(one.x1 for one in things), max(one.bottom for one in things))
 
 
 def runs(line: Line, gap: float = 0.6) -> list[list[Word]]:

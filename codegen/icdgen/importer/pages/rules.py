@@ -62,13 +62,10 @@ def distinct(values: list[float], snap: float = SNAP) -> list[float]:
 
 def _lengths(rules: list[Rule]) -> list[tuple[float, float]]:
     """Height -> how much of it is ruled."""
-    groups: list[list[Rule]] = []
-    for rule in sorted(rules, key=lambda r: r.at):
-        if groups and rule.at - groups[-1][0].at <= SNAP:
-            groups[-1].append(rule)
-        else:
-            groups.append([rule])
-    return [(group[0].at, sum(rule.end - rule.start for rule in _joined_spans(group))) for group in groups]
+    lengths: dict[float, float] = {}
+    for rule in joined(rules):
+        lengths[rule.at] = lengths.get(rule.at, 0.0) + rule.end - rule.start
+    return list(lengths.items())
 
 
 def _joined_spans(rules: list[Rule]) -> list[Rule]:
@@ -83,14 +80,13 @@ def _joined_spans(rules: list[Rule]) -> list[Rule]:
 
 def joined(rules: list[Rule]) -> list[Rule]:
     """Collinear pieces that touch put together."""
-    made: list[Rule] = []
-    group: list[Rule] = []
+    groups: list[list[Rule]] = []
     for rule in sorted(rules, key=lambda r: (r.at, r.start)):
-        if group and rule.at - group[0].at > SNAP:
-            made += _joined_spans(group)
-            group = []
-        group.append(rule._replace(at=group[0].at) if group else rule)
-    return made + _joined_spans(group)
+        if groups and rule.at - groups[-1][0].at <= SNAP:
+            groups[-1].append(rule._replace(at=groups[-1][0].at))
+        else:
+            groups.append([rule])
+    return [rule for group in groups for rule in _joined_spans(group)]
 
 
 def regions(page: Page) -> list[Region]:

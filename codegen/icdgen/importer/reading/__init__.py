@@ -44,5 +44,5 @@ def read(
     return text.read(path, profile)
 
 
-def _refused(name: str, message: str, help: str, code: str = "IMP002") -> Findings:
-    return Findings([Finding(code, message, Place(name), help)])
+def _refused(name: str, message: str, help: str) -> Findings:
+    return Findings([Finding("IMP002", message, Place(name), help)])

@@ -37,17 +37,10 @@ class Said:
     @property
     def id(self) -> int | None:
         """The id as one number: the parts in the order in which they are sent, a byte each."""
-        if not self.ids:
-            return None
         numbers = [value(text) for text in self.ids]
         if len(numbers) == 1:
             return numbers[0]
-        made = 0
-        for part in numbers:
-            if part > 255:
-                return None
-            made = made * 256 + part
-        return made
+        return int.from_bytes(numbers, "big") if numbers and max(numbers) < 256 else None
 
 
 def value(text: str) -> int:

@@ -22,6 +22,8 @@ def read(table: Table, profile: Profile, troubles: list[Trouble], about: Around 
     both = values.get("both_ids", "")
     if not both and "set_id" in values and "get_id" in values:
         both = f"{values['set_id']}/{values['get_id']}"
+    elif not both and "/" in values.get("id", ""):
+        both = values["id"]
     has_id = bool(both) or "id" in values
     said = around.read(about or Around(table.caption), profile)
     if table.header is None:
@@ -141,15 +143,11 @@ def _ids(message: ReadMessage, values: dict[str, str], both: str) -> None:
         first, _, second = both.partition("/")
         message.set_id, message.get_id = number(first), number(second)
     elif "id" in values:
-        first, _, second = values["id"].partition("/")
-        if second:
-            message.set_id, message.get_id = number(first), number(second)
-        else:
-            message.id = number(first)
+        message.id = number(values["id"])
 
 
 def _kind(values: dict[str, str], both: str) -> str:
-    if both or "/" in values.get("id", ""):
+    if both:
         return "configuration"
     if "telemetry_length" in values:
         return "telemetry"

@@ -25,7 +25,6 @@ class Found:
     table: Table
     what: str  # "message" | "enumeration" | "list" | "loggable frames" | BACKGROUND | UNKNOWN
     thing: Thing | None
-    headings: tuple[str, ...] = ()  # of the sections around it, outermost first
 
 
 @dataclass(slots=True)
@@ -72,14 +71,14 @@ def survey(document: Document, profile: Profile) -> Survey:
             registers = grids.read(*grid, block, profile, about, made.troubles)
             for register in registers:
                 register.kind = register.kind or _by_section(titles, profile) or str(profile.data["defaults"]["kind"])
-            made.found += [Found(block, "message", one, titles) for one in registers[:-1]]
+            made.found += [Found(block, "message", one) for one in registers[:-1]]
             what, thing = ("message", registers[-1]) if registers else (what, thing)
         prose = []
         if isinstance(thing, ReadMessage) and titles:
             used.add(titles[-1])
         if what == UNKNOWN and block.number is None and not _is_grid(block):
             continue  # a figure, a listing, a box: nobody called it a table
-        made.found.append(Found(block, what, thing, titles))
+        made.found.append(Found(block, what, thing))
         if what == UNKNOWN and not _is_repeated(block, made):
             made.troubles.append(_not_understood(block, around.read(about, profile)))
     _without_table(made, sections, bare, profile)
