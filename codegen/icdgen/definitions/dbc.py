@@ -51,12 +51,8 @@ def _widened(text: str, to: Definitions) -> str:
             told.add(id)
             line = text.count("\n", 0, found.start(2)) + 1
             message = f"the id {id:#x} has more than the 11 bits of a standard frame"
-            to.warn(
-                REPAIRED,
-                message,
-                "it is held as that of an extended frame, whose ids have bit 31 set in a DBC",
-                line=line,
-            )
+            help = "it is held as that of an extended frame, whose ids have bit 31 set in a DBC"
+            to.warn(REPAIRED, message, help, line=line)
         return f"{found[1]}{id | _EXTENDED}"
 
     return _WITH_ID.sub(widen, text)
@@ -100,9 +96,8 @@ def _without_line(text: str, said: str, to: Definitions) -> str | None:
     end = _end(lines, number)
     shown = lines[number].strip()
     shown = shown if len(shown) <= 80 else shown[:77] + "..."
-    what = f"`{shown}` is not understood" + (
-        f", nor are the {end - number - 1} signals below it" if end - number > 1 else ""
-    )
+    more = f", nor are the {end - number - 1} signals below it" if end - number > 1 else ""
+    what = f"`{shown}` is not understood{more}"
     to.warn(NOT_UNDERSTOOD, what, "it is left out: correct the line", "error", number + 1)
     lines[number:end] = [""] * (end - number)
     return "\n".join(lines)
@@ -111,18 +106,12 @@ def _without_line(text: str, said: str, to: Definitions) -> str | None:
 def _without_unused(text: str, said: str, to: Definitions) -> str | None:
     """The text without what is said of signals that there are not."""
     for keyword, id, name in _UNUSED.findall(said):
-        pattern = re.compile(
-            rf'^[ \t]*{keyword}\s+{id}\s+{re.escape(name)}\s[^";]*(?:"[^"]*"[^";]*)*;', re.MULTILINE
-        )  # fmt: skip
-        found = pattern.search(text)
+        statement = rf'^[ \t]*{keyword}\s+{id}\s+{re.escape(name)}\s[^";]*(?:"[^"]*"[^";]*)*;'
+        found = re.search(statement, text, re.MULTILINE)
         if found is None:
             return None
         line = text.count("\n", 0, found.start()) + 1
-        to.warn(
-            REPAIRED,
-            f"`{keyword}` names `{name}` of message {id}, which has no such signal",
-            "it is left out",
-            line=line,
-        )
+        message = f"`{keyword}` names `{name}` of message {id}, which has no such signal"
+        to.warn(REPAIRED, message, "it is left out", line=line)
         text = text[: found.start()] + "\n" * found[0].count("\n") + text[found.end() :]
     return text if _UNUSED.search(said) else None

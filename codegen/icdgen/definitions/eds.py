@@ -115,13 +115,10 @@ def _say_process(found: list[_Found], to: Definitions) -> None:
     """That application processes are what a parameter of the interface usually stands for."""
     if not found:
         return
-    parameters = sorted({one.parameter for one in found})
-    to.warn(
-        PROCESS,
-        f"nothing says the application processes of {len(found)} messages, only `{'`, `'.join(parameters)}` of their interfaces",
-        "their ids are what the library of cFS makes of these: correct them if your mission has code of its own for that",
-        line=found[0].line,
-    )
+    parameters = "`, `".join(sorted({one.parameter for one in found}))
+    text = f"nothing says the application processes of {len(found)} messages, only `{parameters}` of their interfaces"
+    help = "their ids are what the library of cFS makes of these: correct them if your mission has code of its own for that"
+    to.warn(PROCESS, text, help, line=found[0].line)
 
 
 def _say_unsent(alone: list[Element], sheets: Sheets, to: Definitions) -> None:

@@ -101,11 +101,8 @@ class Interfaces:
             one = left.pop()
             self._steps += 1
             if self._steps > MOST_STEPS:
-                raise unreadable(
-                    self.sheets.to.file,
-                    f"its interfaces carry more than {MOST_STEPS:,} containers",
-                    "import it in parts",
-                )
+                text = f"its interfaces carry more than {MOST_STEPS:,} containers"
+                raise unreadable(self.sheets.to.file, text, "import it in parts")
             more = [inner for inner in self._derived.get(one, ()) if inner not in seen]
             seen.update(more)
             left += reversed(more)

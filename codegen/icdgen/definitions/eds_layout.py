@@ -144,12 +144,9 @@ class Layout:
             return found
         kind = line(self.sheets.attribute(entry, "errorControlType"), 60) or "an error control"
         if self.types.is_new(("error control", entry)):
-            self.types.to.warn(
-                UNCHECKED,
-                f"`{name}` is {kind} of what is in the frame",
-                "it is a field like others, neither checked nor set",
-                line=self.sheets.line(entry),
-            )
+            message = f"`{name}` is {kind} of what is in the frame"
+            help = "it is a field like others, neither checked nor set"
+            self.types.to.warn(UNCHECKED, message, help, line=self.sheets.line(entry))
         text = found.get("summary", "")
         return {"summary": f"{text}{'' if text.endswith(('.', '!', '?')) else '.'} {kind}." if text else f"{kind}."}
 
@@ -244,9 +241,8 @@ class Layout:
         else:
             piece = self.types.piece(type_, entry, f"`{name}`")
             item, bits = piece.item, piece.bits
-            again(
-                item, {"bits": bits, **item, **({"byte_order": LITTLE} if piece.order == LITTLE and bits > 8 else {})}
-            )
+            order = {"byte_order": LITTLE} if piece.order == LITTLE and bits > 8 else {}
+            again(item, {"bits": bits, **item, **order})
         if not bits or bits % 8:
             raise NotHeld(f"`{name}` is a list of what has no fixed number of bytes")
         _, most = by.piece.range.within(eds_ranges.Range(Fraction(0), Fraction((1 << by.bits) - 1))).of_integers()
@@ -305,12 +301,8 @@ class Layout:
             return {**place, **part.item, "count": called[part.counter], "up_to": min(room, part.item["up_to"])}
         size: object = REST
         for one in self.parts:
-            if (
-                one.entry.tag != "LengthEntry"
-                or one.path not in called
-                or len(one.path) > 1
-                or one.item["type"] != "uint"
-            ):
+            is_length = one.entry.tag == "LengthEntry" and len(one.path) == 1 and one.path in called
+            if not is_length or one.item["type"] != "uint":
                 continue
             how = eds_parts.line_of(one.entry, self.sheets)
             if how is not None and how.factor == 1 and how.offset.denominator == 1:

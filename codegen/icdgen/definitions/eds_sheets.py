@@ -143,11 +143,8 @@ class Sheets:
         """Says, once, that something is there twice."""
         if (other := self._again.pop(what, None)) is not None:
             of = "package " if not what.startswith("$") else ""
-            self.to.warn(
-                TWICE,
-                f"{of}`{line(what, 100)}` is in `{Path(first).name}` and otherwise in `{Path(other).name}`",
-                "the first one is taken",
-            )
+            text = f"{of}`{line(what, 100)}` is in `{Path(first).name}` and otherwise in `{Path(other).name}`"
+            self.to.warn(TWICE, text, "the first one is taken")
 
     def find(self, kind: str, reference: str, seen_from: Element) -> Element:
         """The type or interface that a reference names. Raises `NotHeld` if there is none."""
@@ -183,9 +180,6 @@ def _beside(file: str, size: int) -> Iterator[tuple[str, Element]]:
         data = kinds.contents(path)
         count, size = count + 1, size + len(data)
         if count > MOST_FILES or size > MOST_BYTES:
-            raise unreadable(
-                file,
-                f"beside it are more than {MOST_FILES} data sheets, or {MOST_BYTES:,} bytes of them",
-                "move those away that it does not need",
-            )
+            text = f"beside it are more than {MOST_FILES} data sheets, or {MOST_BYTES:,} bytes of them"
+            raise unreadable(file, text, "move those away that it does not need")
         yield str(path), safe_xml.parse(str(path), data)

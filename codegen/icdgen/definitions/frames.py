@@ -84,11 +84,8 @@ def _owned(name: str, placed: list[tuple[Item, Place]], order: str, to: Definiti
         left |= mask
     if pairs:
         shown = ", ".join(pairs[:3]) + (f" and {len(pairs) - 3} more" if len(pairs) > 3 else "")
-        to.warn(
-            OVERLAPPING,
-            f"message `{name}`: {shown} overlap",
-            "the smaller ones are held as views: they are read, not set",
-        )
+        help = "the smaller ones are held as views: they are read, not set"
+        to.warn(OVERLAPPING, f"message `{name}`: {shown} overlap", help)
     yield from placed
     owned = 0
     for _, mask in owners:

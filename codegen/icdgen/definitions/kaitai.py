@@ -44,10 +44,8 @@ class Kaitai:
         network = Network(node_name(file), line(str(meta.get("title") or name), 100), {**ORDERS[order]})
         network.head["id_bits"] = _ID_BITS
         for struct in shared.structs.values():
-            inside: Layout = struct["parts"]
-            network.structs.append(
-                {"name": struct["name"], "length": struct["length"], "fields": _fields(inside, order)}
-            )
+            kept = {key: struct[key] for key in ("name", "length")}
+            network.structs.append({**kept, "fields": _fields(struct["parts"], order)})
         for layout, called in zip(layouts, _names(name, layouts), strict=True):
             if not any(part.is_whole for part in layout.parts):
                 to.left_out(called, "none of its fields is")
@@ -128,9 +126,8 @@ def _fields(layout: Layout, order: str) -> list[Item]:
         elif not part.mask:
             fields.append(again(item, {**_placed(part, part.at, part.bits, order), "name": name, **item}))
         elif part.mask == (1 << part.bits) - 1:
-            value = (
-                part.value - (1 << part.bits) if item["type"] == "int" and part.value >> part.bits - 1 else part.value
-            )
+            is_negative = item["type"] == "int" and part.value >> part.bits - 1
+            value = part.value - (1 << part.bits) if is_negative else part.value
             kind = {"type": "uint"} if item["type"] == "bool" else {}  # a flag has no constant
             said = {**_placed(part, part.at, part.bits, order), "name": name, **item, **kind, "const": value}
             fields.append(again(item, said))

@@ -74,9 +74,8 @@ class MavLink2:
         )  # fmt: skip
         seeds = network.seeds = network.protocol["checksums"]["x25"]["seeds"]  # type: ignore[index]
         for path, root in roots.items():
-            version = next(
-                (int(one.text or 0) for one in root.iter("version") if (one.text or "").strip().isdigit()), 2
-            )
+            versions = (one.text or "" for one in root.iter("version"))
+            version = next((int(text) for text in versions if text.strip().isdigit()), 2)
             for element in root.iterfind("messages/message"):
                 name, id = element.get("name", ""), _number(element.get("id", ""))
                 if id is not None and id >> self.id_bits and not self.has_extensions:
@@ -297,11 +296,8 @@ def _enumerations(roots: dict[str, Element], to: Definitions) -> dict[str, Item]
                 value = _number(entry.get("value", str(max(entries, default=0) + 1)))
                 label = entry.get("name", "")
                 if value is None:
-                    to.warn(
-                        BEYOND,
-                        f"enumeration `{name}`: `{label}` has the value `{entry.get('value')}`",
-                        "the name is left out",
-                    )
+                    text = f"enumeration `{name}`: `{label}` has the value `{entry.get('value')}`"
+                    to.warn(BEYOND, text, "the name is left out")
                 elif entries.setdefault(value, (label, _said(entry)))[0] != label:
                     text = f"enumeration `{name}`: {value} is `{entries[value][0]}` and `{label}`"
                     to.warn(TWICE, text, "the first name is held")

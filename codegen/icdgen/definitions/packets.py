@@ -134,11 +134,8 @@ def _counted(found: Sequence[Sent], network: Network, to: Definitions) -> None:
                 to.left_out(one.name, why)
         if len(untold) > 1:
             shown = ", ".join(f"`{name}`" for name in untold[:3]) + (" ..." if len(untold) > 3 else "")
-            to.warn(
-                UNTOLD,
-                f"no parameter tells all {len(untold)} messages of {kind}: {shown}",
-                "their ids are counted from 1",
-            )
+            text = f"no parameter tells all {len(untold)} messages of {kind}: {shown}"
+            to.warn(UNTOLD, text, "their ids are counted from 1")
     network.head["id_bits"] = widest
 
 

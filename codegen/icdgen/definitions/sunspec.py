@@ -124,12 +124,8 @@ class _Model:
         told: Item = {"name": self.name, "id": self.id, "kind": "telemetry", "length": end // 8} | _said(self.group)
         if self.scaled:
             shown = ", ".join(f"`{name}`" for name in self.scaled[:3]) + (" ..." if len(self.scaled) > 3 else "")
-            self.to.warn(
-                RAW_ONLY,
-                f"message `{self.name}`: the factors of {len(self.scaled)} points stand in other registers: {shown}",
-                "raw values are held; their summaries say what to multiply them by",
-                severity="note",
-            )
+            text = f"message `{self.name}`: the factors of {len(self.scaled)} points stand in other registers: {shown}"
+            self.to.warn(RAW_ONLY, text, "raw values are held; their summaries say what to multiply them by", "note")
         return {**told, "fields": fields}
 
     def block(self, group: dict[str, Any], fields: list[Item], at: int, before: str, depth: int) -> int:
@@ -183,9 +179,8 @@ class _Model:
         size = point.get("size")
         registers = kind.registers or size if kind else 0
         if kind is None or type(registers) is not int or not 0 < registers <= _MOST_REGISTERS:
-            raise NotHeld(
-                f"`{line(name, 80)}` is of the type `{line(said, 40)}`" + (f" and size {size}" if kind else "")
-            )
+            sized = f" and size {size}" if kind else ""
+            raise NotHeld(f"`{line(name, 80)}` is of the type `{line(said, 40)}`{sized}")
         one: Item = {"at": at, "bits": _REGISTER * registers, "name": name, "type": kind.type}
         none = _special(kind, said) if not is_head else {}
         symbols = _symbols(point, is_bits=said.startswith("bitfield"))

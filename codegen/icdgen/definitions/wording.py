@@ -90,11 +90,7 @@ def shortest(paths: list[tuple[str, ...]]) -> list[str]:
     while True:
         names = [" ".join(path[-length:]) for path, length in zip(paths, lengths, strict=True)]
         times = Counter(names)
-        longer = [
-            number
-            for number, (name, path) in enumerate(zip(names, paths, strict=True))
-            if times[name] > 1 and lengths[number] < len(path)
-        ]
+        longer = [i for i, path in enumerate(paths) if times[names[i]] > 1 and lengths[i] < len(path)]
         if not longer:
             return names
         for number in longer:

@@ -34,9 +34,8 @@ class Xtce:
         names = Names(file, root)
         types = Types(to, names)
         found = list(_all(names, types, to))
-        network = Network(
-            node_name(file), line(called(root), 100) or node_name(file), {**ORDERS[BIG], **described(root)}
-        )
+        title = line(called(root), 100) or node_name(file)
+        network = Network(node_name(file), title, {**ORDERS[BIG], **described(root)})
         packets.fill(network, found, to)
         network.messages = _paired(network.messages)
         packets.apart(network.messages)
@@ -114,11 +113,8 @@ def _containers(names: Names) -> list[Element]:
                 parts.add(id(names.find("container", reference, one)))
             except NotHeld:
                 continue  # said where it is read
-    return [
-        one
-        for one in all_
-        if one.get("abstract") != "true" and (one.find("BaseContainer") is not None or id(one) not in parts)
-    ]
+    concrete = (one for one in all_ if one.get("abstract") != "true")
+    return [one for one in concrete if one.find("BaseContainer") is not None or id(one) not in parts]
 
 
 def _commands(names: Names, element: Element) -> list[Element]:

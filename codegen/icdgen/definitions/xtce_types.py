@@ -23,6 +23,7 @@ _MOST_NAMED = 1024  # values of a range of labels
 _DEEPEST = 20  # types that say what another says
 _ENCODINGS = ("IntegerDataEncoding", "FloatDataEncoding", "StringDataEncoding", "BinaryDataEncoding")
 _LINE = (("slope", "1"), ("intercept", "0"))
+_RANGES = ("ValidRange", "ValidRangeSet/ValidRange")
 _LIMITS = {"minInclusive": "min", "maxInclusive": "max", "minExclusive": "above", "maxExclusive": "below"}
 
 
@@ -174,16 +175,9 @@ class Types(Reading):
 
     def _limits(self, item: Item, chain: list[Element]) -> Item:
         """The keys of the range that is valid, if there is one and it is that of the value that is held."""
-        ranges = [
-            one
-            for type_ in chain
-            for path in ("ValidRange", "ValidRangeSet/ValidRange")
-            for one in type_.iterfind(path)
-        ]
-        owners = [type_.find("ValidRangeSet") for type_ in chain]
-        of_raw = any(
-            one is not None and one.get("validRangeAppliesToCalibrated") == "false" for one in (*ranges, *owners)
-        )
+        ranges = [one for type_ in chain for path in _RANGES for one in type_.iterfind(path)]
+        owners = [one for type_ in chain if (one := type_.find("ValidRangeSet")) is not None]
+        of_raw = any(one.get("validRangeAppliesToCalibrated") == "false" for one in (*ranges, *owners))
         if len(ranges) != 1 or (of_raw and item.keys() & {"formula", "points"}):
             return {}
         found: Item = {}
