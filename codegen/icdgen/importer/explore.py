@@ -22,6 +22,9 @@ MOST_PAGES = 8  # named for a kind
 _CAPTION = re.compile(r"(?P<word>[A-Z][A-Za-z]{2,14})\s+(?P<number>[0-9]+)\s*[:.–—-]\s+\S")
 
 
+_OTHERS = ("Section", "Chapter", "Figure", "Page")  # words before numbers that begin no caption of a table
+
+
 @dataclass
 class Kind:
     """Tables with the same headings. ``what`` is what they are taken for."""
@@ -33,10 +36,9 @@ class Kind:
     @property
     def where(self) -> str:
         """``page 3, 5 to 7``, or lines of a text."""
-        pages = sorted({t.page for t in self.tables if t.page is not None})
-        name, places = (
-            ("page", pages) if pages else ("line", sorted({t.line for t in self.tables if t.line is not None}))
-        )
+        name, places = "page", sorted({t.page for t in self.tables if t.page is not None})
+        if not places:
+            name, places = "line", sorted({t.line for t in self.tables if t.line is not None})
         shown = ", ".join(str(place) for place in places[:MOST_PAGES])
         return f"{name} {shown}" + (" ..." if len(places) > MOST_PAGES else "")
 
@@ -91,11 +93,7 @@ def caption_words(result: Result, profile: Profile) -> list[str]:
     seen: Counter[str] = Counter()
     for block in result.document.blocks:
         match = _CAPTION.match(getattr(block, "text", ""))
-        if (
-            match
-            and match["word"].casefold() not in known
-            and match["word"] not in ("Section", "Chapter", "Figure", "Page")
-        ):
+        if match and match["word"].casefold() not in known and match["word"] not in _OTHERS:
             seen[match["word"]] += 1
     return [word for word, count in seen.items() if count >= 3]
 
@@ -130,9 +128,8 @@ def report(result: Result, profile: Profile) -> str:
     unread = [one.columns() for one in found if one.what == UNKNOWN]
     partly = [one.columns() for one in found if one.what != UNKNOWN]
     kindless = sum(not message.kind for _, message in result.survey.of(ReadMessage))
-    lines += proposal(
-        unread, partly, caption_words(result, profile), unknown_labels(result, profile), kindless, profile
-    )
+    captions, labelled = caption_words(result, profile), unknown_labels(result, profile)
+    lines += proposal(unread, partly, captions, labelled, kindless, profile)
     return "\n".join(line.rstrip() for line in lines).rstrip() + "\n"
 
 

@@ -52,10 +52,8 @@ def report(result: Result) -> str:
     ]
     errors = [t for t in result.troubles if t.severity == "error"]
     if errors:
-        parts += [
-            "<h2>To do first: what is missing from the ICD, or may be wrong in it</h2>",
-            _list(errors, linked=True),
-        ]
+        title = "To do first: what is missing from the ICD, or may be wrong in it"
+        parts += [f"<h2>{title}</h2>", _list(errors, linked=True)]
     loose = [t for t in about.get(None, []) if t.severity != "error"]
     if loose:
         parts += ["<h2>About the document</h2>", _list(loose)]

@@ -13,20 +13,17 @@ from icdgen.importer.words import number
 def mend(document: Document, profile: Profile) -> None:
     """Replaces damaged words and puts lost group headings back."""
     entries = profile.data["damage"]
-    words = [
-        (re.compile(rf"(?<!\w){re.escape(e['printed'])}(?!\w)"), e["meant"], e["printed"])
-        for e in entries
-        if "printed" in e
-    ]
     for table in document.tables:
-        for pattern, meant, printed in words:
-            _words(table, pattern, meant, printed, document)
+        for entry in entries:
+            if "printed" in entry:
+                _words(table, entry["printed"], entry["meant"], document)
         for entry in entries:
             if entry.get("table") == table.number and "group" in entry:
                 _group(table, entry, document)
 
 
-def _words(table: Table, pattern: re.Pattern[str], meant: str, printed: str, document: Document) -> None:
+def _words(table: Table, printed: str, meant: str, document: Document) -> None:
+    pattern = re.compile(rf"(?<!\w){re.escape(printed)}(?!\w)")
     count = 0
     for row in table.all_rows:
         for index, cell in enumerate(row.cells):

@@ -62,6 +62,5 @@ def write(targets: list[Target]) -> None:
         try:
             replace(Path(os.path.realpath(target.path)), target.text.encode("utf-8"))
         except OSError as error:
-            raise UserError(
-                f"cannot write {target.path}: {error.strerror}", "choose another folder with --out"
-            ) from None
+            text = f"cannot write {target.path}: {error.strerror}"
+            raise UserError(text, "choose another folder with --out") from None

@@ -191,9 +191,8 @@ _MATCHES: dict[str, list[Callable[[dict[str, Any]], object]]] = {
 def _added(root: Branch, key: str, by: str, items: list[dict[str, Any]], changes: list[str]) -> None:
     """Entries that are not there yet."""
     child = _child(root, key)
-    have = (
-        {_plain(c.value).get(by) for c in child.value.children} if child and isinstance(child.value, Branch) else set()
-    )
+    there = child.value.children if child and isinstance(child.value, Branch) else []
+    have = {_plain(one.value).get(by) for one in there}
     new = [item for item in items if item[by] not in have]
     if not new:
         return

@@ -64,14 +64,12 @@ def _open(path: Path, name: str) -> tuple[int, str]:
     try:
         with pdfplumber.open(path) as file:
             count = len(file.pages)
-            metadata = file.metadata or {}
-            title = metadata.get("Title")
+            title = (file.metadata or {}).get("Title")
     except Exception as error:  # pdfminer raises whatever a broken file makes it stumble over
         cause = error.args[0] if isinstance(error, PdfminerException) and error.args else error
         if isinstance(cause, (PDFPasswordIncorrect, PDFEncryptionError)):
-            raise _refused(
-                name, "the PDF is encrypted", "remove the password first, for instance with `qpdf --decrypt`"
-            ) from None
+            help = "remove the password first, for instance with `qpdf --decrypt`"
+            raise _refused(name, "the PDF is encrypted", help) from None
         raise _refused(
             name, f"the PDF is damaged ({type(cause).__name__}: {cause})" if str(cause) else "the PDF is damaged",
             "fetch it anew, or mend it, for instance with `qpdf` or `mutool clean`",
@@ -157,11 +155,8 @@ def _look_over(pages: list[Page], document: Document, name: str) -> None:
         images = sum(page.images for page in pages)
         failed = [page for page in pages if page.failed]
         if failed:
-            raise _refused(
-                name,
-                f"none of the {len(pages)} pages can be read ({failed[0].failed})",
-                "the file is damaged: fetch it anew",
-            )
+            text = f"none of the {len(pages)} pages can be read ({failed[0].failed})"
+            raise _refused(name, text, "the file is damaged: fetch it anew")
         what = "pictures of pages" if images else "pages without text"
         help = "run it through a text recognition first, for instance `ocrmypdf`, and check its figures twice"
         raise _refused(name, f"the PDF holds only {what}: there is no text layer", help)
@@ -191,14 +186,9 @@ def _of_page(page: Page) -> Iterator[Trouble]:
 
 def _captions(page: Page, profile: Profile) -> int:
     """About how many tables begin on the page: for the eye, while pages are read."""
-    words = [word.text for word in page.words]
-    return sum(
-        1 for a, b in pairwise(words) if a.rstrip(".") in _heads(profile) and b[:1].isdigit() and b[-1:] in ":.–-"
-    )
-
-
-def _heads(profile: Profile) -> set[str]:
-    return {word.rstrip(".") for word in profile.data["captions"]}
+    heads = {word.rstrip(".") for word in profile.data["captions"]}
+    pairs = pairwise(word.text for word in page.words)
+    return sum(a.rstrip(".") in heads and b[:1].isdigit() and b[-1:] in ":.–-" for a, b in pairs)
 
 
 def _known(pages: list[Page]) -> frozenset[str]:

@@ -39,11 +39,8 @@ def decide(header: Header, rows: list[Extent], length: int | None, profile: Prof
         width = at  # ranges of positions
     places = [row.at for row in rows if row.at is not None and not row.at_unit]
     widths = [row.width for row in rows if row.width is not None and not row.width_unit]
-    if not places or at:
-        at_choices: tuple[int, ...] = (at or 1,)
-    else:
-        at_choices = (1, 8)
-    width_choices: tuple[int, ...] = (width or 1,) if not widths or width else (1, 8)
+    at_choices = (1, 8) if places and not at else (at or 1,)
+    width_choices = (1, 8) if widths and not width else (width or 1,)
     if len(at_choices) == len(width_choices) == 1:
         return Units(at_choices[0], width_choices[0])
     ranked = []

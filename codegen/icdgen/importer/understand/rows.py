@@ -49,9 +49,8 @@ def entries(table: Table, troubles: list[Trouble], stands_alone: StandsAlone | N
         elif header.kind == "list" and (title := _group(row, header, made, last_page)):
             group = title
         elif made:
-            _tear(
-                made[-1], row, header, spot, table, troubles, same_page=row.page is not None and row.page == last_page
-            )
+            on_one_page = row.page is not None and row.page == last_page
+            _tear(made[-1], row, header, spot, table, troubles, on_one_page)
         else:
             table.doubts.append("a row before the first one has no key")
             troubles.append(
