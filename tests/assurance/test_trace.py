@@ -227,6 +227,26 @@ def test_each_change_of_a_derived_value_and_of_a_condition_fails_the_vectors_tha
         hold(pack, change, tmp_path / str(number))
 
 
+OVERLAPPING = """\
+icdgen: 1
+node: {name: demo, title: Demo, byte_order: little, bit_order: msb0}
+structs:
+  - {name: Pair, length: 4, fields: [{at: 0, bits: 7, name: Levels, type: int, count: 3}, {at: 21, bits: 5, name: Rest, type: int}]}
+messages:
+  - {name: Status, id: 130, kind: telemetry, length: 4, fields: [{at: 0, name: Both, struct: Pair}]}
+"""
+
+
+def test_elements_of_a_struct_that_take_the_bits_of_each_other_when_they_grow_fail_what_the_trace_names(tmp_path):
+    (tmp_path / "icd").mkdir()
+    (tmp_path / "icd" / "demo.yaml").write_text(OVERLAPPING, "utf-8")
+    pack = Pack(tmp_path / "icd")
+    assert {"offset", "width", "count", "type"} <= {change["kind"] for change in pack.changes}
+    for number, change in enumerate(pack.changes):
+        assert change["vectors"], change
+        hold(pack, change, tmp_path / str(number))
+
+
 def test_changed_lines_of_the_shipped_icds_fail_the_vectors_that_the_trace_names(shipped, tmp_path):
     decided = {(e["node"], e["touches"]) for e in shipped.table("errata.csv") if e["kind"] == "Erratum"}
     touched = {(node, line) for node, lines in decided for line in lines.split("; ")}

@@ -57,6 +57,9 @@ class MessageWatch:
             return self.places(fields, self.node)
         both = [replace(now, path=old.path) for old, now in zip(olds, fields, strict=True)]
         changed = [(index, now) for index, (old, now) in enumerate(zip(olds, both, strict=True)) if old != now]
+        if any(_place(olds[index]) != _place(now) for index, now in changed):  # one may take bits that another leaves
+            told = [olds[index].name for index, now in changed if self._line_notices(olds[index], now)]
+            return [*(self.lines.fields[name] for name in told), *self.places(both, self.node)]
         return [line for index, now in changed for line in self.field(index, now)]
 
     def places(self, fields: Iterable[Field], node: Node) -> list[int]:
