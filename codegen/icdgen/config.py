@@ -76,7 +76,7 @@ def _read(path: Path) -> Config:
             raise UserError(f"{path}: unknown key `{key}`", f"known keys: {', '.join(_KEYS)}")
         texts = value if isinstance(value, list) else [value]
         if not isinstance(value, _KEYS[key]) or not all(isinstance(one, str) for one in texts):
-            kind, example = ("a list of texts", ["..."]) if _KEYS[key] is list else ("a text", "...")
+            kind, example = ("a list of texts", '["..."]') if _KEYS[key] is list else ("a text", '"..."')
             raise UserError(f"{path}: `{key}` must be {kind}", f"for instance {key} = {example}")
         if any(not one or "\0" in one for one in texts):
             help = "write a path or a name, or take it out"

@@ -81,11 +81,6 @@ def byte_range(field: Field) -> range:
     return range(field.at // 8, (field.at + field.bits + 7) // 8)
 
 
-def is_whole_bytes(field: Field) -> bool:
-    """Whether the field begins and ends with a byte, so that it can be loaded as a unit."""
-    return field.at % 8 == 0 and field.bits % 8 == 0
-
-
 class Gap(NamedTuple):
     """Reserved bits: ``bits`` bits from bit ``at`` of the frame, counted as the node counts them."""
 

@@ -35,6 +35,10 @@ _BUILT_IN = {
 }
 
 
+TITLES = {"c": "C", "python": "Python", "rust": "Rust"}
+"""How people write the languages that programs are generated for."""
+
+
 class Backend(Language, Protocol):
     """What a backend offers: its ``name`` is as in ``--lang``, and that of its template folder."""
 

@@ -201,6 +201,6 @@ def _print_csv(found: Sequence[Reading]) -> None:
         if one.frame is None or not one.frame.rows:
             writer.writerow((*start, "", "", "", "", "; ".join(one.remarks)))
         for row in one.frame.rows if one.frame else ():
-            unit = row.field.unit.symbol if row.field.unit else ""
+            unit = row.field.unit_symbol
             writer.writerow((*start, row.field.name, row.raw_text, row.text, unit, "; ".join(row.remarks)))
     click.echo(out.getvalue(), nl=False)

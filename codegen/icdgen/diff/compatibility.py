@@ -177,7 +177,7 @@ def _misread(pair: FieldPair) -> str:
         return f"read as {read_as(new)}, or as {read_as(old)}"
     if (old.curve or old.scale or RAW) != (new.curve or new.scale or RAW):
         return "another formula"
-    if (old.unit.symbol if old.unit else "") != (new.unit.symbol if new.unit else ""):
+    if old.unit_symbol != new.unit_symbol:
         return "another unit"
     has_other_senses = old.enum and new.enum and old.enum is not new.enum and other_senses(old.enum, new.enum)
     return "values of another sense" if has_other_senses else ""

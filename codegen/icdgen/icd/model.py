@@ -98,6 +98,11 @@ class Field:
         return self.byte_order or node.byte_order, self.bit_order or node.bit_order
 
     @property
+    def unit_symbol(self) -> str:
+        """The unit as it is written; empty without one."""
+        return self.unit.symbol if self.unit else ""
+
+    @property
     def width(self) -> int:
         """Its bits; of an array that stands as one, those of all elements."""
         return self.bits * (self.count or 1)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from icdgen.errors import UserError
+from icdgen.errors import UserError, unreadable
 from icdgen.icd.fmt import emit
 from icdgen.importer import update
 
@@ -44,7 +44,7 @@ def aim(
         try:
             old = path.read_text(encoding="utf-8")
         except OSError as error:
-            raise UserError(f"cannot read {path}: {error.strerror}", "check the path") from None
+            raise unreadable(path, error) from None
         except UnicodeDecodeError:
             raise UserError(f"{path} is not UTF-8", "save it as UTF-8, or move it away") from None
         made = update.update(old, str(path), tree, told)

@@ -116,7 +116,7 @@ class Monitor:
                 yield name, "", "", "", self.faults.get(ids.get(name) or 0, nothing)
             elif name in found:
                 for number, row in enumerate(found[name].rows):
-                    unit = row.field.unit.symbol if row.field.unit else ""
+                    unit = row.field.unit_symbol
                     yield name if number == 0 else "", row.field.name, row.text, unit, "; ".join(row.remarks)
 
     def _names(self) -> list[str]:

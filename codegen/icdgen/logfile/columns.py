@@ -47,7 +47,7 @@ class Column:
 
     @property
     def unit(self) -> str:
-        return self.field.unit.symbol if self.field and self.field.unit else ""
+        return self.field.unit_symbol if self.field else ""
 
     @property
     def steps(self) -> Steps | None:

@@ -21,7 +21,6 @@ CRC, FLETCHER, FLETCHER_255, SUM, XOR = CHECKS = ("crc", "fletcher", "fletcher_2
 DIRECTIONS = ("telecommand", "telemetry")
 DATA = "data"  # in `covers`: what the envelope is around
 WORD = 32  # bits of the numbers that are computed with
-UNKNOWN_SEQUENCE = 0xFFFF_FFFF  # which no sequence number is: they have at most 31 bits
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

@@ -39,7 +39,7 @@ def field_table(message: Message | Struct, node: Node, width: int | None = None)
 def _row(field: Field, message: Message | Struct) -> tuple[str, ...]:
     low, high = ("" if bound is None else exact_text(bound) for bound in allowed_ends(field))
     resolution = factor_text(field.scale.factor) if field.scale else ""
-    unit = field.unit.symbol if field.unit else ""
+    unit = field.unit_symbol
     kind = field.enum.name if field.enum else field.type
     bits = f"{field.count} x {field.bits}" if field.count else str(field.bits)
     part = _open_part(message if isinstance(message, Message) else None, field)

@@ -117,7 +117,7 @@ def _field(field: Field) -> _Object:
         offset=field.at,
         enum=field.enum.name if field.enum else None,
         struct=field.struct.name if field.struct else None,
-        unit=field.unit.symbol if field.unit else None,
+        unit=field.unit_symbol or None,
         scale=str(scale.factor) if scale else None,
         scale_offset=str(scale.offset) if scale and scale.offset else None,
         **(field.curve.plain if field.curve else {}),
@@ -132,7 +132,7 @@ def _field(field: Field) -> _Object:
 
 def _derived(field: Field) -> _Object:
     found = {key: getattr(field, key) for key in ("name", "identifier", "formula", "summary")}
-    return _present(**found, unit=field.unit.symbol if field.unit else None)
+    return _present(**found, unit=field.unit_symbol or None)
 
 
 def _row(one: Enum | Member | Loggable | Struct) -> _Object:

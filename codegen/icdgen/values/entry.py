@@ -141,7 +141,7 @@ def _exact(field: Field, text: str) -> Fraction:
 
 def without_unit(field: Field, text: str) -> str:
     """``12.5 deg`` or ``12.5deg`` without the unit."""
-    symbol = field.unit.symbol if field.unit else ""
+    symbol = field.unit_symbol
     if not symbol or not text.endswith(symbol):
         return text
     number = text[: -len(symbol)].rstrip()

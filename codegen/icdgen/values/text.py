@@ -28,7 +28,7 @@ def to_text(frame: Frame, width: int | None = None) -> str:
             row.field.name,
             row.raw_text,
             row.text,
-            row.field.unit.symbol if row.field.unit else "",
+            row.field.unit_symbol,
             "; ".join(row.remarks),
         )
         for row in frame.rows

@@ -12,7 +12,6 @@ from icdgen.backends.assurance.trace import Element, Noticed
 from icdgen.icd.located import Map
 from icdgen.icd.model import Enum, Icd, Message, Node
 
-TITLES = {"c": "C", "python": "Python", "rust": "Rust"}
 _SHOWN = (
     "id", "set_id", "get_id", "length", "node_type", "interface_version", "at", "bits", "type", "enum", "value", "unit", "formula",
     "points", "outside", "const", "min", "max", "above", "below", "byte_order", "bit_order",
@@ -51,7 +50,7 @@ class Symbols:
     """
 
     def __init__(self, icd: Icd) -> None:
-        self.languages = (*TITLES, *backends.plug_ins())
+        self.languages = (*backends.TITLES, *backends.plug_ins())
         self._known: dict[str, dict[int, list[Symbol]]] = {}
         for language in self.languages:
             known = self._known[language] = {}
@@ -126,7 +125,7 @@ class Tracing:
 
 def title(language: str) -> str:
     """What a language is called; a plug-in's by its word for ``--lang``."""
-    return TITLES.get(language, language)
+    return backends.TITLES.get(language, language)
 
 
 def said(one: Element) -> str:

@@ -95,7 +95,7 @@ def table(one: Composite[Any]) -> Fields:
     for field in one.members:
         model, bounds = field.model, field.bounds
         limits = f"&limits[{len(found.limits)}]" if bounds else "NULL"
-        unit = literal(model.unit.symbol if model.unit else "")
+        unit = literal(model.unit_symbol)
         inside = "NULL" if field.struct is None else f"{names.stem(field.struct)}_fields"
         place = f"{model.at}u, {model.bits}u, {field.count or 1}u"
         found.rows.append(f"{{{literal(model.name)}, {unit}, {place}, {limits}, {len(bounds)}u, {inside}}}")

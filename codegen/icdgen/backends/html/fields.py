@@ -95,7 +95,7 @@ def _row(key: int, field: Field, message: Message, links: Links, anchor: str) ->
         raw=texts.raw_range(field),
         physical=texts.physical_range(field),
         resolution=texts.factor(abs(field.scale.factor)) if field.scale else "",
-        unit=field.unit.symbol if field.unit else "",
+        unit=field.unit_symbol,
         unit_url=links.unit(field.unit) if field.unit else "",
         formula=field.formula if field.has_formula or field.derived else "",  # points are among the notes
         notes=[texts.capitalized(note) for note in told],

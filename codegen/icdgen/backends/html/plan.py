@@ -67,7 +67,7 @@ def _field(field: Field, message: Message, node: Node, places: Mapping[str, int]
         "curve": [[start, list(terms)] for start, terms in curve.pieces] if curve else None,
         "oneWay": curve is not None and not field.leads_back,
         "ends": list(field.ends) if is_part else None,
-        "unit": field.unit.symbol if field.unit else None,
+        "unit": field.unit_symbol or None,
         "enum": field.enum.name if field.enum else None,
         "const": None if field.const is None else integer(field.const),
         "special": [[integer(one.value), one.meaning] for one in field.special] or None,  # bits of floats

@@ -31,7 +31,6 @@ IN_MESSAGE = {
 IN_PACKAGE = dict.fromkeys(("getattr", "globals", "import_module", "sorted"), "the function `{}`")
 IN_PACKAGE["wire"] = "the package `wire`"
 
-WIRE = "wire"  # the subpackage that says how messages travel
 TYPES = "_types"  # the subpackage of a node that holds its messages and enumerations
 _LONGEST = 200  # characters of a module's name, for the sake of file systems
 

@@ -98,7 +98,7 @@ def type_of(field: Field, is_little: bool = False) -> Type:
     """The type of a field, of an array that of an element."""
     order = "" if field.is_bytes else "leastSignificantByteFirst" if is_little else most_first(field.bits)
     encoding = "" if field.type == "float" or field.is_bytes else "twosComplement" if field.signed else "unsigned"
-    made = Type(_KINDS[field.type], field.bits, encoding, order, field.unit.symbol if field.unit else "")
+    made = Type(_KINDS[field.type], field.bits, encoding, order, field.unit_symbol)
     if field.enum is not None:
         labels = tuple(one for one in field.enum.members if one.value in _LONG and one.last in _LONG)
         return replace(made, labels=labels, enum=field.enum.name)

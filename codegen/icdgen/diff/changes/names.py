@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from icdgen.backends import TITLES
 from icdgen.diff.context import Context
 from icdgen.diff.generated import Name, is_called_otherwise, may_rename
 from icdgen.diff.pairs import EnumPair, FieldPair, IdentifiedPair, MemberPair, MessagePair, NodePair, Pair
@@ -40,9 +41,6 @@ def lines(renamed: Renamed) -> tuple[str, ...]:
         rest = [f"{len(rows) - MOST} more"] if len(rows) > MOST else []
         result.append(f"{TITLES[language]}: {listing(rows[:MOST] + rest)}")
     return tuple(result)
-
-
-TITLES = {"c": "C", "python": "Python", "rust": "Rust"}
 
 
 def _renamed(pair: IdentifiedPair, ctx: Context) -> Iterator[Found]:

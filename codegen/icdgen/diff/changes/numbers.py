@@ -74,7 +74,7 @@ def _times(old: Scale, new: Scale) -> tuple[str, ...]:
 
 @rule("DIF202", "field")
 def unit_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    old, new = (field.unit.symbol if field.unit else "" for field in (pair.old, pair.new))
+    old, new = (field.unit_symbol for field in (pair.old, pair.new))
     if old != new:
         text = f"the unit of {quote(pair.new.name)} is {new or 'no longer stated'}, was {old or 'not stated'}"
         severity = None if old and new else "warning"

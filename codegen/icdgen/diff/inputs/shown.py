@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.diff.inputs.side import Side
-from icdgen.errors import UserError
+from icdgen.errors import UserError, unreadable
 from icdgen.icd import annex, curve, derived, model, schema, source
 from icdgen.icd.build import derived_field
 from icdgen.icd.formula import FormulaError, Scale
@@ -41,7 +41,7 @@ def from_file(path: Path) -> Side:
         with open(path, "rb") as file:
             data = file.read(_MOST + 1)
     except OSError as error:
-        raise UserError(f"cannot read {path}: {error.strerror}", "check the path") from None
+        raise unreadable(path, error) from None
     return from_bytes(data, str(path))
 
 
