@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 DEFAULT_BITS = 8
+MOST_BITS = 32
 
 
 def number(written: int | Sequence[int]) -> int:

@@ -22,7 +22,8 @@ def _parts(ctx: Context) -> Iterator[tuple[Message, Node, Part, Map]]:
     """Every part of every composite frame, with the mapping that declares it."""
     for message, node in ctx.messages:
         if message.contains:
-            rows = {(r.get("message"), r.get("at")): r for r in mappings(message.source["contains"])}
+            told = [(row.get("message"), row.get("at"), row) for row in mappings(message.source["contains"])]
+            rows = {(name, at): row for name, at, row in told if isinstance(name, str) and isinstance(at, int)}
             for part in message.contains:
                 yield message, node, part, rows[part.message, part.at]
 

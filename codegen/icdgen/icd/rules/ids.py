@@ -53,8 +53,9 @@ def _uses(node: Node) -> Iterator[Use]:
 def _is_id(value: object) -> bool:
     """Whether it is a number or bytes: the entry may be broken."""
     if isinstance(value, list):
-        return bool(value) and all(isinstance(one, int) and 0 <= one <= 255 for one in value)
-    return isinstance(value, int) and value >= 0
+        most = wire_ids.size(wire_ids.MOST_BITS)
+        return 0 < len(value) <= most and all(isinstance(one, int) and 0 <= one <= 255 for one in value)
+    return isinstance(value, int) and 0 <= value < 1 << wire_ids.MOST_BITS
 
 
 @rule("ICD055")

@@ -140,10 +140,12 @@ def roles_stand_once(
     """Faults of a list of parts, if there is one, of which each has a role, or the name of one."""
     if not isinstance(section.get(key), Seq):
         return
-    seen: set[object] = set()
+    seen: set[str] = set()
     for row in mappings(section[key]):
         named = "role" if "role" in row else "name"
         role = row.get(named)
+        if not isinstance(role, str):  # it was refused, and nobody knows which one it is
+            return
         if role in roles and role in seen:
             yield Fault.at(row, named, f"a second {role}", "each role stands once")
         seen.add(role)
