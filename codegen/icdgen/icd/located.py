@@ -17,22 +17,15 @@ class Mark(Protocol):
     column: int
 
 
-class Stretch(Protocol):
-    """What begins and ends somewhere."""
-
-    start_mark: Mark
-    end_mark: Mark
-
-
-Spot = Place | Stretch
-"""Where something stood: the place, or what it is worked out from once it is asked for: few are."""
+Spot = Place | tuple[Mark, Mark]
+"""Where something stood: the place, or its beginning and end, of which it is made once it is asked for: few are."""
 
 
 def place_of(spot: Spot) -> Place:
     """The place that a spot is."""
     if isinstance(spot, Place):
         return spot
-    start, end = spot.start_mark, spot.end_mark
+    start, end = spot
     length = end.column - start.column if end.line == start.line else 1
     return Place(start.name, start.line + 1, start.column + 1, max(length, 1))
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, Protocol, cast
 
 from icdgen.diagnostics import Finding, Findings, Place
-from icdgen.icd.located import Map, Seq, Stretch, place_of
+from icdgen.icd.located import Map, Mark, Seq, Spot, place_of
 
 TREACHEROUS = "ICD003"
 MAX_BYTES = 4_000_000
@@ -96,9 +96,11 @@ def parse_on(data: bytes, name: str) -> tuple[Map, list[Finding]]:
     return tree, findings
 
 
-class Event(Stretch, Protocol):
+class Event(Protocol):
     """A YAML event: where it stands, and what scalars and openings of containers have beside it."""
 
+    start_mark: Mark
+    end_mark: Mark
     anchor: str | None
     tag: str | None
     value: str
@@ -130,8 +132,8 @@ class Builder:
         roots = Seq(Place(self.name))
         container: Any = roots  # what is being filled
         key: str | None = None  # of a mapping, whose value comes next
-        key_event: Any = None
-        stack: list[tuple[Any, str | None, Any]] = []  # those around it
+        key_spot: Spot = roots.spot
+        stack: list[tuple[Any, str | None, Spot]] = []  # those around it
         known = self.scalars  # stands for 'not seen yet', too
         next_event = event_parser(self.text, self.name).get_event
         scalar, mapping, sequence = events.ScalarEvent, events.MappingStartEvent, events.SequenceStartEvent
@@ -139,6 +141,7 @@ class Builder:
             while True:  # once an event, by the ten thousand: nothing is called that can be said here
                 event = next_event()
                 kind = type(event)
+                spot = event.start_mark, event.end_mark
                 value: Any
                 if kind is scalar:
                     plain = not event.style and event.anchor is None and event.tag is None
@@ -146,13 +149,13 @@ class Builder:
                     if value is known:
                         value = self.scalar(event)
                 elif kind is events.MappingEndEvent or kind is events.SequenceEndEvent:
-                    container, key, key_event = stack.pop()
+                    container, key, key_spot = stack.pop()
                     continue
                 elif kind is mapping or kind is sequence:
                     if event.anchor is not None:
                         self.refuse_alias(event)
                     self.check_tag(event)
-                    value = (Map if kind is mapping else Seq)(event)
+                    value = (Map if kind is mapping else Seq)(spot)
                 elif kind is events.AliasEvent:
                     self.refuse_alias(event)
                     return None, self.findings
@@ -165,20 +168,20 @@ class Builder:
                     continue
                 if type(container) is Seq:
                     container.append(value)
-                    container.spots.append(event)
+                    container.spots.append(spot)
                 elif key is None:
-                    key, key_event = value if type(value) is str else self.key(value, event), event
+                    key, key_spot = value if type(value) is str else self.key(value, event), spot
                 else:
                     if key in container:
-                        self.refuse_twin(key, place_of(key_event), container.key_at(key))
+                        self.refuse_twin(key, place_of(key_spot), container.key_at(key))
                     container[key] = value
-                    container.spots[key] = key_event, event
+                    container.spots[key] = key_spot, spot
                     key = None
                 if kind is not scalar:
                     if len(stack) >= MAX_DEPTH:
-                        self.findings.append(_too_deep(place_of(event)))
+                        self.findings.append(_too_deep(place_of(spot)))
                         return None, self.findings
-                    stack.append((container, key, key_event))
+                    stack.append((container, key, key_spot))
                     container, key = value, None
         except yaml.YAMLError as error:
             from icdgen.icd import remedies
@@ -259,7 +262,7 @@ class Builder:
         return _after(self.name, self.text[: found.start()]) if found else Place(self.name)
 
     def add(self, code: str, message: str, event: Event, help: str) -> None:
-        self.findings.append(Finding(code, message, place_of(event), help))
+        self.findings.append(Finding(code, message, place_of((event.start_mark, event.end_mark)), help))
 
 
 def _too_deep(place: Place) -> Finding:
