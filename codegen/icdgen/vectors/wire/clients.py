@@ -10,7 +10,7 @@ from icdgen import codec
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.protocol import can, i2c, uart
 from icdgen.protocol import logs as log_files
-from icdgen.protocol.facts import Facts
+from icdgen.protocol.facts import Facts, need
 from icdgen.protocol.sections import CAN, I2C, UART
 from icdgen.vectors.wire import Requests
 
@@ -95,8 +95,10 @@ def _uart(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]
         data = s.source.randbytes(message.length + more)
         return {"at": at, "receive": _line(known, bytes([message.telemetry_id or 0]) + data)}
 
-    plain, frame = s.plain, s.frame
+    plain, frame, framing = s.plain, s.frame, need(known.framing, "uart")
     other = next((m for m in known.telecommands.values() if m.acknowledge and m is not plain), plain)
+    escape = f"{framing.escape:02x}"
+    begin, finish = f"{escape}{framing.start:02x}", f"{escape}{framing.end:02x}"
     yield "a telecommand and its acknowledge", [s.ask(0, plain), ack(30, plain), s.ask(30, plain), ack(40, plain)]
     for name, code in known.errors.items():
         if name != "none":
@@ -120,7 +122,7 @@ def _uart(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]
     yield "the longest frame and the longest telecommand", [s.request(0, s.wide), reply(90, s.wide), s.ask(91, s.long)]
     yield "a frame that comes in pieces, after noise", [
         s.request(0, frame), {"at": 1, "receive": "0055" + reply(1, frame)["receive"][:6]}, {"at": 2},
-        {"at": 3, "receive": "00" * (frame.length - 1) + "1fff"},
+        {"at": 3, "receive": "00" * (frame.length - 1) + finish},
     ]  # fmt: skip
     yield "a frame that comes at the third try", [s.request(0, frame), {"at": 100}, {"at": 200}, reply(250, frame)]
     yield "a frame that never comes", [s.request(0, frame), {"at": 100}, {"at": 200}, {"at": 300}]
@@ -128,7 +130,8 @@ def _uart(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]
     yield "a frame that is too long", [s.request(0, frame), reply(1, frame, 1), reply(2, frame)]
     yield "a frame that was not asked for", [s.request(0, frame), reply(1, s.wide), reply(2, frame)]
     yield "errors in the stream", [
-        s.request(0, frame), {"at": 1, "receive": "1f7f901f00"}, {"at": 2, "receive": "1f7f1fff1f7f90"}, reply(3, frame),
+        s.request(0, frame), {"at": 1, "receive": f"{begin}90{escape}00"},
+        {"at": 2, "receive": f"{begin}{finish}{begin}90"}, reply(3, frame),
     ]  # fmt: skip
     cancel = {"cancel": True}
     yield "cancelled: nobody waits for its acknowledge, and another id need not wait", [
