@@ -6,6 +6,7 @@ import re
 from typing import Any
 from xml.etree.ElementTree import Element, ParseError, TreeBuilder
 
+from icdgen.definitions.accounting import Account, AccountedElement
 from icdgen.definitions.model import unreadable
 
 _ROOT = re.compile(r"<(?:[\w.-]+:)?([A-Za-z][\w.-]*)")
@@ -19,8 +20,9 @@ def root_of(start: str) -> str:
     return found[1] if found else ""
 
 
-def parse(file: str, data: bytes, lines: dict[Element, int] | None = None) -> Element:
-    """The outermost element; of each one its line is noted in ``lines``, if they are asked for.
+def parse(file: str, data: bytes, lines: dict[Element, int] | None = None, account: Account | None = None) -> Element:
+    """The outermost element; of each one its line is noted in ``lines``, if they are asked for. With an ``account`` all
+    are `AccountedElement`, which know their line and record what is read of them.
 
     Raises `Findings` for what is no XML, or has a document type (`<!DOCTYPE`).
     """
@@ -30,11 +32,16 @@ def parse(file: str, data: bytes, lines: dict[Element, int] | None = None) -> El
     class Noting(TreeBuilder):
         def start(self, tag: Any, attributes: Any, /) -> Element:
             element = super().start(tag, attributes)
+            if isinstance(element, AccountedElement):
+                element.line = parser.parser.CurrentLineNumber
             if lines is not None:
                 lines[element] = parser.parser.CurrentLineNumber
             return element
 
-    parser = DefusedXMLParser(target=Noting() if lines is not None else TreeBuilder(), forbid_dtd=True)
+    target = TreeBuilder()
+    if lines is not None or account is not None:
+        target = Noting(element_factory=None if account is None else AccountedElement)
+    parser = DefusedXMLParser(target=target, forbid_dtd=True)
     try:
         parser.feed(data)
         root: Element = parser.close()
@@ -45,6 +52,9 @@ def parse(file: str, data: bytes, lines: dict[Element, int] | None = None) -> El
             raise unreadable(file, f"not XML: {error}", "save it as UTF-8") from None
         help = "remove the document type; entities are neither expanded nor fetched"
         raise unreadable(file, "the XML has a document type, with which a file could ask for anything", help) from None
+    for element in root.iter():
+        if isinstance(element, AccountedElement):
+            element.is_text_read = False  # the builder itself reads the text while it adds to it
     return root
 
 

@@ -1,0 +1,108 @@
+"""What a reader did not use of its source is reported by name and place, and nothing else is."""
+
+from __future__ import annotations
+
+import pytest
+
+from icdgen.definitions import safe_xml
+from icdgen.definitions.accounting import Account, AccountedElement, accounted
+from icdgen.definitions.model import Definitions
+
+DEVICE = b"""<device version="2">
+  <field name="speed" unit="m/s" period="10">text</field>
+  <field name="mode"/>
+  <group><inner value="1"/></group>
+  <history><author name="somebody"/></history>
+</device>"""
+
+
+def device(*ignored: str) -> tuple[Account, AccountedElement]:
+    account = Account(frozenset(ignored))
+    return account, safe_xml.parse("device.xml", DEVICE, account=account)
+
+
+def unused(account: Account) -> list[tuple[str, int | None]]:
+    to = Definitions("device.xml")
+    account.report(to)
+    assert all((one.code, one.severity) == ("IMP085", "note") and one.help for one in to.troubles)
+    return [(one.message, one.spot.line) for one in to.troubles]
+
+
+def test_attributes_texts_and_elements_that_nobody_read_are_reported_where_they_stand():
+    account, root = device()
+    assert root.get("version") == "2"
+    assert [one.get("name") for one in root.iterfind("field")] == ["speed", "mode"]
+    assert root.find("group/inner").attrib["value"] == "1"
+    account.elements(root)
+    assert unused(account) == [
+        ("`period` of `field` is not used (`speed`)", 2),
+        ("`text` of `field` is not used (`speed`)", 2),
+        ("`unit` of `field` is not used (`speed`)", 2),
+        ("`history` of `device` is not used", 5),
+    ]
+
+
+def test_iterating_over_children_uses_none_of_them():
+    account, root = device("version", "device.history")
+    assert [child.tag for child in root] == ["field", "field", "group", "history"]
+    account.elements(root)
+    assert unused(account) == [
+        ("`field` of `device` is not used (2 times, first: `speed`)", 2),
+        ("`group` of `device` is not used", 4),
+    ]
+
+
+def test_what_a_finding_names_already_is_not_reported_again():
+    account, root = device("version")
+    for element in root:
+        element.settle()
+    account.elements(root)
+    assert unused(account) == []
+
+
+@pytest.mark.parametrize("access", ["items", "attrib", "iter", "itertext", "findtext"])
+def test_each_way_to_read_counts(access):
+    account, root = device("version", "history", "group")
+    for field in root.iter("field"):
+        if access == "items":
+            assert dict(field.items())
+        elif access == "attrib":
+            assert dict(field.attrib)
+    if access == "itertext":
+        assert "text" in "".join(root.itertext())
+    if access == "findtext":
+        assert root.findtext("field") == "text"
+    account.elements(root)
+    keys = {message.split("`")[1] for message, _ in unused(account)}
+    assert (
+        keys
+        == {
+            "items": {"text"},
+            "attrib": {"text"},
+            "iter": {"name", "unit", "period", "text"},
+            "itertext": {"name", "unit", "period", "value"},
+            "findtext": {"name", "unit", "period"},
+        }[access]
+    )
+
+
+def test_keys_of_json_and_yaml_that_nobody_read_are_reported_with_their_path():
+    tree = accounted(
+        {"meta": {"id": "a", "license": "b"}, "types": {"point": {"seq": [{"id": "x", "doc": "y"}], "doc": "z"}}},
+        frozenset({"types"}),
+    )
+    assert tree["meta"]["id"] == "a" and {**tree["types"]["point"]["seq"][0]} and "none" not in tree
+    account = Account()
+    account.mappings(tree)
+    assert unused(account) == [
+        ("`license` of `meta` is not used (meta)", None),
+        ("`doc` of `types` is not used (types.point)", None),
+    ]
+
+
+def test_an_xml_that_nests_deeper_than_python_does_is_accounted_for():
+    account = Account()
+    root = safe_xml.parse("deep.xml", b"<a>" * 20_000 + b"</a>" * 20_000, account=account)
+    list(root.iter("a"))[-1].get("name")
+    account.elements(root)
+    assert unused(account) == []
