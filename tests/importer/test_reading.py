@@ -31,6 +31,10 @@ WORDS = profile.load()
         ("physical value [°C] = raw value × 0.1 – 40", "raw*0.1 - 40", "°C", ""),
         ("Formatted value = 0.5 * (RAWVAL − 32)", "0.5*(raw - 32)", "", ""),
         ("(formatted value) [kg.m²] = RAWVAL*.5.", "raw*0.5", "kg.m²", ""),
+        ("(formatted value) [V] = RAWVAL:10", "raw/10", "V", ""),
+        ("(formatted value) [V] = RAWVAL ÷ 10", "raw/10", "V", ""),
+        ("(formatted value) [V] = RAWVAL : 10 + 1", "raw/10 + 1", "V", ""),
+        ("(formatted value) [V] = RAWVAL*0.1: the voltage", "raw*0.1", "V", ""),
         ("Torque. (Unit of measure is [A.m ² ])", "", "A.m²", ""),
         ("Speed of the wheel", "", "", ""),
     ],
@@ -42,7 +46,8 @@ def test_formulas_and_units_are_read_in_both_directions(text, formula, unit, wor
 
 @pytest.mark.parametrize(
     "text", ["(formatted value) = RAWVAL^2", "(formatted value) [V] = RAWVAL*1,5", "(formatted value) = RAWVAL*RAWVAL",
-             "(formatted value) = RAWVAL/1,000", "(formatted value) = sqrt(RAWVAL)", "(formatted value) = RAWVAL*0"],
+             "(formatted value) = RAWVAL/1,000", "(formatted value) = sqrt(RAWVAL)", "(formatted value) = RAWVAL*0",
+             "(formatted value) = RAWVAL: 10 means off", "(formatted value) = RAWVAL*2: 10 off"],
 )  # fmt: skip
 def test_a_formula_that_cannot_be_read_is_a_problem_and_not_a_shorter_one(text):
     read = descriptions.read(text, WORDS)

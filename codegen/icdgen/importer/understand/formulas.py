@@ -11,11 +11,12 @@ from icdgen.importer.words import plain, tidy_unit
 
 _NUMBER = re.compile(r"[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]{1,2})?|\.[0-9]+")
 _TIMES = {"×": "*", "·": "*", "∙": "*", "⋅": "*", "∗": "*", "x": "*", "X": "*", "÷": "/", "–": "-", "−": "-", ":": "/"}
-_OPERATOR = re.compile(r"[*/×·∙⋅∗÷+−–-]|[xX](?=\s*[0-9(.])")
+# A colon divides in `RAWVAL:10` and `RAWVAL : 10`. In `RAWVAL: 10 means off` it ends the formula: blanks tell them apart.
+_OPERATOR = re.compile(r"[*/×·∙⋅∗÷+−–-]|[xX](?=\s*[0-9(.])|:(?=[0-9(.])|(?<=\s):(?=\s*[0-9(.])")
 
 
 # What shows that an expression goes on in a way that is not understood: a power, a decimal comma, a name.
-_GOES_ON = re.compile(r"\s*[*/×·÷^²³]|,[0-9]|[A-Za-z_%]|\s*[+]")
+_GOES_ON = re.compile(r"\s*[*/×·÷^²³]|\s*:\s*[0-9(.]|,[0-9]|[A-Za-z_%]|\s*[+]")
 
 
 class Read(NamedTuple):
