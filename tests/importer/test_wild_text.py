@@ -257,6 +257,40 @@ def test_bytes_as_rows_and_bits_as_columns_are_a_message(tmp_path):
     ]  # fmt: skip
 
 
+NODE = "nodes: [{name: motor, match: [motor], bit_order: msb0, byte_order: big}]\n"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [f"Register map\n\n{MAP}", "CTRL (0x20), R/W\n\nBits\tName\n7:5\todr\n4:3\tmode\n1\tboot\n0\ten\n"],
+    ids=["grid", "rows"],
+)
+def test_the_bit_order_of_a_node_is_that_of_its_registers(tmp_path, text):
+    words = 'patterns: ["{name} ({hex}), {kind}"]\n'
+    counted_up = [(0, 1, "en"), (1, 1, "boot"), (3, 2, "mode"), (5, 3, "odr")]
+    counted_down = [(0, 3, "odr"), (3, 2, "mode"), (6, 1, "boot"), (7, 1, "en")]
+    assert sorted(places(read(tmp_path, text, words)[1]["messages"][0])) == counted_up
+    _, tree = read(tmp_path, text, words + NODE)
+    assert tree["node"]["bit_order"] == "msb0"
+    assert sorted(places(tree["messages"][0])) == counted_down
+    _, tree = read(tmp_path, text, words + "node: {bit_order: msb0}\n" + NODE.replace("msb0", "lsb0"))
+    assert tree["node"]["bit_order"] == "lsb0"
+    assert sorted(places(tree["messages"][0])) == counted_up
+
+
+def test_a_register_of_two_bytes_whose_order_is_not_stated_is_left_out(tmp_path):
+    text = "CTRL (0x20), R/W\n\nBits\tName\n15:8\trate\n7:0\tgain\n"
+    result, tree = read(tmp_path, text, 'patterns: ["{name} ({hex}), {kind}"]\n' + NODE.replace("msb0", "lsb0"))
+    assert not tree
+    assert "set `bit_order: msb0`" in next(t.help for t in result.troubles if t.code == "IMP037")
+
+
+@pytest.mark.parametrize("headings", ["Byte\tName", "Byte\tName\tDescription", "Offset\tSize\tName\tType"])
+def test_headings_without_rows_are_a_finding(tmp_path, headings):
+    result, _ = read(tmp_path, f"5 Telemetry\n\nMotor State (0x21)\n\n{headings}\n\nnext\n")
+    assert "it has headings for fields and no field" in found(result, "IMP024")[0]
+
+
 def test_a_grid_without_an_id_is_not_guessed(tmp_path):
     result, tree = read(tmp_path, f"Byte0\tByte1\tByte2\tByte3\na\tb\tc\td\n\nState (0x21)\n\nTelemetry\n\n{FIELDS}")
     assert [m["name"] for m in tree["messages"]] == ["State"] or found(result, "IMP031")

@@ -7,7 +7,6 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from icdgen.icd.wire_ids import DEFAULT_BITS
 from icdgen.importer import icd_trees, references
 from icdgen.importer.document import Document, Trouble
 from icdgen.importer.profile import Profile
@@ -28,7 +27,7 @@ def assemble(document: Document, survey: Survey, profile: Profile, prose: bool =
     for node in nodes:
         references.enums(node, nodes, everything, survey.troubles)
     for node in nodes:
-        references.complete(node, survey.troubles, icd_trees.head(node, document, profile).get("id_bits", DEFAULT_BITS))
+        references.complete(node, icd_trees.head(node, document, profile), survey.troubles)
     return {one.name: icd_trees.tree(one, document, profile, prose, survey.troubles) for one in nodes if one.holds}
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
+from typing import Any
 
 from icdgen.icd.wire_ids import DEFAULT_BITS
 from icdgen.importer.document import DOUBTFUL, LIKELY, Trouble
@@ -138,9 +140,44 @@ def _within_reach(node: NodeParts, nodes: list[NodeParts], enum: ReadEnum) -> st
     return enum.name
 
 
-def complete(node: NodeParts, troubles: list[Trouble], id_bits: int = DEFAULT_BITS) -> None:
-    """What messages still lack, and bits that no field covers; those that cannot be held are left out."""
-    node.messages = [message for message in node.messages if _is_held(message, (1 << id_bits) - 1, troubles)]
+def complete(node: NodeParts, head: dict[str, Any], troubles: list[Trouble]) -> None:
+    """Report what messages lack and bits without a field; drop messages that an ICD cannot represent.
+
+    ``head`` is the section `node` of the ICD: the only source of the bit order, the byte order and the size of ids.
+    """
+    most = (1 << head.get("id_bits", DEFAULT_BITS)) - 1
+    for message in node.messages:
+        if message.register_bits is not None and not message.lacks:
+            _order_bits(message, message.register_bits, head, troubles)
+    node.messages = [message for message in node.messages if _is_held(message, most, troubles)]
+
+
+def _order_bits(message: ReadMessage, bits: int, head: dict[str, Any], troubles: list[Trouble]) -> None:
+    """Turn positions that a register counts from its lowest bit into those of the node's bit order.
+
+    ``bits`` is the width of each register; 0 if the whole message is one register.
+    """
+    end = max((field.end for field in message.fields), default=0)
+    bits = bits or 8 * max(message.length or 0, (end + 7) // 8)
+    if head.get("bit_order") == "msb0":
+        message.fields = [element for field in message.fields for element in _elements(field)]  # their order turns, too
+        for field in message.fields:
+            first = field.at // bits * bits
+            field.at = first + bits - (field.end - first)
+    elif head.get("byte_order") == "big" and bits > 8:
+        troubles.append(Trouble("IMP037", f"{message.table.title}: its bits are counted down over {bits // 8} bytes, the "
+                                "highest byte first", message.table.spot, "set `bit_order: msb0` in the profile; it was left out",
+                                "error"))  # fmt: skip
+        message.lacks = "-"
+    message.fields.sort(key=lambda field: field.at)
+
+
+def _elements(field: ReadField) -> list[ReadField]:
+    """Return a field for each element of an array; the field itself if it is no array."""
+    if not field.count:
+        return [field]
+    places = ((f"{field.name} {index + 1}", field.at + index * field.bits) for index in range(field.count))
+    return [replace(field, name=name, at=at, count=0) for name, at in places]
 
 
 def _is_held(message: ReadMessage, most: int, troubles: list[Trouble]) -> bool:

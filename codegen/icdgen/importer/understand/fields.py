@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
-from itertools import pairwise
+from dataclasses import dataclass
+from itertools import pairwise, zip_longest
 
 from icdgen.icd.units import SPELLINGS, STANDARD
 from icdgen.importer.document import DOUBTFUL, Header, Table, Trouble
 from icdgen.importer.profile import Profile
 from icdgen.importer.understand import counting, descriptions, formulas, numbers, types
 from icdgen.importer.understand.counting import Extent, Units
-from icdgen.importer.understand.model import ReadField
+from icdgen.importer.understand.model import ReadField, ReadMessage
 from icdgen.importer.understand.rows import Entry, entries
 from icdgen.importer.understand.types import Type
 from icdgen.importer.words import BY_HAND, folded, grows, number, tidy_unit
@@ -46,8 +46,12 @@ class Unreadable(Exception):
     """The table has fields, and something makes all of them doubtful; the finding was given."""
 
 
-def read(table: Table, profile: Profile, length: int | None, troubles: list[Trouble]) -> list[ReadField]:
-    """The fields of a table with headings. Raises `Unreadable` where none of them can be held."""
+def read(message: ReadMessage, profile: Profile, troubles: list[Trouble]) -> list[ReadField]:
+    """Return the fields of a message whose table has headings; set its `register_bits` if the positions count down.
+
+    Raises `Unreadable` if no field can be read.
+    """
+    table, length = message.table, message.length
     header = table.header
     assert header is not None
     _positions_named(header, table)
@@ -83,23 +87,23 @@ def read(table: Table, profile: Profile, length: int | None, troubles: list[Trou
         bits = _bits(line, units, troubles)
         if bits is None:
             if implicit:
-                message = f"{line.where}: without its width nothing tells where the rest stands"
-                troubles.append(Trouble("IMP023", message, line.entry.spot, "the rest was left out", "error"))
+                problem = f"{line.where}: without its width nothing tells where the rest stands"
+                troubles.append(Trouble("IMP023", problem, line.entry.spot, "the rest was left out", "error"))
                 break
             continue
         start = at if implicit else (line.at or 0) * (line.units[0] or units.at) + _within(line, header)
         made.append(_field(line, start, bits, table, profile, troubles))
         at = start + bits
-    if not is_register:
-        return made
-    made = [one for one in made if folded(one.name) not in profile.reserved]  # as in grids
-    return _mirrored(made, length, table, profile, troubles)
+    if is_register:
+        message.register_bits = 0
+        made = [one for one in made if folded(one.name) not in profile.reserved]  # as in grids
+    return made
 
 
 def _follow(lines: list[Line], length: int | None, troubles: list[Trouble]) -> None:
     """Gives fields of a table without widths and types those that follow from the offsets of the next ones, in bytes."""
-    ends = [*(line.at for line in lines[1:]), length]
-    for line, end in zip(lines, ends, strict=True):
+    for line, following in zip_longest(lines, lines[1:]):
+        end = following.at if following else length
         if line.width is not None or line.at is None or end is None or end <= line.at:
             continue
         line.width, line.units = end - line.at, (line.units[0], line.units[0])
@@ -112,31 +116,6 @@ def _falls(spans: list[tuple[int | None, int]]) -> bool:
     """Whether positions count down, as the bits of registers do: bit 0 is the lowest one."""
     firsts = [first for first, _ in spans]
     return len(firsts) > 1 and all(a is not None and b is not None and a > b for a, b in pairwise(firsts))
-
-
-def _mirrored(
-    made: list[ReadField], length: int | None, table: Table, profile: Profile, troubles: list[Trouble]
-) -> list[ReadField]:  # fmt: skip
-    """The fields of a register, whose bits are counted from the lowest one, in the order of the node."""
-    node = profile.data["node"]
-    total = 8 * (length or (max((f.end for f in made), default=0) + 7) // 8)
-    if node.get("bit_order") == "msb0":
-        made = [element for one in made for element in _elements(one)]  # the order of an array's elements turns, too
-        for one in made:
-            one.at = total - one.end
-    elif node.get("byte_order") == "big" and total > 8:
-        troubles.append(Trouble("IMP037", f"{table.title}: its bits are counted down over {total // 8} bytes, the highest byte "
-                                "first", table.spot, "set `bit_order: msb0` in the profile; it was left out", "error"))  # fmt: skip
-        raise Unreadable
-    return sorted(made, key=lambda f: f.at)
-
-
-def _elements(array: ReadField) -> list[ReadField]:
-    """A field for each element."""
-    if not array.count:
-        return [array]
-    places = ((f"{array.name} {index + 1}", array.at + index * array.bits) for index in range(array.count))
-    return [replace(array, name=name, at=at, count=0) for name, at in places]
 
 
 def _positions_named(header: Header, table: Table) -> None:

@@ -131,6 +131,7 @@ def read(
                 made.append(message)
         return made
     message = ReadMessage("", "", table, names=[table.caption] if table.caption else [])
+    message.register_bits = grid.count if grid.unit == 1 else None
     take(message, said)
     for index, row in enumerate(row for row in rows if any(row.cells)):
         label = next((n for cell in row.cells[: min(grid.columns)] if (n := _label(cell)) is not None), index)
@@ -169,6 +170,7 @@ def _register(grid: Grid, row: Row, table: Table, profile: Profile, troubles: li
                                 "the row was left out", "error"))  # fmt: skip
         return None
     message = ReadMessage("", "", table, names=[name] if name else [])
+    message.register_bits = grid.count if grid.unit == 1 else None
     access = "".join(folded(cells.get(grid.roles.get("access", -1), "")))
     take(message, Said(name or f"Register {address}", (str(value),), _ACCESS.get(access, "")))
     message.fields = _fields(grid, row, table, 0, profile, troubles)
@@ -219,8 +221,6 @@ def _fields(
         lowest = min(numbers) - (min(n.start for n in grid.columns.values()) if grid.unit == 8 else 0)
         bits = len(numbers) * grid.unit
         at = start + lowest * grid.unit
-        if grid.unit == 1 and profile.data["node"].get("bit_order") == "msb0":
-            at = start + grid.count - 1 - max(numbers)
         if bits > 64:
             troubles.append(Trouble("IMP037", f"{table.title}: `{name}` has {bits} bits, which no number has",
                                     table.spot_of(row), "the cell was left out", "error"))  # fmt: skip

@@ -44,7 +44,7 @@ def read(table: Table, profile: Profile, troubles: list[Trouble], about: Around 
     message.summary = _summary(table, profile)
     if table.header is not None:
         try:
-            message.fields = fields.read(table, profile, message.length, troubles)
+            message.fields = fields.read(message, profile, troubles)
         except fields.Unreadable:
             message.lacks = "-"
             return message

@@ -47,6 +47,7 @@ class ReadMessage:
     listed: dict[str, object] = field(default_factory=dict)
     summary: str = ""
     lacks: str = ""  # why it cannot be held; "-" where a finding says so already
+    register_bits: int | None = None  # bits of each register whose bit 0 is the lowest one; 0: the whole message is one
 
     @property
     def ids(self) -> tuple[int | None, int | None, int | None]:
