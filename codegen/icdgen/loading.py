@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,7 +14,9 @@ if TYPE_CHECKING:
     from icdgen.icd.identifiers import Language
 
 
-def load(paths: list[Path], check: bool = True, plug_ins: Sequence[Language] = ()) -> Loaded:
+def load(
+    paths: list[Path], check: bool = True, plug_ins: Sequence[Language] = (), unsaved: Mapping[Path, bytes] | None = None
+) -> Loaded:  # fmt: skip
     """Like `icdgen.icd.load.load`: names must do for the languages of icdgen and for ``plug_ins``."""
     languages: list[Language] = [*map(backends.get, backends.names()), *plug_ins] if check else []
-    return icd_files.load(paths, check, languages)
+    return icd_files.load(paths, check, languages, unsaved)

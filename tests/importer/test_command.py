@@ -166,6 +166,33 @@ def test_a_profile_that_is_not_there_is_said_with_those_that_are(folder):
     assert "addendum, cubeadcs" in result.stderr
 
 
+@pytest.mark.parametrize("option", [[], ["--dry-run"], ["--format", "json"]])
+def test_an_import_whose_result_has_errors_ends_with_1(folder, option):
+    twice = MESSAGE.replace("Table 7: Pump", "Table 9: Tank")  # the id of another message
+    (folder / "pump.txt").write_text(MESSAGE + ENUM + twice, encoding="utf-8")
+    result = icdgen("import", "pump.txt", *option, cwd=folder)
+    assert result.returncode == 1, result.stdout
+    if "json" in option:
+        assert {one["severity"] for one in json.loads(result.stdout)["check"]} == {"error"}
+    else:
+        assert "error[" not in result.stdout  # the manual was read; only the result has errors
+        assert "`icdgen check icd/pump.yaml`" in result.stdout.splitlines()[-1]
+        assert "1 error" in result.stdout.splitlines()[-1]
+    assert (folder / "icd").exists() == ("--dry-run" not in option)
+
+
+def test_a_definition_whose_result_has_errors_ends_with_1(folder):
+    (folder / "fan.dbc").write_text(
+        'VERSION ""\n\nBU_: ECU\n\nBO_ 100 Fan: 8 ECU\n SG_ Speed : 0|8@1+ (1,0) [0|255] "" ECU\n', encoding="utf-8"
+    )
+    assert icdgen("import", "fan.dbc", "--dry-run", cwd=folder).returncode == 0
+    (folder / "icd" / "errata").mkdir(parents=True)
+    (folder / "icd" / "errata" / "fan.yaml").write_text("errata: 1\nnode: engine\nentries: []\n", encoding="utf-8")
+    result = icdgen("import", "fan.dbc", "--dry-run", cwd=folder)
+    assert result.returncode == 1
+    assert "`icdgen check icd/fan.yaml` would have 1 error" in result.stdout
+
+
 def test_a_manual_that_lacks_something_ends_with_1_and_is_written_all_the_same(folder):
     (folder / "pump.txt").write_text(TEXT.replace("\t16\t8", "\tl6\t8"), encoding="utf-8")
     result = icdgen("import", "pump.txt", cwd=folder)
@@ -195,7 +222,8 @@ def test_the_page_shows_each_doubtful_table_as_a_picture(tmp_path):
     manual = content.manual(content.shipped("common"), {"common": "Common"})
     LAYOUTS["ruled"](manual, tmp_path / "manual.pdf")
     result = icdgen("import", "manual.pdf", "--report", "report.html", cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
+    assert (result.returncode, result.stderr) == (1, "")  # without its errata, the result has errors
+    assert "error[" not in result.stdout
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert 'id="table-0"' in page
     assert "data:image/png;base64," in page

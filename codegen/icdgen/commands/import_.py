@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
+from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -12,7 +13,7 @@ from typing import TYPE_CHECKING
 import click
 
 from icdgen.commands.common import PATH, format_option, in_colour, print_findings, say, write_file
-from icdgen.diagnostics import Findings
+from icdgen.diagnostics import Finding, Findings, has_errors
 
 if TYPE_CHECKING:
     from icdgen.definitions.model import Reader
@@ -83,7 +84,7 @@ def import_(
     Definitions are CAN databases (DBC, KCD, SYM, ARXML). --profile, --report, --descriptions, --explore, --pages and
     --jobs are of manuals.
 
-    Exit status: 0 if the ICDs hold all that was found, 1 if something is missing from them or must be looked at first.
+    Exit status: 0 if the ICDs contain everything that was found and `icdgen check` has no errors for them, else 1.
     """
     from icdgen.definitions import kinds
     from icdgen.importer import console, profile, run, targets
@@ -101,20 +102,23 @@ def import_(
     except Findings as error:
         _refuse(error, manual, form)
         sys.exit(1)
+    invalid = False
     if explore:
         _explore(result, vocabulary, form)
     else:
+        checked = targets.check(result.targets)
+        invalid = has_errors(checked)
         if not dry_run:
             targets.write(result.targets)
         if form == "json":
-            click.echo(console.as_json(result))
+            click.echo(console.as_json(result, checked))
         else:
-            _say(result, dry_run)
+            _say(result, checked, dry_run)
     if page is not None:
         from icdgen.importer import html
 
         write_file(page, html.report(result), "choose another place with --report")
-    sys.exit(1 if result.failed and not explore else 0)
+    sys.exit(1 if (result.failed and not explore) or invalid else 0)
 
 
 def _define(file: Path, reader: Reader, out: Path, update: bool, dry_run: bool, form: str) -> None:
@@ -130,13 +134,14 @@ def _define(file: Path, reader: Reader, out: Path, update: bool, dry_run: bool, 
         sys.exit(1)
     if not dry_run:
         targets.write(read.targets)
+    checked = targets.check(read.targets)
     if form == "json":
-        click.echo(console.as_json(read))
+        click.echo(console.as_json(read, checked))
     else:
         colour = in_colour(sys.stdout)
         click.echo(console.report(read, colour), color=colour or None)
-        _say_files(read.targets, dry_run)
-    sys.exit(1 if read.failed else 0)
+        _say_files(read.targets, checked, dry_run)
+    sys.exit(1 if read.failed or has_errors(checked) else 0)
 
 
 def _explore(result: Result, vocabulary: Profile, form: str) -> None:
@@ -148,23 +153,22 @@ def _explore(result: Result, vocabulary: Profile, form: str) -> None:
         say(explore.report(result, vocabulary).rstrip("\n"))
 
 
-def _say(result: Result, dry_run: bool) -> None:
+def _say(result: Result, checked: list[Finding], dry_run: bool) -> None:
     from icdgen.importer import console
 
     if in_colour(sys.stdout):
         click.echo(console.report(result, True), color=True)
     else:
         say(console.report(result))
-    _say_files(result.targets, dry_run)
+    _say_files(result.targets, checked, dry_run)
 
 
-def _say_files(targets: list[Target], dry_run: bool) -> None:
+def _say_files(targets: list[Target], checked: list[Finding], dry_run: bool) -> None:
     from icdgen.importer import console
 
     if targets:
         say("\n".join(console.files(targets, dry_run)))
-        if not dry_run:
-            _next_step(targets)
+        say(_next_step(targets, checked, dry_run))
 
 
 def _refuse(error: Findings, manual: Path, form: str) -> None:
@@ -188,16 +192,14 @@ def _refuse(error: Findings, manual: Path, form: str) -> None:
         print_findings(about_lines, texts, "text", err=True)
 
 
-def _next_step(targets: list[Target]) -> None:
-    """What `icdgen check` would say of the files, as a number: the import ends where the check begins."""
-    from icdgen.loading import load
-
-    paths = [target.path for target in targets]
-    loaded, names = load(paths), " ".join(map(str, paths))
-    if count := len(loaded.findings):
-        say(f"next: `icdgen check {names}` has {count} finding{'s' if count != 1 else ''}")
-    else:
-        say(f"`icdgen check {names}`: no findings")
+def _next_step(targets: list[Target], checked: list[Finding], dry_run: bool) -> str:
+    """Return how many errors and warnings `icdgen check` has for the files: the import ends where the check begins."""
+    command = f"`icdgen check {' '.join(str(target.path) for target in targets)}`"
+    counts = Counter(finding.severity for finding in checked)
+    shown = " and ".join(f"{n} {severity}{'s' if n != 1 else ''}" for severity, n in sorted(counts.items()))
+    if dry_run:
+        return f"{command} would have {shown or 'no findings'}"
+    return f"next: {command} has {shown}" if shown else f"{command}: no findings"
 
 
 @contextmanager

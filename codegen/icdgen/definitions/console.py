@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 
 from icdgen.definitions.run import Read
+from icdgen.diagnostics import Finding
 from icdgen.importer import console
 from icdgen.reports.excerpt import printable
 
@@ -31,11 +33,12 @@ def _summary(read: Read) -> list[str]:
     return lines
 
 
-def as_json(read: Read) -> str:
-    """The same for programs."""
+def as_json(read: Read, checked: Sequence[Finding]) -> str:
+    """The report for programs; ``checked`` are the findings of `icdgen check` for the files."""
     found = read.definitions
     findings = [{**console.finding_as_json(one), "line": one.spot.line} for one in found.troubles]
+    written, remarks = console.files_as_json(read.targets), console.checked_as_json(checked)
     return json.dumps(
         {"definition": found.file, "kind": read.kind, "messages": found.total, "held": read.held, "findings": findings,
-         "identifiers": read.identifiers, "files": console.files_as_json(read.targets)}, indent=2, ensure_ascii=False,
+         "identifiers": read.identifiers, "files": written, "check": remarks}, indent=2, ensure_ascii=False,
     )  # fmt: skip

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,12 +22,14 @@ if TYPE_CHECKING:
 INCLUDE = "ICD004"
 
 
-def load(paths: list[Path], check: bool = True, languages: Sequence[Language] = ()) -> Loaded:
+def load(
+    paths: list[Path], check: bool = True, languages: Sequence[Language] = (), unsaved: Mapping[Path, bytes] | None = None
+) -> Loaded:  # fmt: skip
     """The ICDs of ``paths`` (files, or folders of files) with all that they include. Never raises for bad input.
 
-    Names must do for the ``languages``.
+    Names must do for the ``languages``. ``unsaved``: contents of files that are not written yet, or differ from what is.
     """
-    loader = _Loader()
+    loader = _Loader({_resolved(path): data for path, data in (unsaved or {}).items()})
     for path in paths:
         for file in loader.folder(path) if os.path.isdir(path) else [path]:
             loader.node(file, ())
@@ -41,7 +43,8 @@ def load(paths: list[Path], check: bool = True, languages: Sequence[Language] = 
 
 
 class _Loader:
-    def __init__(self) -> None:
+    def __init__(self, unsaved: Mapping[Path, bytes]) -> None:
+        self.unsaved = unsaved
         self.nodes: list[Node] = []
         self.by_path: dict[Path, Node | None] = {}
         self.findings: list[Finding] = []
@@ -97,7 +100,8 @@ class _Loader:
         name = str(path)
         self.inputs[path] = fingerprints.UNKNOWN
         try:
-            data = self.contents[path] = source.contents(path, name)
+            unsaved = self.unsaved.get(_resolved(path))
+            data = self.contents[path] = source.contents(path, name) if unsaved is None else unsaved
             self.inputs[path] = hashlib.sha256(data).hexdigest()
             self.texts[name] = data.decode("utf-8", "replace")
             tree, treacherous = source.parse_on(data, name)
@@ -163,7 +167,7 @@ class _Loader:
         if target in stack:
             names = " -> ".join(p.name for p in (*stack[stack.index(target) :], target))
             return f"files include each other in a circle: {names}", "take one `include` out"
-        if not os.path.isfile(target):
+        if target not in self.unsaved and not os.path.isfile(target):
             return f"there is no file `{item}` beside this one", "check the name"
         return None
 

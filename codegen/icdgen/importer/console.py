@@ -98,8 +98,8 @@ def files(targets: Sequence[Target], dry: bool = False) -> list[str]:
     return lines
 
 
-def as_json(result: Result) -> str:
-    """Tables and findings for programs."""
+def as_json(result: Result, checked: Sequence[Finding]) -> str:
+    """Tables and findings for programs; ``checked`` are the findings of `icdgen check` for the files."""
     found = [
         {
             "table": _table(one.table.number),
@@ -118,13 +118,21 @@ def as_json(result: Result) -> str:
     written = files_as_json(result.targets)
     return json.dumps(
         {"manual": result.document.file, "pages": result.document.pages, "tables": found, "findings": troubles,
-         "files": written}, indent=2, ensure_ascii=False,
+         "files": written, "check": checked_as_json(checked)}, indent=2, ensure_ascii=False,
     )  # fmt: skip
 
 
 def finding_as_json(one: Trouble) -> dict[str, Any]:
     """A finding without its place."""
     return {"code": one.code, "severity": one.severity, "message": one.message, "help": one.help}
+
+
+def checked_as_json(checked: Sequence[Finding]) -> list[dict[str, Any]]:
+    """Findings of `icdgen check` for the written files."""
+    return [
+        {"code": f.code, "severity": f.severity, "message": f.message, "help": f.help, "file": f.place.file, "line": f.place.line}
+        for f in checked
+    ]  # fmt: skip
 
 
 def files_as_json(targets: Sequence[Target]) -> list[dict[str, Any]]:
@@ -145,7 +153,7 @@ def refused_as_json(manual: str, findings: list[Finding]) -> str:
          "table": None, "page": None, "line": f.place.line}
         for f in findings
     ]  # fmt: skip
-    made = {"manual": manual, "pages": None, "tables": [], "findings": troubles, "files": []}
+    made = {"manual": manual, "pages": None, "tables": [], "findings": troubles, "files": [], "check": []}
     return json.dumps(made, indent=2, ensure_ascii=False)
 
 

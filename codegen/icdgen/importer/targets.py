@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from icdgen.diagnostics import Finding
 from icdgen.errors import UserError, unreadable
 from icdgen.icd.fmt import emit
 from icdgen.importer import update
@@ -50,6 +51,14 @@ def aim(
         made = update.update(old, str(path), tree, told)
         targets.append(Target(path, made.text, tree, made.changes, made.text == old, not over))
     return targets
+
+
+def check(targets: list[Target]) -> list[Finding]:
+    """Return the findings that `icdgen check` has for the files of an import, written or not."""
+    from icdgen.loading import load
+
+    texts = {target.path: target.text.encode("utf-8") for target in targets}
+    return load(list(texts), unsaved=texts).findings if texts else []
 
 
 def write(targets: list[Target]) -> None:
