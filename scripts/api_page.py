@@ -1,4 +1,4 @@
-"""Writes docs/api.md, the table of the API, from the programs beside it: what stands there is built and run by a test.
+"""Writes docs/reference/api.md, the table of the API, from the programs beside it: what stands there is built and run by a test.
 
 python -m scripts.api_page
 """
@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import yaml
 
 ROOT = Path(__file__).parent.parent
-PAGE, FOLDER = ROOT / "docs" / "api.md", ROOT / "docs" / "api"
+PAGE, FOLDER = ROOT / "docs" / "reference" / "api.md", ROOT / "docs" / "reference" / "api"
 LANGUAGES = {"c": "C", "python": "Python", "rust": "Rust"}
 PROGRAMS = {"c": "imu.c", "python": "imu.py", "rust": "imu.rs"}
 _MARK = re.compile(r"\s*(?:/\*|//|#) \[(?P<key>\w*)\](?: \*/)?\s*")
@@ -32,7 +32,8 @@ the ICD are data, which `allows` asks, since only the device knows when they hol
 JavaScript of the documentation site reads and writes the same values, and is no library.
 """
 END = """
-[A program in each language](programs.md) shows the same at work; [the wire layer](wire.md) describes buses, files and logs. In C an
+A program in each language shows the same at work: [C](../guides/driver-in-c.md), [Rust](../guides/rust.md),
+[Python](../guides/python.md); [the wire layer](wire.md) describes buses, files and logs. In C an
 event of a message that was not asked for, or of another node, is refused by `imu_receive_state` with `ICD_ERROR_UNKNOWN_ID`; in
 Rust another node's message does not compile.
 """

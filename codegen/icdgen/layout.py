@@ -1,6 +1,6 @@
 """Where each bit of each field lies in the bytes: the plan that all backends share.
 
-A field is a row of pieces, each a run of bits of one byte. See 'Bits' in ``docs/icd-format.md`` for the numbering.
+A field is a row of pieces, each a run of bits of one byte. See 'Bits' in ``docs/reference/icd-format.md`` for the numbering.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The manual's names -> identifiers. One rule for all languages, documented in ``docs/icd-format.md``."""
+"""The manual's names -> identifiers. One rule for all languages, documented in ``docs/reference/icd-format.md``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A typed client over envelopes: what docs/wire.md shows is compiled and run, and each event is read as what it is."""
+"""Typed client of a framed link: the C of docs/reference/wire-framing.md is compiled and run, and each event is read."""
 
 from __future__ import annotations
 
@@ -7,11 +7,12 @@ import subprocess
 import pytest
 
 from icdgen.loading import load
+from tests import documents
 from tests.c import harness
 from tests.conformance.icds import LINKS, read
 from tests.conftest import ROOT
 
-_, SHOWN = (ROOT / "docs" / "wire.md").read_text("utf-8").split("\n## Envelopes\n")
+SHOWN = documents.text("reference/wire-framing")
 EXAMPLES = ROOT / "examples" / "links"
 
 

@@ -1,4 +1,4 @@
-"""The plug-in of docs/backends.md does what the page says, installed as a user would install it."""
+"""The plug-in of docs/guides/add-a-language.md does what the page says, installed as a user would install it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import pytest
 
 from tests.conftest import DEMO, ROOT
 
-PAGE = ROOT / "docs" / "backends.md"
+PAGE = ROOT / "docs" / "guides" / "add-a-language.md"
 _FILE = re.compile(r"^```\w+\n(?:#|--|\{#) (?P<path>\S+)[^\n]*\n(?P<text>.*?)^```\n", re.MULTILINE | re.DOTALL)
 
 

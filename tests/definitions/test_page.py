@@ -1,4 +1,4 @@
-"""docs/definitions.md is true: its files give its output, from the definition to the program that runs."""
+"""The pages about definitions: each file gives the output shown, from the definition to the program that runs."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ import pytest
 
 from icdgen.definitions import kinds, run
 from icdgen.icd.fmt import emit
-from tests.conftest import ROOT
+from tests import documents
 
-PAGE = (ROOT / "docs" / "definitions.md").read_text(encoding="utf-8")
+PAGE = "".join(documents.text(f"guides/import-{name}") for name in documents.IMPORTS)
 
 
 def blocks(language: str) -> list[str]:

@@ -237,7 +237,7 @@ def _put(data: bytes, part: dict, value: int) -> bytes:
 
 def _exact(formula: str, raw: int) -> float:
     terms = coefficients(formula)
-    if len(terms) > 2:  # docs/icd-format.md says how a polynomial is computed
+    if len(terms) > 2:  # docs/guides/scales.md says how a polynomial is computed
         computed = float(terms[-1])
         for term in terms[-2::-1]:
             computed = float(term) + raw * computed

@@ -1,10 +1,11 @@
-"""What is asked over an envelope is answered: two requests together, one of them lost, in C and Rust as docs/wire.md shows it."""
+"""Two requests at once on a framed link, one of them lost: C and Rust as docs/reference/wire-framing.md shows them."""
 
 from __future__ import annotations
 
 import re
 import subprocess
 
+from tests import documents
 from tests.c import harness as c
 from tests.conformance.icds import icd_of
 from tests.conftest import ROOT
@@ -12,9 +13,7 @@ from tests.rust import harness as rust
 from tests.rust.tools import Toolchain, run
 
 ICD = icd_of([ROOT / "examples" / "links" / "ubx.yaml"])
-SHOWN = (
-    (ROOT / "docs" / "wire.md").read_text(encoding="utf-8").split("**Client.**")[1].split("## Links to begin with")[0]
-)
+SHOWN = documents.text("reference/wire-framing").split("**Client.**")[1]
 
 C = """
 #include "receiver.h"

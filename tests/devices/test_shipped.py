@@ -273,8 +273,10 @@ def test_the_bme280_is_read_as_its_data_sheet_says(testee: Testee) -> None:
 
 
 def test_a_bme280_whose_coefficients_are_known_has_a_polynomial_of_temperature(tmp_path: Path) -> None:
-    """That of docs/devices.md, at the example that the data sheet of the sensor before it gives: 25.08 degrees."""
-    formula = re.search(r"^formula: (.*)$", (ROOT / "docs" / "devices.md").read_text("utf-8"), re.MULTILINE)
+    """That of docs/guides/example-devices.md, at the example that the data sheet of the sensor before it gives: 25.08 degrees."""
+    formula = re.search(
+        r"^formula: (.*)$", (ROOT / "docs" / "guides" / "example-devices.md").read_text("utf-8"), re.MULTILINE
+    )
     assert formula
     tree = yaml.safe_load(DEVICES["bme280"].read_text("utf-8"))
     field = next(one for one in tree["messages"] if one["name"] == "Measurement")["fields"][1]

@@ -1,4 +1,7 @@
-"""``python -m tests.features``: measures, writes docs/features.md, and names what lacks a reason; status 1 if anything does."""
+"""``python -m tests.features``: measures the outputs and writes docs/reference/features.md.
+
+Names each output that lacks a feature without a reason; the exit status is 1 if there is one.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ def main() -> int:
     text, wrong = page(rows), 0
     if not PAGE.exists() or PAGE.read_text("utf-8") != text:
         PAGE.write_text(text, "utf-8")
-        print("written: docs/features.md")
+        print("written: docs/reference/features.md")
     for name, (feature, cells) in rows.items():
         for output, cell in cells.items():
             if cell.has == (output in feature.without):

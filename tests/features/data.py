@@ -1,19 +1,19 @@
-"""The features of the format, as docs/features/rows.yaml has them, and the ICDs on which they are tried."""
+"""The features of the format, as docs/reference/features/rows.yaml has them, and the ICDs on which they are tried."""
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import yaml
 
-from tests.conftest import ROOT
+from tests import documents
 
-FORMAT, ROWS = ROOT / "docs" / "icd-format.md", ROOT / "docs" / "features" / "rows.yaml"
-_EXAMPLE = re.compile(r"```yaml\n(icdgen: 1\n.*?)```", re.DOTALL)
-_HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
+ROWS = documents.DOCS / "reference" / "features" / "rows.yaml"
 
 
 @dataclass(frozen=True)
@@ -86,17 +86,23 @@ def _feature(
 
 
 def examples() -> dict[str, list[str]]:
-    """The whole ICDs of the page about the format, by the heading above them."""
-    found: dict[str, list[str]] = {}
-    page = FORMAT.read_text("utf-8")
-    for match in _EXAMPLE.finditer(page):
-        heading = [one[1] for one in _HEADING.finditer(re.sub(_EXAMPLE, _blank, page), 0, match.start())][-1]
-        found.setdefault(heading, []).append(match[1])
-    return found
+    """Complete ICDs of the documents, by the heading above each."""
+    by_heading: dict[str, list[str]] = {}
+    for page in _pages():
+        for heading, texts in documents.icds_by_heading(page.read_text("utf-8")).items():
+            by_heading.setdefault(heading, []).extend(texts)
+    return by_heading
 
 
-def _blank(match: re.Match[str]) -> str:
-    return " " * len(match[0])
+def _pages() -> list[Path]:
+    """Pages whose examples show features; ``tests/protocol`` runs the examples of complete links."""
+    return [page for page in documents.pages() if page.stem != "example-links"]
+
+
+def page_of(section: str) -> str:
+    """Page that shows the example of a section, relative to ``docs/reference``."""
+    (page,) = (page for page in _pages() if section in documents.icds_by_heading(page.read_text("utf-8")))
+    return Path(os.path.relpath(page, ROWS.parent.parent)).as_posix()
 
 
 def _places(tree: object, uses: dict[str, dict[str, str]], alike: tuple[str, ...]) -> Iterator[object]:

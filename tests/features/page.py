@@ -1,15 +1,15 @@
-"""docs/features.md, from what was measured."""
+"""docs/reference/features.md, from what was measured."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
 from icdgen.backends.html.guide import anchor_of
-from tests.conftest import ROOT
-from tests.features.data import Feature, unmeasured
+from tests import documents
+from tests.features.data import Feature, page_of, unmeasured
 from tests.features.measure import Cell
 
-PAGE = ROOT / "docs" / "features.md"
+PAGE = documents.DOCS / "reference" / "features.md"
 OUTPUTS = {
     "codec": ("codec", "the reference codec reads frames otherwise"),
     "c": (
@@ -57,7 +57,9 @@ def page(rows: Mapping[str, tuple[Feature, dict[str, Cell]]]) -> str:
     lines = [_BEGIN, f"| | {' | '.join(heads)} |", f"|---|{'---|' * len(heads)}"]
     for feature, cells in rows.values():
         shown = [_shown(feature, output, cells[output], reasons) for output in OUTPUTS]
-        lines.append(f"| [{feature.name}](icd-format.md#{anchor_of(feature.section)}) | {' | '.join(shown)} |")
+        lines.append(
+            f"| [{feature.name}]({page_of(feature.section)}#{anchor_of(feature.section)}) | {' | '.join(shown)} |"
+        )
     lines += ["", *(f"{number}. {reason[0].upper()}{reason[1:]}." for number, reason in enumerate(reasons, 1))]
     lines += ["", f"Not measured yet: {', '.join(unmeasured()).lower()}."] if unmeasured() else []
     lines += ["", "| output | what is asked of it |", "|---|---|"]

@@ -10,7 +10,7 @@ from tests.conftest import ROOT
 from tests.importer.manuals import zephyr
 from tests.importer.test_command import icdgen
 
-PAGE = (ROOT / "docs" / "import-tutorial.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "guides" / "tutorial-manual.md").read_text(encoding="utf-8")
 
 
 def blocks(language: str) -> list[str]:
@@ -19,7 +19,7 @@ def blocks(language: str) -> list[str]:
 
 def test_every_step_of_the_tutorial_gives_what_it_shows(tmp_path):
     zephyr.draw(tmp_path / "zephyr.pdf")
-    shutil.copy(ROOT / "docs" / "import-tutorial" / "zephyr.yaml", tmp_path)
+    shutil.copy(ROOT / "docs" / "guides" / "tutorial-manual" / "zephyr.yaml", tmp_path)
     (tmp_path / "tank.c").write_text(blocks("c")[0], encoding="utf-8")
     for block in blocks("console"):
         for step in re.split(r"^\$ ", block, flags=re.MULTILINE)[1:]:
@@ -35,12 +35,12 @@ def test_every_step_of_the_tutorial_gives_what_it_shows(tmp_path):
 
 
 def test_the_profile_in_the_tutorial_is_the_one_beside_it():
-    text = (ROOT / "docs" / "import-tutorial" / "zephyr.yaml").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "guides" / "tutorial-manual" / "zephyr.yaml").read_text(encoding="utf-8")
     assert blocks("yaml")[0].strip() in text
 
 
 def test_the_excerpt_of_the_icd_is_what_the_import_writes(tmp_path):
     zephyr.draw(tmp_path / "zephyr.pdf")
-    profile = ROOT / "docs" / "import-tutorial" / "zephyr.yaml"
+    profile = ROOT / "docs" / "guides" / "tutorial-manual" / "zephyr.yaml"
     assert icdgen("import", "zephyr.pdf", "--profile", profile, cwd=tmp_path).returncode == 0
     assert blocks("yaml")[1] in (tmp_path / "icd" / "zephyr.yaml").read_text(encoding="utf-8")

@@ -14,12 +14,12 @@ import pytest
 
 from tests.conftest import ROOT
 
-FILES = ROOT / "docs" / "tutorial"
+FILES = ROOT / "docs" / "guides" / "tutorial"
 PAGES = ["tutorial-sensor", "tutorial-serial"]
 
 
 def page(name: str) -> str:
-    return (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8")
+    return (ROOT / "docs" / "guides" / f"{name}.md").read_text(encoding="utf-8")
 
 
 def blocks(name: str, language: str) -> list[str]:

@@ -1,4 +1,4 @@
-"""The links that docs/wire.md shows: each is checked, generated and run, and is that of the file beside it."""
+"""The links that docs/guides/example-links.md shows: each is checked, generated and run, and is that of the file beside it."""
 
 from __future__ import annotations
 
@@ -8,12 +8,13 @@ import pytest
 import yaml
 
 from icdgen.loading import load
+from tests import documents
 from tests.conftest import ROOT
 from tests.python import packages
 
-_, SHOWN = (ROOT / "docs" / "wire.md").read_text(encoding="utf-8").split("## Links to begin with\n")
+SHOWN = documents.text("guides/example-links")
 EXAMPLES = {found["name"]: found["yaml"] for found in re.finditer(
-    r"\*\*(?P<name>[^*]+)\*\*[^`]*?(?:`[^`]+`[^`]*?)*```yaml\n(?P<yaml>icdgen: 1\n.*?)```\n", SHOWN.split("\n## ")[0], re.S
+    r"\*\*(?P<name>[^*]+)\*\*[^`]*?(?:`[^`]+`[^`]*?)*```yaml\n(?P<yaml>icdgen: 1\n.*?)```\n", SHOWN, re.S
 )}  # fmt: skip
 FILES = {
     "Sync bytes, a length and a CRC": "sbp",

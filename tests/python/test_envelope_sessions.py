@@ -11,6 +11,7 @@ import textwrap
 import pytest
 import yaml
 
+from tests import documents
 from tests.conftest import ROOT
 from tests.python import packages
 
@@ -197,7 +198,7 @@ def test_all_are_told_that_the_connection_is_closed(wire, node):
 
 
 def test_what_is_documented_runs_and_its_types_are_known(package, tmp_path):
-    text = (ROOT / "docs" / "wire.md").read_text("utf-8")
+    text = documents.text("reference/wire-framing")
     (shown,) = re.findall(r"```python\n(clock, status = session.get_several.*?)```", text, re.S)
     first, rest = shown.split("\n", 1)
     program = f"""\

@@ -10,6 +10,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
+from tests import documents
 from tests.c import harness as c
 from tests.conftest import ROOT
 from tests.python import packages
@@ -112,7 +113,7 @@ def test_the_example_in_python_is_typed(package, tmp_path):
     assert done.returncode == 0, done.stdout
 
 
-def test_the_page_shows_the_examples_as_they_are():
-    page = (ROOT / "docs" / "programs.md").read_text(encoding="utf-8")
+def test_the_pages_show_the_examples_as_they_are():
+    pages = {"c": "guides/driver-in-c", "rust": "guides/rust", "python": "guides/python"}
     for language, example in EXAMPLES.items():
-        assert f"```{language}\n{example.read_text(encoding='utf-8')}```\n" in page, language
+        assert f"```{language}\n{example.read_text(encoding='utf-8')}```\n" in documents.text(pages[language]), language

@@ -18,7 +18,7 @@ KINDS = {
     "composite": "cubeacp/adcs_state.html",
     "long": "cubeacp/adcs_system_configuration.html",
     "protocol": "cubeacp/protocol.html",
-    "guide": "icdgen-docs/wire.html",
+    "guide": "icdgen-docs/reference/wire.html",
     "units": "units.html",
     "errata": "errata.html",
     "changes": "changes.html",

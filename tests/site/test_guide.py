@@ -5,15 +5,15 @@ from __future__ import annotations
 import re
 
 from icdgen.backends.html import guide
-from tests.conftest import ROOT
+from tests import documents
 from tests.site.test_find import found
 
 
 def test_every_page_of_the_manual_is_on_the_site_with_all_its_headings(site):
-    names = sorted(path.stem for path in (ROOT / "docs").glob("*.md"))
+    names = sorted(path.relative_to(documents.DOCS).with_suffix("").as_posix() for path in documents.pages())
     assert sorted(page.name for page in guide.pages()) == names and len(names) > 7
     for page in guide.pages():
-        source = re.sub("^```.*?^```", "", (ROOT / "docs" / f"{page.name}.md").read_text("utf-8"), flags=re.S | re.M)
+        source = re.sub("^```.*?^```", "", documents.text(page.name), flags=re.S | re.M)
         assert len(re.findall("^#{1,6} ", source, flags=re.M)) == len(page.sections)
         assert (site / page.url).is_file()
 
@@ -37,10 +37,10 @@ def test_links_lead_to_pages_and_what_is_not_there_is_text(tmp_path):
 
 def test_the_search_finds_the_manual(site):
     asked = {
-        "icd format": "icdgen-docs/icd-format.html",
-        "On the wire": "icdgen-docs/wire.html",
-        "Comparing releases": "icdgen-docs/diff.html",
-        "simulator": "icdgen-docs/sim.html",
-        "errata overlays": "icdgen-docs/icd-format.html#errata-overlays",
+        "icd format": "icdgen-docs/reference/icd-format.html",
+        "On the wire": "icdgen-docs/reference/wire.html",
+        "Comparing releases": "icdgen-docs/guides/compare-releases.html",
+        "simulator": "icdgen-docs/guides/simulator.html",
+        "errata overlays": "icdgen-docs/guides/errata.html",
     }
     assert [q for q, r in zip(asked, found(site, list(asked)), strict=True) if asked[q] not in r[:2]] == []

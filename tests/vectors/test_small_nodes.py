@@ -14,8 +14,8 @@ from tests.conformance import ROOT
 from tests.conformance.icds import LINKS
 
 SOURCES = [
-    ROOT / "docs" / "tutorial" / "icd" / "line.yaml",
-    ROOT / "docs" / "api" / "imu.yaml",
+    ROOT / "docs" / "guides" / "tutorial" / "icd" / "line.yaml",
+    ROOT / "docs" / "reference" / "api" / "imu.yaml",
     ROOT / "examples" / "links" / "ccsds.yaml",
     LINKS / "battery.yaml",
 ]

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
+from tests import documents
 from tests.c import odd as of_c
 from tests.conformance import odd
 from tests.conftest import ROOT
-
-_EXAMPLE = re.compile(r"```yaml\n(icdgen: 1\n.*?)```", re.DOTALL)
 
 
 def sets(folder: Path) -> dict[str, list[Path]]:
@@ -24,7 +22,9 @@ def sets(folder: Path) -> dict[str, list[Path]]:
     found["odd"] = sorted(odd.write(inner).glob("*.yaml"))
     (inner := folder / "hostile").mkdir()
     found["hostile"] = [path for path in of_c.write(inner) if path.stem in ("hostile", "silent")]
-    for number, text in enumerate(_EXAMPLE.findall((ROOT / "docs" / "icd-format.md").read_text("utf-8"))):
+    for number, text in enumerate(
+        text for page in documents.pages() for text in documents.icds(page.read_text("utf-8"))
+    ):
         path = folder / f"example{number}.yaml"
         path.write_text(text, encoding="utf-8")
         if "include:" not in text:

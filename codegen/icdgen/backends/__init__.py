@@ -1,6 +1,7 @@
 """The registry of backends. A backend is one class and one folder of templates, and touches nothing else.
 
-A backend of another package, a plug-in, is found through the entry point group ``icdgen.backends``: see docs/backends.md.
+A backend of another package, a plug-in, is found through the entry point group ``icdgen.backends``:
+see docs/guides/add-a-language.md.
 """
 
 from __future__ import annotations

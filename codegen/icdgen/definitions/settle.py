@@ -64,7 +64,7 @@ def settle(network: Network, to: Definitions) -> list[str]:
 
 
 def _identifier(line: _Line, code: str, attempt: int) -> str:
-    """Words for a name, by the rule of docs/definitions.md."""
+    """Words for a name, by the rule of docs/guides/import-definitions.md."""
     name, number = line.item["name"], str(line.number).replace("-", "minus ")
     if not naming.words(name) or attempt:
         return f"{line.what} {number}"

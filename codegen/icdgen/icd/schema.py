@@ -138,7 +138,7 @@ def _explain(error: Any, tree: Map, path: list[Any], owner: Map, place: Place) -
         message = f"{what} has neither {' nor '.join(keys)}"
     else:
         message = f"{what} does not fit the format ({name})"
-    return [Finding(CODE, message, place, help or "see docs/icd-format.md")]
+    return [Finding(CODE, message, place, help or "see docs/reference/icd-format.md")]
 
 
 def _unknown_key(key: str, known: list[str], place: Place) -> Finding:

@@ -66,7 +66,9 @@ def open_session(
     node, is_can = known.node, port.startswith("can://")
     if (known.can if is_can else known.framing or known.stream) is None:
         what = "CAN" if is_can else "a stream of bytes"
-        raise UserError(f"the ICD does not say how to talk to {node.name} over {what}", "see docs/icd-format.md")
+        raise UserError(
+            f"the ICD does not say how to talk to {node.name} over {what}", "see docs/reference/protocol.md"
+        )
     if known.can and not 0 <= address < 1 << known.can.parts["source"].bits:
         raise UserError(f"--address {address} does not fit", f"{known.can.parts['source'].bits} bits hold it")
     link = link_of(icd, known)

@@ -57,6 +57,6 @@ def session(
         else:
             yield Session(link, port.write, port.read, crc, settings, on_event, values=values)
     except IcdError as error:
-        raise UserError(str(error), "see docs/wire.md") from None
+        raise UserError(str(error), "see docs/reference/wire.md") from None
     finally:
         port.close()

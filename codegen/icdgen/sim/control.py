@@ -24,7 +24,7 @@ from icdgen.values.find import by_name, find_array, find_field, find_message, op
 
 Wave = Mapping[str, Any]  # as a script has it
 WAVES = ("sine", "ramp", "steps", "noise")
-HELP = "a script is a list of steps such as `- {at: 2.5, set: {Message: {field: value}}}`; see docs/sim.md"
+HELP = "a script is a list of steps such as `- {at: 2.5, set: {Message: {field: value}}}`; see docs/guides/simulator.md"
 
 
 @dataclass

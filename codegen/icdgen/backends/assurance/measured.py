@@ -20,7 +20,7 @@ from icdgen.icd.model import Icd
 FORMAT = 1
 _KEYS = {"icdgen_measurement": int, "name": str, "title": str, "says": list, "icd": str, "code": dict, "made_by": list,
          "facts": list, "columns": list, "rows": list}  # fmt: skip
-_AGAIN = "measure again, or leave it out: docs/assurance.md says how"
+_AGAIN = "measure again, or leave it out: docs/guides/verification-package.md says how"
 
 
 @dataclass(frozen=True, slots=True)

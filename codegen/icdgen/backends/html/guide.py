@@ -1,4 +1,4 @@
-"""The manual of icdgen as pages of the site: ``docs/*.md``, with links between them and what they show as files."""
+"""The manual of icdgen as pages of the site: ``docs/**/*.md``, with links between them and the files that they show."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 FOLDER = "icdgen-docs"  # no node can be called so
 HOME = f"{FOLDER}/index.html"
+INDEX = "README"  # page that lists the others
 _OF_EVERY_PAGE = ("content", "sidebar", "search", "results", "theme")  # ids that headings cannot have
 _LONG = 12_000  # characters of a page whose sections are folded
 
@@ -34,7 +35,11 @@ class Section:
 
 @dataclass
 class Page:
-    """``html`` is safe: it was made from Markdown in which HTML is but text."""
+    """A page of the manual.
+
+    ``name`` is its path below ``docs`` without suffix, ``guides/scales``. ``html`` is safe: it was made from Markdown in
+    which HTML is only text.
+    """
 
     name: str
     html: str
@@ -46,8 +51,8 @@ class Page:
 
     @property
     def url(self) -> str:
-        """``icdgen-docs/wire.html``"""
-        return f"{FOLDER}/{self.name}.html"
+        """``icdgen-docs/reference/wire.html``"""
+        return f"{FOLDER}/{self.name}.html" if self.name != INDEX else HOME
 
     @property
     def about(self) -> str:
@@ -57,14 +62,28 @@ class Page:
 
 @cache
 def pages() -> tuple[Page, ...]:
-    """All pages, by name; none where the manual is not there."""
-    return tuple(_page(path) for path in sorted(shipped.docs().glob("*.md")))
+    """All pages, the index first, in the order of the index; none where the manual is not installed."""
+    folder = shipped.docs()
+    paths = {path.relative_to(folder).with_suffix("").as_posix(): path for path in sorted(folder.rglob("*.md"))}
+    if INDEX not in paths:
+        return ()
+    listed = re.findall(r"\]\(([^)#:]+)\.md\)", paths[INDEX].read_text("utf-8"))
+    names = dict.fromkeys([INDEX, *(name for name in listed if name in paths), *paths])
+    return tuple(_page(paths[name], name) for name in names)
+
+
+def groups() -> dict[str, list[Page]]:
+    """Pages by their folder: the index and what lies beside it, guides, reference, explanation."""
+    by_folder: dict[str, list[Page]] = {}
+    for page in pages():
+        by_folder.setdefault(page.name.rpartition("/")[0], []).append(page)
+    return by_folder
 
 
 def files() -> Iterator[tuple[str, str]]:
     """What the pages show and lead to: path on the site and text."""
     folder = shipped.docs()
-    for path in sorted(folder.glob("*/**/*")):
+    for path in sorted(folder.rglob("*")):
         if path.is_file() and path.suffix in (".yaml", ".c", ".h", ".py", ".rs", ".toml", ".txt"):
             yield f"{FOLDER}/{path.relative_to(folder).as_posix()}", path.read_text("utf-8")
 
@@ -79,12 +98,12 @@ def _anchors(title: str) -> Iterator[str]:
     yield from (f"{anchor_of(title)}-{number}" for number in count(1))
 
 
-def _page(path: Path) -> Page:
+def _page(path: Path, name: str = "") -> Page:
     from markdown_it import MarkdownIt
 
     reader = MarkdownIt("commonmark", {"html": False}).enable(["table", "strikethrough"])
     tokens = reader.parse(path.read_text("utf-8"))
-    page = Page(path.stem, "")
+    page = Page(name or path.stem, "")
     taken = set(_OF_EVERY_PAGE)
     for number, token in enumerate(tokens):
         if token.type == "heading_open":
@@ -152,10 +171,22 @@ def _mend_links(token: Token, path: Path) -> None:
 def _target(href: str, path: Path) -> str:
     """Where a link leads from a page of the manual; empty for what is not on the site."""
     name, hash, anchor = href.partition("#")
-    if ":" in name or name.startswith(("/", "..")):
+    if ":" in name or name.startswith("/"):
         return ""
     if not name:
         return href
-    if not (path.parent / name).is_file():
+    target = (path.parent / name).resolve()
+    if not target.is_file() or not target.is_relative_to(_top(path)):
         return ""
-    return re.sub(r"\.md$", ".html", name) + hash + anchor
+    return (
+        re.sub(rf"\b{INDEX}\.md$", "index.md", name).removesuffix(".md")
+        + (".html" if name.endswith(".md") else "")
+        + hash
+        + anchor
+    )
+
+
+def _top(path: Path) -> Path:
+    """Folder of the manual that a page belongs to."""
+    folder = shipped.docs().resolve()
+    return folder if path.resolve().is_relative_to(folder) else path.parent.resolve()

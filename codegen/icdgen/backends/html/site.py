@@ -107,10 +107,8 @@ def _guide(page: _Page, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]
     found = guide.pages()
     if not found:
         return
-    beside = {
-        name: Markup(render("guide-sidebar.html.j2", pages=found, name=name)) for name in ["", *(p.name for p in found)]
-    }
-    yield page(guide.HOME, "guide-index.html.j2", pages=found, sidebar=beside[""])
     for one in found:
-        yield page(one.url, "guide.html.j2", page=one, sidebar=beside[one.name])
+        root = "../" * one.url.count("/")
+        sidebar = Markup(render("guide-sidebar.html.j2", groups=guide.groups(), name=one.name, root=root))
+        yield page(one.url, "guide.html.j2", page=one, sidebar=sidebar)
     yield from ((PurePosixPath(path), text) for path, text in guide.files())

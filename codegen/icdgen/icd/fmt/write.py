@@ -1,4 +1,4 @@
-"""Tree -> text in the canonical layout, described in ``docs/icd-format.md``."""
+"""Tree -> text in the canonical layout, described in ``docs/reference/icd-format.md``."""
 
 from __future__ import annotations
 

@@ -1,0 +1,46 @@
+"""Links of the documents lead to pages and headings that exist, and the index lists every page."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from icdgen.backends.html.guide import anchor_of
+from tests import documents
+from tests.conftest import ROOT
+
+PAGES = [*documents.pages(), *sorted(ROOT.glob("*.md")), *sorted(ROOT.glob("tests/*/README.md"))]
+
+
+def prose(page: Path) -> str:
+    return re.sub(r"^\s*```.*?^\s*```", "", page.read_text("utf-8"), flags=re.DOTALL | re.MULTILINE)
+
+
+def links(page: Path) -> Iterator[str]:
+    yield from re.findall(r"\]\(([^)\s]+)\)", re.sub(r"`[^`\n]*`", "", prose(page)))
+
+
+def anchors(page: Path) -> set[str]:
+    return {anchor_of(re.sub(r"[`*]", "", title)) for title in re.findall(r"^#+ (.*)$", prose(page), re.MULTILINE)}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_every_link_leads_to_a_page_and_heading_that_exists(page):
+    dead = []
+    for link in links(page):
+        name, _, anchor = link.partition("#")
+        if ":" in name:
+            continue
+        target = (page.parent / name).resolve() if name else page
+        if not target.exists() or (anchor and anchor not in anchors(target)):
+            dead.append(link)
+    assert dead == []
+
+
+def test_the_index_lists_every_page():
+    index = documents.DOCS / "README.md"
+    listed = {(index.parent / link.partition("#")[0]).resolve() for link in links(index)}
+    assert [page.name for page in documents.pages() if page.resolve() not in listed | {index}] == []
