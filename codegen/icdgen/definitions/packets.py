@@ -17,6 +17,7 @@ _HEADERS = (  # places of the primary header; type and flag of the secondary hea
     ((0, 3), (3, 1), (4, 1), (5, 11), (16, 2), (18, 14), (32, 16)),
     ((0, 3), (3, 2), (5, 11), (16, 2), (18, 14), (32, 16)),
 )
+_APID, _FLAGS = (5, 11), (3, 2)
 _MOST_ID_BITS = 32
 
 
@@ -49,17 +50,26 @@ class Sent(Protocol):
 
 
 def header(parts: Iterable[tuple[int, int, int | None]]) -> Header | None:
-    """The primary header that the first parts make, if they do: place, bits and only value of each."""
-    listed = list(parts)
-    for places in _HEADERS:
-        if [part[:2] for part in listed[: len(places)]] != list(places):
-            continue
-        values = [part[2] for part in listed[: len(places)]]
-        if len(places) < MOST_PARTS:
-            both = values[1]
-            values[1:2] = (None, None) if both is None else (both >> 1, both & 1)
-        return Header(*values[:4])
-    return None
+    """The primary header that the first parts make, if they do: place, bits and only value of each.
+
+    Many databases name only the parts that they use, the application process at least.
+    """
+    values: dict[tuple[int, int], int | None] = {}
+    for at, bits, value in parts:
+        values.setdefault((at, bits), value)
+    ahead = [place for place in values if place[0] < HEADER_BITS]
+    is_whole = any(set(places) <= set(ahead) for places in _HEADERS)
+    is_part = _APID in ahead and len(ahead) > 1 and any(set(ahead) <= set(places) for places in _HEADERS)
+    if not is_whole and not is_part:
+        return None
+    both = values.get(_FLAGS)
+    kind, secondary = (values.get((3, 1)), values.get((4, 1))) if both is None else (both >> 1, both & 1)
+    return Header(values.get((0, 3)), kind, secondary, values[_APID])
+
+
+def is_of_header(at: int, bits: int) -> bool:
+    """Whether a part is one of the primary header."""
+    return any((at, bits) in places for places in _HEADERS)
 
 
 def fill(network: Network, found: Sequence[Sent], to: Definitions) -> None:
@@ -84,7 +94,10 @@ def _packets(found: Sequence[Sent], network: Network, to: Definitions) -> None:
                 raise NotHeld("nothing says of which application process it is")
             if one.header.version not in (None, version) or one.header.kind not in (None, one.kind):
                 raise NotHeld(f"its header is not that of a space packet with {one.kind}")
-            network.messages.append(one.message(one.header.apid, HEADER_BITS, to))
+            message = one.message(one.header.apid, HEADER_BITS, to)
+            if not message["length"] and not message.get("fields"):
+                raise NotHeld("it has no data, and a space packet has at least one byte behind its header")
+            network.messages.append(message)
             held.append((one.kind, one.header))
         except NotHeld as why:
             to.left_out(one.name, why)

@@ -14,6 +14,7 @@ from icdgen.definitions.xtce_names import Names, beside, called
 from icdgen.definitions.xtce_types import Types, described
 
 _TELECOMMAND, _TELEMETRY = packets.TELECOMMAND, packets.TELEMETRY
+IN_HEADER, BASE_ONLY = "IMP086", "IMP087"
 _HAZARDOUS = frozenset({"vital", "critical", "severe"})
 
 
@@ -33,7 +34,7 @@ class Xtce:
         root = safe_xml.parse(file, data)
         names = Names(file, root)
         types = Types(to, names)
-        found = list(_all(names, types, to))
+        found = _identified(list(_all(names, types, to)), to)
         title = line(called(root), 100) or node_name(file)
         network = Network(node_name(file), title, {**ORDERS[BIG], **described(root)})
         packets.fill(network, found, to)
@@ -47,31 +48,43 @@ class Xtce:
 class _Found:
     """A container or command with its layout."""
 
-    def __init__(self, kind: str, element: Element, layout: Layout, more: Item) -> None:
-        """``more`` are keys of the message."""
+    def __init__(self, kind: str, element: Element, layout: Layout, more: Item, is_base: bool = False) -> None:
+        """``more`` are keys of the message, ``is_base`` of a container on which others are based."""
+        self.is_base = is_base
         self.kind, self.element, self.layout, self.more = kind, element, layout, more
         self.name = called(element)
-        self.told: dict[Hashable, int] = {id(one.of): layout.tell(one) for one in layout.told}
-        ahead = [one for one in layout.parts[: packets.MOST_PARTS] if "count" not in one.item]
-        self.header = packets.header((one.at, one.piece.bits, one.item.get("const")) for one in ahead)
+        self.told: dict[Hashable, int] = {one.reference: layout.tell(one) for one in layout.told}
+        self.header = packets.header((one.at, one.piece.bits, one.item.get("const")) for one in layout.parts)
         first = next(iter(layout.parts), None)
         is_id = first is not None and _is_id(first)
-        self.front: tuple[Hashable, int] | None = (id(first.of), first.piece.bits) if first and is_id else None
+        self.front: tuple[Hashable, int] | None = (first.reference, first.piece.bits) if first and is_id else None
 
     def message(self, id: int, start: int, to: Definitions) -> Item:
         """As it stands in an ICD. Raises `NotHeld`."""
         made = {"name": self.name, "id": id, "kind": self.kind, "length": 0, **self.more}
+        lost = [one for one in self.layout.parts if one.at < start and not self._is_ahead(one, start)]
+        if lost:
+            shown = ", ".join(f"`{one.item['name']}`" for one in lost)
+            text = f"message `{self.name}`: {shown} lies within the header"
+            to.warn(IN_HEADER, text, "it is left out: the parts of a header have their own meaning", "error")
         return self.layout.laid_out(made, start, BIG, to)
+
+    def _is_ahead(self, part: Part, start: int) -> bool:
+        """Whether a part is one of what stands in front of the data: of the primary header, or the id."""
+        at, bits = part.at, part.piece.bits
+        return packets.is_of_header(at, bits) if self.header is not None else (at, bits) == (0, start)
 
 
 def _all(names: Names, types: Types, to: Definitions) -> Iterator[_Found]:
     """Everything that is sent, in the order of the file; what is not held is noted."""
-    for element in _containers(names):
+    bases = _used(names, "BaseContainer")
+    for element in _containers(names, bases):
         to.total += 1
         layout = Layout(names, types)
         try:
             layout.add(element)
-            yield _Found(_TELEMETRY, element, layout, {**_group(names, element), **described(element)})
+            more = {**_group(names, element), **described(element)}
+            yield _Found(_TELEMETRY, element, layout, more, id(element) in bases)
         except NotHeld as why:
             to.left_out(element.get("name", ""), why)
     for element in names.all("command"):
@@ -79,9 +92,9 @@ def _all(names: Names, types: Types, to: Definitions) -> Iterator[_Found]:
             continue
         to.total += 1
         try:
-            chain = _commands(names, element)
+            chain = names.commands(element)
             layout = Layout(names, types, _arguments(chain))
-            container = next((one for of in chain if (one := of.find("CommandContainer")) is not None), None)
+            container = names.container_of(element)
             if container is None:
                 raise NotHeld("it has no container, which says how it is sent")
             layout.add(container)
@@ -90,42 +103,45 @@ def _all(names: Names, types: Types, to: Definitions) -> Iterator[_Found]:
                 for one in base.iterfind("BaseMetaCommand/ArgumentAssignmentList/ArgumentAssignment"):
                     assigned.setdefault(one.get("argumentName", ""), one.get("argumentValue", ""))
             for name, value in assigned.items():
-                if name not in layout.arguments:
-                    raise NotHeld(f"there is no argument `{line(name, 60)}` to be given a value")
-                layout.told.append(Told(layout.arguments[name], value, is_raw=False))
+                layout.told.append(Told(layout.argument(name), value, is_raw=False))
             more = {**_group(names, element), **_hazard(chain), **described(element)}
             yield _Found(_TELECOMMAND, element, layout, more)
         except NotHeld as why:
             to.left_out(element.get("name", ""), why)
 
 
-def _containers(names: Names) -> list[Element]:
+def _identified(found: list[_Found], to: Definitions) -> list[_Found]:
+    """The messages without containers that only others are based on: nothing says of which application process they are."""
+    is_packet = any(one.header is not None for one in found)
+    bases = [one for one in found if is_packet and one.is_base and (one.header is None or one.header.apid is None)]
+    if bases:
+        shown = ", ".join(f"`{one.name}`" for one in bases[:3]) + (" ..." if len(bases) > 3 else "")
+        what = "1 container is" if len(bases) == 1 else f"{len(bases)} containers are"
+        text = f"{what} without an application process: {shown}"
+        to.warn(BASE_ONLY, text, "others are based on them, which are messages", "note")
+        to.total -= len(bases)
+    return [one for one in found if one not in bases]
+
+
+def _containers(names: Names, bases: set[int]) -> list[Element]:
     """Those that are sent by themselves: not abstract, and no mere part or base of others."""
-    all_ = [one for one in names.all("container") if one.tag == "SequenceContainer"]
-    parts: set[int] = set()
-    for one in (*all_, *(inner for command in names.all("command") for inner in command.iterfind("CommandContainer"))):
-        references = [
-            *(entry.get("containerRef", "") for entry in one.iterfind("EntryList/ContainerRefEntry")),
-            *(base.get("containerRef", "") for base in one.iterfind("BaseContainer")),
-        ]
-        for reference in references:
-            try:
-                parts.add(id(names.find("container", reference, one)))
-            except NotHeld:
-                continue  # said where it is read
-    concrete = (one for one in all_ if one.get("abstract") != "true")
+    parts = bases | _used(names, "EntryList/ContainerRefEntry")
+    concrete = (
+        one for one in names.all("container") if one.tag == "SequenceContainer" and one.get("abstract") != "true"
+    )
     return [one for one in concrete if one.find("BaseContainer") is not None or id(one) not in parts]
 
 
-def _commands(names: Names, element: Element) -> list[Element]:
-    """A command, and those on which it is based. Raises `NotHeld` for a circle."""
-    chain = [element]
-    while (base := chain[-1].find("BaseMetaCommand")) is not None:
-        found = names.find("command", base.get("metaCommandRef", ""), chain[-1])
-        if any(found is one for one in chain):
-            raise NotHeld("commands are based on each other in a circle")
-        chain.append(found)
-    return chain
+def _used(names: Names, path: str) -> set[int]:
+    """The containers to which elements of others refer, by `id`."""
+    used: set[int] = set()
+    for one in (*names.all("container"), *names.all("command container")):
+        for reference in one.iterfind(path):
+            try:
+                used.add(id(names.container(reference.get("containerRef", ""), one)))
+            except NotHeld:
+                continue  # reported where it is read
+    return used
 
 
 def _arguments(chain: list[Element]) -> dict[str, Element]:

@@ -23,11 +23,23 @@ _REFERENCES = {"ParameterRefEntry": "parameterRef", "ArgumentRefEntry": "argumen
                "ArrayParameterRefEntry": "parameterRef", "ArrayArgumentRefEntry": "argumentRef"}  # fmt: skip
 
 
+class Reference(NamedTuple):
+    """A parameter or argument, or by ``path`` a member of an aggregate."""
+
+    of: Element
+    path: tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        """Name as in the file: ``Packet_ID/Version``."""
+        return "/".join((self.of.get("name", ""), *self.path))
+
+
 @dataclass
 class Part:
-    """A field in its place. ``of`` is the parameter or argument that it is, ``at`` counts bits from the first of the frame."""
+    """A field in its place. ``at`` counts bits from the first of the frame; a fixed value has no reference."""
 
-    of: Element | None
+    reference: Reference | None
     item: Item
     piece: Piece
     at: int
@@ -39,9 +51,9 @@ class Part:
 
 
 class Told(NamedTuple):
-    """A parameter or argument, and its only value in a message."""
+    """A parameter, argument or member, and its only value in a message."""
 
-    of: Element
+    reference: Reference
     value: str
     is_raw: bool
 
@@ -70,8 +82,9 @@ class Layout:
         self.types.step()
         start = self.at if is_included else 0
         within = (*within, container)
+        if (extended := self.names.base_of(container)) is not None:
+            self.add(extended, within, is_included)
         if (base := container.find("BaseContainer")) is not None:
-            self.add(self.names.find("container", base.get("containerRef", ""), container), within, is_included)
             if (criteria := base.find("RestrictionCriteria")) is not None:
                 self.told += self._told(criteria, container)
         if not is_included and (size := fixed(container.find("BinaryEncoding/SizeInBits"))):
@@ -110,7 +123,7 @@ class Layout:
     def _entry(self, entry: Element, container: Element, within: tuple[Element, ...]) -> None:
         count = _count(entry)
         if entry.tag == "ContainerRefEntry":
-            inner = self.names.find("container", entry.get("containerRef", ""), container)
+            inner = self.names.container(entry.get("containerRef", ""), container)
             for _ in range(count):
                 self.add(inner, within, is_included=True)
             return
@@ -119,9 +132,11 @@ class Layout:
             return
         if entry.tag not in _REFERENCES:
             raise NotHeld(f"it has a `{line(entry.tag, 60)}`")
-        of = self._parameter(entry.get(_REFERENCES[entry.tag], ""), container, "argument" in entry.tag.lower())
-        where = f"`{of.get('name', '')}`"
+        reference = self._parameter(_reference(entry), container, "argument" in entry.tag.lower())
+        of, where = reference.of, f"`{reference.name}`"
         type_ = self.names.type_of(of.get("parameterTypeRef", "") or of.get("argumentTypeRef", ""), of)
+        for member in reference.path:
+            type_ = self.types.member(type_, member, where)
         dimensions = entry.find("DimensionList")
         if type_.tag.startswith("Array") and dimensions is not None:
             piece = self.types.array(type_, dimensions, where)
@@ -130,15 +145,17 @@ class Layout:
         said = {**meant(of), **described(of, type_)}
         said |= {"view": True} if "view" in beside(of) else {}
         said |= {"const": number(constant, "a constant")} if (constant := beside(of).get("constant")) else {}
-        self._place(of, called(of), repeated(piece, count, where), said, 0)
+        name = " ".join((called(of), *reference.path))
+        self._place(reference, name, repeated(piece, count, where), said)
 
-    def _place(self, of: Element, name: str, piece: Piece, said: Item, depth: int) -> None:
+    def _place(self, reference: Reference, name: str, piece: Piece, said: Item) -> None:
         """Puts a piece where the last one ended; members of aggregates one after the other."""
-        if depth > _DEEPEST:
+        of, path = reference
+        if len(path) > _DEEPEST:
             raise NotHeld(f"`{name}` has members of members without end")
         for member, type_ in piece.members:
             of_member = self.types.piece(type_, f"`{name} {member}`")
-            self._place(of, f"{name} {member}", of_member, described(type_), depth + 1)
+            self._place(Reference(of, (*path, member)), f"{name} {member}", of_member, described(type_))
             if len(self.parts) > MOST_FIELDS:
                 raise NotHeld(f"it has more than {MOST_FIELDS} fields")
         if piece.members:
@@ -150,7 +167,7 @@ class Layout:
                 raise NotHeld(f"the least significant byte of the {piece.bits} bits of `{name}` is sent first")
             self.jumps = True  # its bits are counted from the least significant one, as Yamcs does
         item = again(piece.item, {"name": name, **piece.item, **said})
-        self.parts.append(Part(of, item, piece, self.at, "reserved" in beside(of)))
+        self.parts.append(Part(reference, item, piece, self.at, "reserved" in beside(of)))
         self.at += piece.bits
 
     def _fixed(self, entry: Element) -> None:
@@ -171,12 +188,15 @@ class Layout:
         )
         self.at += bits
 
-    def _parameter(self, name: str, seen_from: Element, is_argument: bool) -> Element:
-        if not is_argument:
-            return self.names.find("parameter", name, seen_from)
-        if name not in self.arguments:
+    def _parameter(self, name: str, seen_from: Element, is_argument: bool) -> Reference:
+        return self.argument(name) if is_argument else Reference(*self.names.parameter(name, seen_from))
+
+    def argument(self, name: str) -> Reference:
+        """The argument of that name, or a member of one. Raises `NotHeld`."""
+        first, *path = [name] if name in self.arguments else name.split("/")
+        if first not in self.arguments:
             raise NotHeld(f"there is no argument `{line(name, 100)}`")
-        return self.arguments[name]
+        return Reference(self.arguments[first], tuple(path))
 
     def _told(self, criteria: Element, seen_from: Element) -> Iterator[Told]:
         """Equalities that must all hold. Raises `NotHeld` for anything else."""
@@ -225,28 +245,28 @@ class Layout:
         if operator.strip() != "==":
             compared = f"`{line(name, 60)} {line(operator, 5)} {line(value, 60)}`"
             raise NotHeld(f"{said} {compared}, which is no equality")
-        element = self._parameter(name, seen_from, is_argument)
-        return Told(element, value, of.get("useCalibratedValue") == "false")
+        reference = self._parameter(name, seen_from, is_argument)
+        return Told(reference, value, of.get("useCalibratedValue") == "false")
 
     def tell(self, told: Told) -> int:
         """Makes the value of a parameter or argument the only one, and says which. Raises `NotHeld`."""
         part = self._part(told)
         raw = self._raw(part, told)
         if part.item.get("const", raw) != raw:
-            raise NotHeld(f"it is told by `{told.of.get('name', '')}`, which is both {part.item['const']} and {raw}")
+            raise NotHeld(f"it is told by `{told.reference.name}`, which is both {part.item['const']} and {raw}")
         part.item["const"] = raw
         return raw
 
     def _part(self, told: Told) -> Part:
-        """The last part that is the parameter or argument."""
-        part = next((one for one in reversed(self.parts) if one.of is told.of), None)
+        """The last part that is the parameter, argument or member. Raises `NotHeld`."""
+        part = next((one for one in reversed(self.parts) if one.reference == told.reference), None)
         if part is None:
-            raise NotHeld(f"it is told by `{told.of.get('name', '')}`, which it does not have")
+            raise NotHeld(f"it is told by `{told.reference.name}`, which it does not have")
         return part
 
     def _raw(self, part: Part, told: Told) -> int:
         """The raw value that a comparison is about."""
-        item, text, name = part.item, told.value.strip(), told.of.get("name", "")
+        item, text, name = part.item, told.value.strip(), told.reference.name
         if "count" in item or item["type"] not in ("uint", "int", "enum", "bool"):
             raise NotHeld(f"it is told by `{name}`, which is of the type {item['type']}")
         if item.keys() & {"formula", "points"} and not told.is_raw:
@@ -307,10 +327,9 @@ def _open(message: Item, part: Part, parts: list[Part], order: str, to: Definiti
     """The field of a part whose size is not fixed: counted where another counts it, else up to the end of the frame."""
     item, piece = part.item, part.piece
     most = min(item["up_to"], (MOST_BYTES - message["length"]) * 8 // item.get("bits", 8))
-    if part.of is not None and (said := beside(part.of).get("up_to")) is not None:
+    if part.reference is not None and (said := beside(part.reference.of).get("up_to")) is not None:
         most = min(most, max(1, number(said, "a size")))
-    name = piece.size.rsplit("/", 1)[-1]
-    counter = next((one for one in parts if one.of is not None and one.of.get("name") == name), None)
+    counter = next((one for one in parts if _is_named(one, piece.size)), None)
     counted = _counted(counter, piece, most) if counter is not None else 0
     if counter is not None and counted:
         by, most = counter.item["name"], counted
@@ -324,6 +343,11 @@ def _open(message: Item, part: Part, parts: list[Part], order: str, to: Definiti
     )
 
 
+def _is_named(part: Part, reference: str) -> bool:
+    """Whether a reference, which may lead through systems, ends with the name of a part."""
+    return part.reference is not None and f"/{reference}".endswith(f"/{part.reference.name}")
+
+
 def _counted(counter: Part, piece: Piece, most: int) -> int:
     """The most elements, or bytes, that a field may count; 0 if it may not."""
     odd = counter.item.keys() & {"formula", "points", "const", "count", "when", "view"}
@@ -331,6 +355,11 @@ def _counted(counter: Part, piece: Piece, most: int) -> int:
         return 0
     counted = min(most, (1 << counter.piece.bits) - 1 + piece.plus)
     return counted if counted >= max(1, piece.plus) else 0
+
+
+def _reference(entry: Element) -> str:
+    """What an entry refers to; the standard of 2006 lets arrays of arguments call it ``parameterRef``."""
+    return next((entry.attrib[key] for key in ("argumentRef", "parameterRef") if key in entry.attrib), "")
 
 
 def _named(entry: Element) -> str:

@@ -28,6 +28,7 @@ class Names:
             element.tag = safe_xml.local(element.tag)
         self._found: dict[tuple[str, str], Element] = {}
         self._systems: dict[int, str] = {}
+        self._senders: dict[int, Element] = {}  # commands by their container
         left = [(root, "", 0)]
         while left:
             system, above, depth = left.pop()
@@ -45,8 +46,9 @@ class Names:
         self._systems[id(element)] = path
         container = element.find("CommandContainer") if kind == "command" else None
         if container is not None:
-            self._found.setdefault(("container", f"{path}/{container.get('name', '')}"), container)
+            self._found.setdefault(("command container", f"{path}/{container.get('name', '')}"), container)
             self._systems[id(container)] = path
+            self._senders[id(container)] = element
         for argument in element.iterfind("ArgumentList/Argument"):
             self._systems[id(argument)] = path
 
@@ -58,9 +60,57 @@ class Names:
         """The path of the system in which something stands."""
         return self._systems[id(element)]
 
+    def commands(self, element: Element) -> list[Element]:
+        """A command, and those on which it is based. Raises `NotHeld` for a circle."""
+        chain = [element]
+        while (base := chain[-1].find("BaseMetaCommand")) is not None:
+            found = self.find("command", base.get("metaCommandRef", ""), chain[-1])
+            if any(found is one for one in chain):
+                raise NotHeld("commands are based on each other in a circle")
+            chain.append(found)
+        return chain
+
+    def container_of(self, command: Element) -> Element | None:
+        """The container of a command, or of the nearest on which it is based. Raises `NotHeld`."""
+        containers = (one.find("CommandContainer") for one in self.commands(command))
+        return next((one for one in containers if one is not None), None)
+
+    def base_of(self, container: Element) -> Element | None:
+        """The container that one extends. Raises `NotHeld`.
+
+        That of a command which names no base extends that of the base command: the standard leaves it open, Yamcs sends
+        it so, and its own databases rely on that.
+        """
+        if (base := container.find("BaseContainer")) is not None:
+            return self.container(base.get("containerRef", ""), container)
+        command = self._senders.get(id(container))
+        base_command = None if command is None else command.find("BaseMetaCommand")
+        if command is None or base_command is None:
+            return None
+        return self.container_of(self.find("command", base_command.get("metaCommandRef", ""), command))
+
+    def container(self, reference: str, seen_from: Element) -> Element:
+        """The container that a reference names: seen from a command one of commands, if there is one. Raises `NotHeld`."""
+        if seen_from.tag == "CommandContainer":
+            try:
+                return self.find("command container", reference, seen_from)
+            except NotHeld:
+                pass  # containers of telemetry may be parts of commands
+        return self.find("container", reference, seen_from)
+
     def type_of(self, reference: str, seen_from: Element) -> Element:
         """The type that a parameter, an argument or another type names. Raises `NotHeld`."""
         return self.find("argument type" if "Argument" in seen_from.tag else "parameter type", reference, seen_from)
+
+    def parameter(self, reference: str, seen_from: Element) -> tuple[Element, tuple[str, ...]]:
+        """The parameter that a reference names, and the names that lead to a member of it. Raises `NotHeld`."""
+        words = reference.split("/")
+        for length in range(len(words), 0, -1):
+            try:
+                return self.find("parameter", "/".join(words[:length]), seen_from), tuple(words[length:])
+            except NotHeld:
+                continue
+        raise NotHeld(f"there is no parameter `{line(reference, 100)}`")
 
     def find(self, kind: str, reference: str, seen_from: Element) -> Element:
         """What a reference names: in the system, or one around it. Raises `NotHeld` if there is nothing."""

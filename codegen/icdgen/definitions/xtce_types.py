@@ -71,6 +71,13 @@ class Types(Reading):
             made.item |= self._limits(made.item, chain) if is_held else {}
         return made
 
+    def member(self, element: Element, name: str, where: str) -> Element:
+        """The type of a member of an aggregate. Raises `NotHeld`."""
+        for member, type_ in self.piece(element, where).members:
+            if member == name:
+                return type_
+        raise NotHeld(f"{where}: `{element.get('name', '')}` has no member `{line(name, 60)}`")
+
     def array(self, element: Element, dimensions: Element | None, where: str) -> Piece:
         """So many elements of a type one after the other."""
         of = self.names.type_of(element.get("arrayTypeRef", ""), element)
