@@ -161,7 +161,7 @@ BROAD = "types:\n" + "".join(
         ("{id: b, size: c}", "", "`b` is not held: `c` is no number in front of it"),
         ("{id: t, size: 4, type: t}", "types:\n  t:\n    seq: [{id: n, type: u1}, {id: b, size: n}]\n",
          "`t b` is not held: its size is `n`, within a part that has a size of its own"),
-        ("{id: b, size: 0}", "", "`b` is not held: its size is 0"),
+        ("{id: b, size: -1}", "", "`b` is not held: its size is -1"),
         ("{id: b, size: 99999}", "", "`b` is not held: its size is 99999"),
         ("{id: b, type: str}", "", "`b` is not held: nothing says its size"),
         ("{id: b, type: strz, encoding: ASCII}", "", "`b` is not held: its size is not said: it ends at a terminator"),

@@ -10,6 +10,7 @@ import re
 import pytest
 
 from icdgen.definitions import kinds, run
+from icdgen.diagnostics import Findings
 from tests.definitions.test_can import FILES, field, message
 
 SHAPES = FILES / "shapes"
@@ -108,3 +109,32 @@ def test_xtce_a_field_within_the_header_is_left_out_with_a_finding(tmp_path):
     (lost,) = [one for one in read.definitions.troubles if one.severity == "error"]
     assert (lost.code, lost.message) == ("IMP086", "message `Orbit`: `Wheel` lies within the header")
     assert read.held == 5
+
+
+def test_kaitai_types_without_a_sequence_and_sizes_of_0_have_no_bytes():
+    read = imported(SHAPES / "cases.ksy")
+    (tree,) = read.trees.values()
+    assert findings(read) == [] and read.held == 3
+    assert [(one["name"], one["length"]) for one in tree["messages"]] == [
+        ("cases power", 5), ("cases nothing", 1), ("cases unknown", 1),
+    ]  # fmt: skip
+    assert [(one["name"], one["at"]) for one in message(read, "cases power")["fields"]] == [
+        ("kind", 0), ("volts", 8), ("amps", 24),
+    ]  # fmt: skip
+
+
+def test_kaitai_instances_at_fixed_places_are_the_fields_of_a_format_without_a_sequence():
+    read = imported(SHAPES / "places.ksy")
+    assert findings(read) == []
+    assert [(one["name"], one["at"]) for one in message(read, "places")["fields"]] == [
+        ("x", 0),
+        ("y", 16),
+        ("tail", 48),
+    ]
+
+
+def test_kaitai_a_library_of_types_says_that_it_has_no_sequence(tmp_path):
+    (tmp_path / "library.ksy").write_text("meta: {id: library}\ntypes:\n  one: {seq: [{id: x, type: u1}]}\n")
+    with pytest.raises(Findings) as error:
+        imported(tmp_path / "library.ksy")
+    assert "it has no `seq`, and so no field" in error.value.findings[0].message

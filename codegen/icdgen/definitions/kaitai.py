@@ -48,7 +48,7 @@ class Kaitai:
             network.structs.append({**kept, "fields": _fields(struct["parts"], order)})
         for layout, called in zip(layouts, _names(name, layouts), strict=True):
             if not any(part.is_whole for part in layout.parts):
-                to.left_out(called, "none of its fields is")
+                to.left_out(called, "none of its fields is" if layout.parts else "it has no `seq`, and so no field")
                 continue
             made: Item = {"name": called, "id": _ID, "kind": "telemetry", "length": -(-layout.at // 8)}
             made |= summary(str(body.get("doc") or "")) if len(layouts) == 1 else {}

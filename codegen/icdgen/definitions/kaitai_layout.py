@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -73,6 +74,8 @@ class Layout:
     def _attribute(self, one: Map, name: str, where: tuple[str, ...], scope: Scope, within: tuple[Type, ...]) -> None:
         if "process" in one:
             raise NotHeld(f"its bytes are processed by `{line(str(one['process']), 60)}` before they are read")
+        if sized(one) == 0:
+            return  # it has no bytes, whatever it is
         if (always := contents(one)) is not None:
             self._constant(where, always, one)
             return
@@ -239,7 +242,9 @@ class Layout:
             layout._within(one, inner, Scope(inner), (), (*within, inner) if sized(one) is None else within)
         except Undecided as error:
             raise NotHeld(f"what each of them has depends on `{error.key[0][-1]}`") from None
-        if layout.open or layout.at % 8 or not layout.at:
+        if not layout.parts and not layout.at:
+            return  # none of them has a byte
+        if layout.open or layout.at % 8:
             raise NotHeld("they are not of a fixed number of bytes")
         counter = count if isinstance(count, Counter) else None
         item: Item = {"struct": inner.name, "count": REST if counter else count, **summary(str(one.get("doc") or ""))}
@@ -342,8 +347,9 @@ class Layout:
 
     def _instances(self, type_: Type, scope: Scope, path: tuple[str, ...]) -> None:
         """Formulas of fields, where an instance is a line over one."""
-        for name, one in type_.instances.items():
-            if not isinstance(one, Map):
+        instances = type_.instances.items()
+        for name, one in instances if type_.seq else sorted(instances, key=_position):
+            if not isinstance(one, Map) or self._stands_at(name, one, type_, scope):
                 continue
             where = " ".join((*path, name))
             if "value" not in one:
@@ -356,6 +362,22 @@ class Layout:
                 self.file.note(
                     RAW_ONLY, text, "the fields that it is computed from are held", "warning", one.place.line
                 )
+
+    def _stands_at(self, name: str, one: Map, type_: Type, scope: Scope) -> bool:
+        """Whether an instance stands at a fixed place of a format without a sequence, which then is that of a field."""
+        at = one.get("pos")
+        if not isinstance(at, int) or "io" in one or type_.outer is not None or type_.seq:
+            return False
+        if self.open or 8 * at < self.at or at > MOST_BYTES:
+            return False
+        self.at = 8 * at
+        try:
+            self._attribute(one, name, (name,), scope, (type_,))
+        except TooMuch:
+            raise
+        except NotHeld as why:
+            self._as_bytes(one, (name,), why, known=True)
+        return True
 
     def _formula(self, one: Map, scope: Scope) -> bool:
         if isinstance(one["value"], (int, float)):
@@ -381,6 +403,12 @@ class Layout:
             if "summary" not in item:
                 item |= summary(str(one.get("doc") or ""))
         return True
+
+
+def _position(instance: tuple[str, Any]) -> float:
+    """Where an instance stands; those that are computed come last."""
+    at = instance[1].get("pos") if isinstance(instance[1], Map) else None
+    return at if isinstance(at, int) else math.inf
 
 
 def _unit(one: Map) -> str:

@@ -45,8 +45,10 @@ class Type:
 
     @property
     def seq(self) -> list[Map]:
-        """The attributes one after the other. Raises `NotHeld`."""
-        found = self.body.get("seq") or []
+        """The attributes one after the other; none of a type that only computes, or tells cases apart. Raises `NotHeld`."""
+        found = self.body.get("seq")
+        if found is None:
+            return []
         if not isinstance(found, Seq) or not all(isinstance(one, Map) for one in found):
             raise NotHeld(f"the `seq` of `{self.name}` is no list of attributes")
         return found
@@ -142,7 +144,7 @@ def sized(attribute: Map) -> int | None:
     size = integer(said.strip()) if isinstance(said, str) else said
     if not isinstance(size, int) or isinstance(size, bool):
         return None
-    if not 1 <= size <= MOST_BYTES:
+    if not 0 <= size <= MOST_BYTES:
         raise NotHeld(f"its size is {size}")
     return size
 
