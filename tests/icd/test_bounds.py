@@ -10,7 +10,7 @@ from icdgen.icd import schema
 # Rules hold these, as most depend on other numbers, or they stand in no generated code.
 HELD_ELSEWHERE = {
     *(f"{crc}/{key}" for crc in ("crc8", "crc16") for key in ("polynomial", "init", "xor_out", "empty", "check")),
-    *(f"checksums/additionalProperties/{key}" for key in ("polynomial", "init", "xor_out", "empty")),
+    *(f"checksums/additionalProperties/{key}" for key in ("polynomial", "init", "xor_out", "empty", "check")),
     *(f"{crc}/printed_constant" for crc in ("crc8", "crc16")),
     "can/extended/packets_left_in_last",
     "can/extended/max_packets",

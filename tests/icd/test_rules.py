@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from icdgen.icd.rules.protocol import crc
+from icdgen.icd.checksum import crc
 from tests.icd.files import codes, findings, status
 
 FEW = settings(max_examples=60, deadline=None)

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import reduce
-from operator import xor
-
+from icdgen.icd import checksum
 from icdgen.protocol import crc
-from icdgen.protocol.envelope import CRC, FLETCHER, FLETCHER_255, SUM, Check
+from icdgen.protocol.envelope import CRC, Check
 
 
 def compute(check: Check, data: bytes) -> int:
@@ -14,15 +12,4 @@ def compute(check: Check, data: bytes) -> int:
     form = check.crc
     if check.kind == CRC:
         return crc.compute(form, data)
-    if check.kind in (FLETCHER, FLETCHER_255):
-        modulus = 255 if check.kind == FLETCHER_255 else 256
-        first, second = form.init & 0xFF, form.init >> 8
-        for byte in data:
-            first = (first + byte) % modulus
-            second = (second + first) % modulus
-        found = second << 8 | first
-    elif check.kind == SUM:
-        found = (form.init + sum(data)) % (1 << form.width)
-    else:
-        found = reduce(xor, data, form.init)
-    return found ^ form.xor_out
+    return checksum.plain(check.kind, data, form.width, form.init, form.xor_out)

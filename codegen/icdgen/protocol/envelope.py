@@ -6,6 +6,7 @@ Everything a decoder computes with is decided here, once for all languages: a fi
 from __future__ import annotations
 
 from icdgen.frozen import dataclass
+from icdgen.icd import checksum
 from icdgen.protocol.sections import Crc
 
 LENGTH, SLIP, COBS, HDLC, PACKET = DELIMITERS = ("length", "slip", "cobs", "hdlc", "none")
@@ -17,7 +18,7 @@ GIVEN = ("sequence", "source", "destination", "type", "flags", "time")
 ROLES = ("constant", "id", "length", "checksum", *GIVEN)
 """Roles as code knows them: a `sync` is a constant."""
 
-CRC, FLETCHER, FLETCHER_255, SUM, XOR = CHECKS = ("crc", "fletcher", "fletcher_255", "sum", "xor")
+CRC, FLETCHER, FLETCHER_255, SUM, XOR = CHECKS = checksum.KINDS
 DIRECTIONS = ("telecommand", "telemetry")
 DATA = "data"  # in `covers`: what the envelope is around
 WORD = 32  # bits of the numbers that are computed with

@@ -25,5 +25,6 @@ PLACES: tuple[tuple[str, type[Any]], ...] = (
     ("program_copy", sections.Operation),
     ("program_information", sections.Operation),
     ("checksums.*", sections.Crc),
+    *((path, sections.CheckValue) for path in ("crc8", "crc16", "checksums.*")),
 )
 """Where the facts of each part stand in the protocol section of an ICD; `*` is any name."""

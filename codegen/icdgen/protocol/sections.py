@@ -99,6 +99,13 @@ class Crc:
     empty: int | None = code("empty", "checksum of no bytes at all, where it is not what the algorithm gives", None)
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class CheckValue:
+    """The example by which catalogues of checksums verify the parameters. Rule ICD091 computes it; no link needs it."""
+
+    check: int | None = code("check", 'checksum of the nine ASCII bytes "123456789"', None)
+
+
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Checksum:
     """The checksum of telecommands and frames."""

@@ -234,7 +234,7 @@ def _checksum(ctx: Context, link: Link, part: str, row: Map, known: Map) -> Iter
     elif width != row["bits"]:
         message = f"the checksum has {width} bits, its field {row['bits']}"
         yield Fault.at(row, "bits", message, "make them agree")
-    for key in ("polynomial", "init", "xor_out", "empty"):
+    for key in ("polynomial", "init", "xor_out", "empty", "check"):
         if isinstance(known.get(key), int) and known[key] >> width > 0:
             yield Fault.at(known, key, f"`{key}` does not fit {count(width, 'bit')}", f"correct `{key}` or `width`")
     if known["kind"] != "crc":

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TypeGuard
 
+from icdgen.icd import checksum
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Node
@@ -13,7 +14,7 @@ from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, quote
 from icdgen.icd.trees import at_path, mappings
 
-CHECKED = b"123456789"  # what the check value of a CRC is computed over, by convention
+CHECKED = b"123456789"  # what the check value of a CRC is computed over
 MAX_WIDTH = 64
 
 
@@ -70,39 +71,29 @@ def _hex(value: int | None) -> str:
 
 
 @rule("ICD091")
-def crc_checks(ctx: Context) -> Iterator[Fault]:
+def check_values(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         for section in sections(node):
-            values = [section.get(k) for k in ("width", "polynomial", "check")]
-            numbers = [v for v in (*values, section.get("init", 0), section.get("xor_out", 0)) if isinstance(v, int)]
-            if len(numbers) != 5:
-                continue
-            width, polynomial, wanted, init, xor_out = numbers
-            if not 1 <= width <= MAX_WIDTH:
-                continue
-            if not all(0 <= one < 1 << width for one in (polynomial, wanted, init, xor_out)):
-                continue
-            reflect_in, reflect_out = (bool(section.get(k)) for k in ("reflect_in", "reflect_out"))
-            got = crc(CHECKED, width, polynomial, init, reflect_in, reflect_out, xor_out)
-            if got != wanted:
+            wanted, got = section.get("check"), _check_value(section)
+            if type(wanted) is int and got is not None and got != wanted and 0 <= wanted < 1 << section["width"]:
                 message = f"these parameters give {_hex(got)} over 123456789, not the check value {_hex(wanted)}"
                 yield Fault.at(section, "check", message, "correct the parameters or `check`")
 
 
-def crc(data: bytes, width: int, polynomial: int, init: int, reflect_in: bool, reflect_out: bool, xor_out: int) -> int:
-    """The CRC of ``data``, bit by bit, in the parameters of the usual catalogues."""
-    mask = (1 << width) - 1
-    register = init
-    for byte in data:
-        for position in range(8):
-            bit = byte >> (position if reflect_in else 7 - position) & 1
-            feedback = register >> (width - 1) ^ bit
-            register = register << 1 & mask
-            if feedback:
-                register ^= polynomial
-    if reflect_out:
-        register = int(f"{register:0{width}b}"[::-1], 2)
-    return register ^ xor_out
+def _check_value(section: Map) -> int | None:
+    """The checksum of `CHECKED` by the parameters of a section; None if they are incomplete, or do not fit the width."""
+    kind = section.get("kind", checksum.CRC)
+    given = [section.get("width"), section.get("init", 0), section.get("xor_out", 0), section.get("polynomial")]
+    numbers = [one for one in (given if kind == checksum.CRC else given[:3]) if type(one) is int]
+    if kind not in checksum.KINDS or len(numbers) != (4 if kind == checksum.CRC else 3):
+        return None
+    width, init, xor_out, *polynomial = numbers
+    if not 1 <= width <= MAX_WIDTH or not all(0 <= one < 1 << width for one in numbers[1:]):
+        return None
+    if kind != checksum.CRC:
+        return checksum.plain(kind, CHECKED, width, init, xor_out)
+    reflect_in, reflect_out = (bool(section.get(key)) for key in ("reflect_in", "reflect_out"))
+    return checksum.crc(CHECKED, width, polynomial[0], init, reflect_in, reflect_out, xor_out)
 
 
 @rule("ICD092")
