@@ -25,6 +25,8 @@ def sharing(draw, first: dict, names, made, open_end) -> list[dict]:
         if length > 1 and not any("up_to" in field for field in fields) and draw(st.integers(0, 4)) == 0:
             others[-1]["may_end_early"] = "zeros"
     group = [first, *others]
+    for message in group:
+        message["shares_id"] = True
     if way == "lengths":
         taken: set[int] = set()
         for message in group:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -102,7 +103,9 @@ def _write(file: Path, node: dict, messages: list[Definition]) -> dict[int, Defi
     lines, owners = ['{"icdgen": 1, "node": ' + json.dumps(node) + ', "enums": ['], {}
     enums = [(json.dumps(enum), one) for one in messages for enum in one.enums]
     structs = [(json.dumps(struct), one) for one in messages for struct in one.structs]
-    trees = [(json.dumps(one.tree()), one) for one in messages]
+    times = Counter((one.kind, one.id) for one in messages)
+    shared = {key: {"shares_id": True} if number > 1 else {} for key, number in times.items()}
+    trees = [(json.dumps(one.tree() | shared[one.kind, one.id]), one) for one in messages]
     for group, after in ((enums, '], "structs": ['), (structs, '], "messages": ['), (trees, "]}")):
         for number, (text, one) in enumerate(group):
             lines.append(text + ("," if number + 1 < len(group) else ""))

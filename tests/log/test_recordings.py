@@ -178,6 +178,7 @@ messages:
       - {at: 32, bits: 16, name: B, type: bytes}
   - name: First
     id: 1005
+    shares_id: true
     kind: telemetry
     length: 2
     fields:
@@ -185,6 +186,7 @@ messages:
       - {at: 8, bits: 8, name: Value, type: uint}
   - name: Second
     id: 1005
+    shares_id: true
     kind: telemetry
     length: 2
     fields:

@@ -31,8 +31,8 @@ messages:
   - {name: Limit, id: 257, kind: telemetry, length: 2, fields: [{at: 0, bits: 16, name: Limit, type: uint}]}
   - {name: Poll, id: 258, kind: telecommand, length: 0}
   - {name: Rate, set_id: 259, get_id: 259, kind: configuration, length: 1, fields: [{at: 0, bits: 8, name: Rate, type: uint}]}
-  - {name: Low, id: 260, kind: telemetry, length: 1, fields: [{at: 0, bits: 8, name: Page, type: uint, const: 1}]}
-  - {name: High, id: 260, kind: telemetry, length: 1, fields: [{at: 0, bits: 8, name: Page, type: uint, const: 2}]}
+  - {name: Low, id: 260, shares_id: true, kind: telemetry, length: 1, fields: [{at: 0, bits: 8, name: Page, type: uint, const: 1}]}
+  - {name: High, id: 260, shares_id: true, kind: telemetry, length: 1, fields: [{at: 0, bits: 8, name: Page, type: uint, const: 2}]}
   - {name: Log, id: 261, kind: telemetry, length: 0, fields: [{at: 0, name: Words, type: text, size: rest, up_to: 40}]}
 """
 LIMIT = "a50101020208b3"

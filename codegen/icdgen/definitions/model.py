@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from icdgen.diagnostics import Finding, Findings, Place
-from icdgen.icd import units
+from icdgen.icd import units, wire_ids
+from icdgen.icd.model import KEYS_OF_IDS
 from icdgen.importer.document import Spot, Trouble
 
 UNREADABLE = "IMP005"
@@ -45,6 +47,7 @@ class Network:
 
     def tree(self) -> Item:
         """The ICD as plain mappings and lists."""
+        self._mark_shared_ids()
         tree: Item = {"icdgen": 1, "node": {"name": self.name, "title": self.title, **self.head}}
         if declared := units.declared(one["unit"] for one in self.fields if "unit" in one):
             tree["units"] = declared
@@ -52,6 +55,16 @@ class Network:
             if value := getattr(self, key):
                 tree[key] = value
         return tree
+
+    def _mark_shared_ids(self) -> None:
+        """Set `shares_id` where the source itself gives one id to several messages of a direction, and nowhere else."""
+        uses = [(message, use) for message in self.messages for use in _ids(message)]
+        times = Counter(use for _, use in uses)
+        for message in self.messages:
+            message.pop("shares_id", None)
+        for message, use in uses:
+            if times[use] > 1:
+                message["shares_id"] = True
 
 
 @dataclass
@@ -86,6 +99,11 @@ class Reader(Protocol):
 
     def read(self, file: str, data: bytes) -> Definitions:
         """What the file defines. Raises `Findings` for one that cannot be read at all."""
+
+
+def _ids(message: Item) -> list[tuple[str, int]]:
+    """Direction and number of each id of a message."""
+    return [(direction, wire_ids.number(message[key])) for key, direction in KEYS_OF_IDS[message["kind"]]]
 
 
 def unreadable(file: str, message: str, help: str = "", line: int = 1) -> Findings:

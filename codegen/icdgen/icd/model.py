@@ -27,6 +27,13 @@ from icdgen.icd.units import Unit
 
 TELECOMMAND, TELEMETRY, CONFIGURATION = "telecommand", "telemetry", "configuration"
 
+# kind -> the keys of its ids and the direction each belongs to
+KEYS_OF_IDS = {
+    TELECOMMAND: (("id", TELECOMMAND),),
+    TELEMETRY: (("id", TELEMETRY),),
+    CONFIGURATION: (("set_id", TELECOMMAND), ("get_id", TELEMETRY)),
+}
+
 # Where the ICD gives no other numbers.
 CAN_DATA_BYTES = 8  # of a packet
 CAN_PACKETS = 256  # of an extended message

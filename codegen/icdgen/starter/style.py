@@ -11,8 +11,7 @@ from icdgen.icd import source
 from icdgen.icd.fmt import emit, read, scalars
 from icdgen.icd.fmt.commented import Branch, Child, Text
 from icdgen.icd.located import Map, Seq
-from icdgen.icd.model import TELECOMMAND, TELEMETRY, Icd, Node
-from icdgen.icd.rules.ids import KEYS
+from icdgen.icd.model import KEYS_OF_IDS, TELECOMMAND, TELEMETRY, Icd, Node
 from icdgen.icd.rules.protocol_names import MESSAGES
 
 # Sections about the line, and about what every message has; the others are about files, logs, programs of that very node.
@@ -101,10 +100,10 @@ def _seeded(protocol: Tree, messages: list[str]) -> Tree:
 def _renumber(messages: list[Child], style: Style) -> None:
     """Ids in the ranges of the style that its own messages leave free."""
     ranges = _ranges(style.protocol)
-    used = {(way, m[key]) for m in style.messages for key, way in KEYS[m["kind"]]}
+    used = {(way, m[key]) for m in style.messages for key, way in KEYS_OF_IDS[m["kind"]]}
     for message in messages:
         entries = {scalars.name(child.key): child for child in _children(message)}
-        for key, way in KEYS[_value(entries["kind"])]:
+        for key, way in KEYS_OF_IDS[_value(entries["kind"])]:
             first, last = ranges[way]
             wanted = _value(entries[key])
             free = [id for id in (wanted, *range(first, last + 1)) if first <= id <= last and (way, id) not in used]

@@ -8,19 +8,13 @@ from typing import NamedTuple
 from icdgen.icd import variants, wire_ids
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
-from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Message, Node
+from icdgen.icd.model import KEYS_OF_IDS, TELECOMMAND, TELEMETRY, Message, Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.duplicates import is_news, together
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, line_of, listing, quote
 from icdgen.icd.trees import mappings
 
-# kind -> the keys of its ids and the direction each belongs to
-KEYS = {
-    TELECOMMAND: (("id", TELECOMMAND),),
-    TELEMETRY: (("id", TELEMETRY),),
-    CONFIGURATION: (("set_id", TELECOMMAND), ("get_id", TELEMETRY)),
-}
 LINKED_BITS = 8  # of an id in every frame that a protocol section can describe, but for those of `stream`
 
 
@@ -38,7 +32,7 @@ class Use(NamedTuple):
 def _used(node: Node) -> Iterator[Use]:
     """The ids of its messages."""
     for message in node.messages:
-        for key, direction in KEYS[message.kind]:
+        for key, direction in KEYS_OF_IDS[message.kind]:
             yield Use(node, direction, wire_ids.number(message.source[key]), message.source, key, message)
 
 
@@ -72,6 +66,54 @@ def ids_told_apart(ctx: Context) -> Iterator[Fault]:
                     yield _same_id(node, first, use, is_linked)
                     break
             before.append(use)
+
+
+@rule("ICD181")
+def ids_shared_on_purpose(ctx: Context) -> Iterator[Fault]:
+    """Report messages that share an id, and can be told apart, if they do not both have the key `shares_id`.
+
+    Copying a message and forgetting to change its id also gives two messages that differ in length or in a constant, so
+    the difference alone is no evidence of an intention.
+    """
+    for node in filter(lambda node: not ctx.is_linked(node), ctx.icd.nodes):
+        seen: dict[tuple[str, int], Use] = {}
+        for use in (u for n in ctx.scope(node) for u in _uses(n) if u.message is not None):
+            first = seen.setdefault((use.direction, use.id), use)
+            if first is use or not is_news(ctx, node, first.node, use.node) or not _are_told_apart(first, use):
+                continue
+            silent = [one for one in (first, use) if not _confirms(one)]
+            if silent:
+                yield _unconfirmed(node, first, use, silent)
+
+
+def _confirms(use: Use) -> bool:
+    return use.source.get("shares_id") is True
+
+
+def _unconfirmed(node: Node, first: Use, use: Use, silent: list[Use]) -> Fault:
+    there = line_of(first.source.at(first.key), use.source.at(use.key))
+    names = [quote(one.source.get("name")) for one in (first, use)]
+    message = f"{use.direction} id {use.id} already belongs to {names[0]} ({there}){together(node, use.node)}"
+    if len(silent) == 1:
+        message += ", and only one of the two has `shares_id`"
+    to = "each of the two" if len(silent) == 2 else quote(silent[0].source.get("name"))
+    help = f"correct one `{use.key}`; or, if they share the id on purpose, add `shares_id: true` to {to}"
+    return Fault.at(use.source, use.key, message, help)
+
+
+@rule("ICD182", severity="warning", whole=True)
+def ids_that_are_shared(ctx: Context) -> Iterator[Fault]:
+    """Report the key `shares_id` of a message whose id no other message has: it would confirm a copied id later."""
+    shared: set[int] = set()
+    for node in ctx.icd.nodes:
+        users: dict[tuple[str, int], list[Use]] = {}
+        for use in (u for n in ctx.scope(node) for u in _uses(n)):
+            users.setdefault((use.direction, use.id), []).append(use)
+        shared.update(id(use.source) for uses in users.values() if len(uses) > 1 for use in uses)
+    for message, _ in ctx.messages:
+        if message.source.get("shares_id") is True and id(message.source) not in shared:
+            text = f"{quote(message.name)} has `shares_id`, but no other message has its id"
+            yield Fault.at(message.source, "shares_id", text, "remove the key, or correct the id")
 
 
 def _are_told_apart(one: Use, other: Use) -> bool:
@@ -165,7 +207,7 @@ def ids_that_tell_the_direction(ctx: Context) -> Iterator[Fault]:
 @rule("ICD059")
 def ids_of_kind(ctx: Context) -> Iterator[Fault]:
     for message, _ in ctx.messages:
-        own = [key for key, _ in KEYS[message.kind]]
+        own = [key for key, _ in KEYS_OF_IDS[message.kind]]
         for key in ("id", "set_id", "get_id"):
             if key in message.source and key not in own:
                 text = f"a {message.kind} message has no `{key}`"

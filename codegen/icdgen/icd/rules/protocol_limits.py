@@ -7,9 +7,8 @@ from math import ceil
 
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
-from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, Message, Node
+from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, KEYS_OF_IDS, Message, Node
 from icdgen.icd.rules.context import Context, said, section_of
-from icdgen.icd.rules.ids import KEYS
 from icdgen.icd.rules.protocol_sizes import numbers, of_one_number
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, listing, quote
@@ -60,7 +59,7 @@ def _extended(ctx: Context, node: Node, can: Map) -> Iterator[Message]:
     types = (("telecommand", "extended_request"), ("telemetry", "extended_response"))
     able = {direction for direction, key in types if at_path(can, (direction, key)) is not None}
     for message in ctx.messages_of(node) if isinstance(room, int) else ():
-        if message.length > room and any(direction in able for _, direction in KEYS[message.kind]):
+        if message.length > room and any(direction in able for _, direction in KEYS_OF_IDS[message.kind]):
             yield message
 
 
@@ -87,7 +86,7 @@ def _on_can(ctx: Context, node: Node) -> Iterator[Fault]:
         for role in ("source", "destination"):
             yield from _fits(own, "node_address", bits.get(role), f"a {role} address")
     for message in ctx.messages_of(node):
-        for key, _ in KEYS[message.kind]:
+        for key, _ in KEYS_OF_IDS[message.kind]:
             yield from _fits(message.source, key, bits.get("channel"), "the channel of a CAN identifier")
 
 

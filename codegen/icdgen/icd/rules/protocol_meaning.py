@@ -6,9 +6,8 @@ from collections.abc import Iterator
 
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
-from icdgen.icd.model import CAN_DATA_BYTES, TELECOMMAND, TELEMETRY
+from icdgen.icd.model import CAN_DATA_BYTES, KEYS_OF_IDS, TELECOMMAND, TELEMETRY
 from icdgen.icd.rules.context import Context, said, section_of
-from icdgen.icd.rules.ids import KEYS
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.protocol_limits import in_force, roles_stand_once
 from icdgen.icd.rules.protocol_sizes import numbers
@@ -107,7 +106,7 @@ def messages_can_be_sent(ctx: Context) -> Iterator[Fault]:
         room = can.get("max_data_bytes", CAN_DATA_BYTES)
         short = {direction for direction in CAN_TYPES if _is_short(can, direction)}
         for message in ctx.messages_of(node):
-            is_short = any(direction in short for _, direction in KEYS[message.kind])
+            is_short = any(direction in short for _, direction in KEYS_OF_IDS[message.kind])
             if is_short and message.length > room and id(message.source) not in seen:
                 seen.add(id(message.source))
                 text = f"{quote(message.name)} has {count(message.length, 'byte')}, a packet up to {room}"
