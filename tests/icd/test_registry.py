@@ -44,7 +44,7 @@ def test_an_explanation_has_title_reason_and_both_examples():
 
 
 def test_an_unknown_code_is_refused_with_the_nearest():
-    with pytest.raises(rules.UnknownRule, match="there is no rule ICD21; did you mean ICD121"):
+    with pytest.raises(rules.UnknownRule, match="there is no rule ICD21; did you mean ICD021"):
         rules.explain("ICD21")
 
 
