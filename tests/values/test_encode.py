@@ -83,10 +83,10 @@ def test_the_unit_may_be_written_out(icd, text):
         ({"x": "1/0"}, "`1/0` is not a number"),
         ({"x": "1_0"}, "`1_0` is not a number"),
         ({"x": "9" * 500}, "is not a number"),
-        ({"timeout": "61"}, "Timeout: 61 is not allowed: above the maximum 60 s"),
+        ({"timeout": "61"}, "Timeout: takes 0 to 60 s, not 61"),
         ({"timeout": "1.5"}, "Timeout: 1.5 is not a whole number"),
-        ({"timeout": "256"}, "Timeout: takes 0 to 255 s, not 256"),
-        ({"timeout": "-1"}, "Timeout: takes 0 to 255 s, not -1"),
+        ({"timeout": "256"}, "Timeout: takes 0 to 60 s, not 256"),
+        ({"timeout": "-1"}, "Timeout: takes 0 to 60 s, not -1"),
         ({"magic": "0x5B"}, "Magic Number: 0x5B is not allowed: must be 90 (0x5A)"),
     ],
 )
@@ -135,11 +135,12 @@ def test_every_type(icd, name, value, raw):
         ("mode", "nope", "Mode: `nope` is no member of Switch; members: 0 Off"),
         ("mode", "reserved", "Mode: `reserved` is 32 to 47: give the number; members: 0 Off, 1 On"),
         ("mode", "13", "Mode: 13 is not allowed: no member of Switch; members: 0 Off"),
-        ("mode", "300", "Mode: takes 0 to 255, not 300"),
-        ("ratio", "1e39", "Ratio: 1e39 is beyond what a 32-bit float holds"),
-        ("ratio", "0", "Ratio: 0 is not allowed: must be above 0 %"),
+        ("mode", "300", "Mode: 300 is not allowed: no member of Switch; members: 0 Off"),
+        ("ratio", "1e39", "Ratio: 1e39 is beyond what a 32-bit float can represent"),
+        ("ratio", "-1e39", "Ratio: takes above 0 %, not -1e39"),
+        ("ratio", "0", "Ratio: takes above 0 %, not 0"),
         ("ratio", "0x3f800000", "Ratio: `0x3f800000` is not a number"),
-        ("precise", "1e309", "Precise: 1e309 is beyond what a 64-bit float holds"),
+        ("precise", "1e309", "Precise: 1e309 is beyond what a 64-bit float can represent"),
         ("precise", "one", "Precise: `one` is not a number"),
         ("Key = Code", "0102", "Key = Code: 4 bytes are needed, 2 given"),
         ("Key = Code", "010z0304", "Key = Code: character 4 of the bytes: `z` is not hexadecimal"),
@@ -180,7 +181,7 @@ def test_everything_wrong_is_said_at_once(icd):
 def test_a_remedy_stands_with_what_it_is_good_for(icd):
     error = refusal(encode, icd, "top", "Set Speed", ["x=1", "timeout=61"])
     assert str(error).splitlines() == [
-        "Timeout: 61 is not allowed: above the maximum 60 s (--raw takes it all the same)",
+        "Timeout: takes 0 to 60 s, not 61 (--raw takes it all the same)",
         "no value for `Commanded Y speed` (give each field as name=value)",
     ]
     alone = refusal(encode, icd, "top", "Set Speed", ["x=1", "y=1", "timeout=61"])
@@ -280,7 +281,7 @@ def test_an_element_of_an_array_is_given_by_its_index(icd, name):
     [
         (["temperatures=[1, 2]", "levels=[0,0]"], "`temperatures` takes 3 values in brackets, 2 given"),
         (["temperatures=7", "levels=[0,0]"], "`temperatures` takes 3 values in brackets, not 7"),
-        (["temperatures=[1, 2, 81]", "levels=[0,0]"], "Temperatures[2]: 81 is not allowed: above the maximum 80 C"),
+        (["temperatures=[1, 2, 81]", "levels=[0,0]"], "Temperatures[2]: takes -327.68 to 80 C, not 81"),
         (["temperatures=[1, 2, 3]", "levels=[0,4096]"], "Levels[1]: takes 0 to 4095, not 4096"),
         (["temps=[1,2,3]", "temps[1]=1", "levels=[0,0]"], "`Temperatures[1]` is given twice: 2 and 1"),
         (["temps=[1,2,3]", "levels[0]=1"], "no value for `Levels[1]`"),
@@ -290,3 +291,10 @@ def test_what_an_array_does_not_take_is_said_of_the_array_or_of_its_element(icd,
     with pytest.raises(BadValue) as caught:
         encode(icd, "top", "Set Heaters", values)
     assert said in str(caught.value)
+
+
+def test_a_value_beyond_the_limits_and_one_beyond_the_type_are_refused_with_the_same_range(icd):
+    ranges = {
+        str(refusal(speed, icd, timeout=text)).rpartition(", not ")[0] for text in ("61", "254", "256", "100000", "-1")
+    }
+    assert ranges == {"Timeout: takes 0 to 60 s"}

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import Final, NamedTuple
 
+from icdgen.describe.numbers import exact_text
 from icdgen.describe.steps import steps
 from icdgen.icd.curve import Curve
 from icdgen.icd.model import Field, Limits
@@ -65,12 +66,53 @@ def span(curve: Curve, field: Field) -> tuple[Fraction, Fraction] | None:
 
 def allowed_ends(field: Field) -> tuple[Fraction | None, Fraction | None]:
     """Smallest and largest physical value, as far as the type and inclusive limits tell."""
+    least, most = _type_ends(field)
+    low, high = (field.limits.min, field.limits.max) if field.limits else (None, None)
+    return least if low is None else low, most if high is None else high
+
+
+def _type_ends(field: Field) -> tuple[Fraction | None, Fraction | None]:
+    """Smallest and largest physical value of the type; None for floats, and for what is no number."""
     ends = None
     if field.curve is not None:
         ends = span(field.curve, field)
     elif field.type in ("uint", "int"):
         scaled = steps(field)
         ends = scaled.span if scaled else (Fraction(field.raw_min), Fraction(field.raw_max))
-    least, most = ends or (None, None)
-    low, high = (field.limits.min, field.limits.max) if field.limits else (None, None)
-    return least if low is None else low, most if high is None else high
+    return ends or (None, None)
+
+
+def range_text(field: Field) -> str:
+    """Return the values that can be set, by type and limits together: ``0 to 6000 rpm``; empty if a float has no limits.
+
+    An end that is excluded itself reads ``above 0`` or ``below 125``.
+    """
+    low, high = _least(field), _most(field)
+    unit = f" {field.unit.symbol}" if field.unit else ""
+    if low is not None and high is not None:
+        return f"{_end(*low, 'above ')} to {_end(*high, 'below ')}{unit}"
+    if low is not None:
+        return f"{_end(*low, 'above ') if low[1] else 'at least ' + exact_text(low[0])}{unit}"
+    if high is not None:
+        return f"{_end(*high, 'below ') if high[1] else 'at most ' + exact_text(high[0])}{unit}"
+    return ""
+
+
+_End = tuple[Fraction, bool]  # a value, and whether it is excluded itself
+
+
+def _least(field: Field) -> _End | None:
+    limits = field.limits or Limits()
+    ends = [(value, False) for value in (_type_ends(field)[0], limits.min) if value is not None]
+    return max([*ends, *([(limits.above, True)] if limits.above is not None else [])], default=None)
+
+
+def _most(field: Field) -> _End | None:
+    limits = field.limits or Limits()
+    ends = [(value, False) for value in (_type_ends(field)[1], limits.max) if value is not None]
+    ends += [(limits.below, True)] if limits.below is not None else []
+    return min(ends, key=lambda end: (end[0], not end[1]), default=None)
+
+
+def _end(value: Fraction, is_excluded: bool, word: str) -> str:
+    return f"{word if is_excluded else ''}{exact_text(value)}"

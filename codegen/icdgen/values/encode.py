@@ -9,15 +9,13 @@ from fractions import Fraction
 
 from icdgen import codec
 from icdgen.describe.comments import condition_text
-from icdgen.describe.numbers import exact_text
-from icdgen.describe.steps import steps
 from icdgen.errors import UserError
 from icdgen.icd.model import Field, Icd, Message, Tail
 from icdgen.values import numbers
-from icdgen.values.entry import members, typed, without_unit
+from icdgen.values.entry import members, out_of_range, typed, without_unit
 from icdgen.values.errors import BadValue
 from icdgen.values.find import by_name, find_array, find_field, find_message, find_node, open_part
-from icdgen.values.frame import Frame, frame, violations
+from icdgen.values.frame import Frame, frame, outside, unlisted
 
 _EACH = "give each field as name=value"
 
@@ -194,9 +192,8 @@ def _values(
             values[field.name] = value = typed(field, text, raw, is_open)
             if isinstance(value, bytes):
                 continue
-            _fits(field, value, text, raw)
+            _check(field, value, text, raw)
             if not raw:
-                _allowed(field, value, text)
                 exact = numbers.rational(without_unit(field, text))
                 if field.has_formula and exact is not None and _differs(field, value, exact):
                     notes[field.name] = f"rounded from {text}"
@@ -210,18 +207,17 @@ def _differs(field: Field, raw: int, exact: Fraction) -> bool:
     return codec.physical(field, raw) != exact
 
 
-def _fits(field: Field, value: int, text: str, raw: bool) -> None:
-    if field.raw_min <= value <= field.raw_max:
+def _check(field: Field, value: int, text: str, raw: bool) -> None:
+    """Raise `BadValue` for a value that the field cannot have: of physical values by type and limits together."""
+    fits = field.raw_min <= value <= field.raw_max
+    if raw:
+        if not fits:
+            raise BadValue(f"takes {field.raw_min} to {field.raw_max}, not {text}")
         return
-    scaled = None if raw else steps(field)
-    low, high = scaled.span if scaled else (field.raw_min, field.raw_max)
-    unit = f" {field.unit.symbol}" if field.unit and not raw else ""
-    raise BadValue(f"takes {exact_text(low)} to {exact_text(high)}{unit}, not {text}")
-
-
-def _allowed(field: Field, value: int, text: str) -> None:
-    if codec.special_of(field, value):
+    if fits and codec.special_of(field, value):
         return
-    found = violations(field, value)
-    if found:
-        raise BadValue(f"{text} is not allowed: {'; '.join(found)}{members(field)}", "--raw takes it all the same")
+    help = "--raw takes it all the same" if fits else ""
+    if reasons := unlisted(field, value):
+        raise BadValue(f"{text} is not allowed: {'; '.join(reasons)}{members(field)}", help)
+    if not fits or outside(field, value):
+        raise BadValue(out_of_range(field, text), help)

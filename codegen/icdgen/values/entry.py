@@ -6,6 +6,7 @@ from collections.abc import Callable
 from fractions import Fraction
 
 from icdgen import codec, naming
+from icdgen.describe.bounds import bounds, range_text
 from icdgen.icd.model import Enum, Field, Member
 from icdgen.values import numbers
 from icdgen.values.errors import BadHex, BadValue
@@ -18,6 +19,11 @@ _TRUTH = {"true": 1, "yes": 1, "on": 1, "1": 1, "false": 0, "no": 0, "off": 0, "
 def members(field: Field) -> str:
     """The members of the field's enumeration, for the end of a message."""
     return "; members: " + ", ".join(f"{m.values} {m.name}" for m in field.enum.members) if field.enum else ""
+
+
+def out_of_range(field: Field, text: str) -> str:
+    """The message for a physical value beyond the type or the limits."""
+    return f"takes {range_text(field) or f'{field.raw_min} to {field.raw_max}'}, not {text}"
 
 
 def raw_value(field: Field, text: str) -> int | bytes:
@@ -103,7 +109,9 @@ def _float(field: Field, text: str, raw: bool = False) -> int:
     try:
         value = numbers.float_bits(without_unit(field, text), field.bits)
     except OverflowError:
-        raise BadValue(f"{text} is beyond what a {field.bits}-bit float holds") from None
+        if not raw and not all(bound.holds(_exact(field, text)) for bound in bounds(field.limits)):
+            raise BadValue(out_of_range(field, text)) from None
+        raise BadValue(f"{text} is beyond what a {field.bits}-bit float can represent") from None
     if value is None:
         raise BadValue(f"`{text}` is not a number")
     return value
@@ -128,6 +136,8 @@ def _on_curve(field: Field, text: str) -> int:
     try:
         return codec.raw_from_physical(field, _exact(field, text))
     except codec.CodecError as error:
+        if field.leads_back and range_text(field):
+            raise BadValue(out_of_range(field, text)) from None
         help = "" if field.leads_back else "--raw takes the raw value"
         raise BadValue(str(error).removeprefix(f"{field.name!r} "), help) from None
 

@@ -150,15 +150,23 @@ def remarks(field: Field, raw: int | bytes) -> list[str]:
 
 def violations(field: Field, raw: int) -> list[str]:
     """In which way the raw value is not one that the ICD allows: constants, members, limits."""
-    found = []
+    return [*unlisted(field, raw), *outside(field, raw)]
+
+
+def unlisted(field: Field, raw: int) -> list[str]:
+    """In which way the raw value is not one of those that a constant or an enumeration lists."""
+    reasons = []
     if field.const is not None and raw != field.const:
-        found.append(f"must be {value_text(field.const)}")
+        reasons.append(f"must be {value_text(field.const)}")
     if field.enum and field.enum.member_of(raw) is None:
-        found.append(f"no member of {field.enum.name}")
-    return found + (_outside(field, raw) if field.limits else [])
+        reasons.append(f"no member of {field.enum.name}")
+    return reasons
 
 
-def _outside(field: Field, raw: int) -> list[str]:
+def outside(field: Field, raw: int) -> list[str]:
+    """Which limits the raw value does not keep."""
+    if field.limits is None:
+        return []
     value: Fraction | float = raw
     if field.type == "float" or field.curve is not None:
         found = codec.physical_double(field, raw)
