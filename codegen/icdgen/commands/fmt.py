@@ -48,13 +48,19 @@ def fmt(icds: tuple[Path, ...], check: bool) -> None:
 
 
 def _files(paths: list[Path]) -> list[Path]:
+    """The files that are named, and of folders the ICDs with their errata overlays."""
+    from icdgen.icd import folders
+
     found: list[Path] = []
     for path in paths:
         if not os.path.isdir(path):
             found.append(path)
             continue
-        files = sorted([*path.glob("*.yaml"), *path.glob("errata/*.yaml")])
+        result = folders.search(path)
+        homes = {icd.parent for icd in result.icds}
+        beside = [overlay for home in homes for overlay in home.glob("errata/*.yaml")]
+        files = sorted({*result.icds, *result.overlays, *beside})
         if not files:
-            raise UserError(f"{path} has no file *.yaml", "name another folder, or a file")
+            raise UserError(f"{path} has no ICD", "name another folder, or a file")
         found += files
     return found

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from icdgen import fingerprints
 from icdgen.diagnostics import Finding, Findings, Place, in_order
-from icdgen.icd import errata, source
+from icdgen.icd import errata, folders, source
 from icdgen.icd.build import Builder, Scope
 from icdgen.icd.loaded import Loaded
 from icdgen.icd.located import Map, Seq
@@ -25,7 +25,7 @@ INCLUDE = "ICD004"
 def load(
     paths: list[Path], check: bool = True, languages: Sequence[Language] = (), unsaved: Mapping[Path, bytes] | None = None
 ) -> Loaded:  # fmt: skip
-    """The ICDs of ``paths`` (files, or folders of files) with all that they include. Never raises for bad input.
+    """The ICDs of ``paths`` with all that they include; folders are searched with those below them. Never raises for bad input.
 
     Names must do for the ``languages``. ``unsaved``: contents of files that are not written yet, or differ from what is.
     """
@@ -58,14 +58,26 @@ class _Loader:
         self.unreadable = False
 
     def folder(self, path: Path) -> list[Path]:
-        """The ICDs of a folder."""
-        self.inputs[path] = fingerprints.of_path(str(path))
-        files = sorted(path.glob("*.yaml"))
-        if not files:
-            text = "the folder has no ICD: no file *.yaml"
-            self.findings.append(Finding("ICD001", text, Place(str(path)), "name another folder, or a file"))
+        """The ICDs of a folder and of those below it."""
+        result = folders.search(path)
+        others = [*result.overlays, *result.others]
+        for one in (*result.folders, *others):
+            self.inputs[one] = fingerprints.of_path(str(one))
+        if not result.is_complete:
+            text = f"the folder has more than {folders.MOST_FOLDERS} folders below it"
+            self.findings.append(Finding("ICD001", text, Place(str(path)), "name the folder of the ICDs"))
             self.unreadable = True
-        return files
+        elif not result.icds:
+            text, help = (
+                "the folder has no ICD: no file *.yaml in it, or in a folder below",
+                "name another folder, or a file",
+            )
+            if others:
+                text = f"the folder has no ICD: no file *.yaml has the key `icdgen`, `{others[0].name}` for instance"
+                help = "name another folder or the file of an ICD, which begins with `icdgen: 1`"
+            self.findings.append(Finding("ICD001", text, Place(str(path)), help))
+            self.unreadable = True
+        return result.icds
 
     def node(self, path: Path, stack: tuple[Path, ...]) -> Node | None:
         key = _resolved(path)
