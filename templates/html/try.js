@@ -8,6 +8,7 @@
   const values = icdgenValues;
   const FEW_FLAGS = 6; // of so many flags on end a grid is made
   let raw = codec.fresh(plan);
+  let shown = null; // the frame whose values are shown
 
   function make(name, attributes, ...children) {
     const element = document.createElement(name);
@@ -24,16 +25,28 @@
   const link = make("a", { href: "#try" }, "Link to this frame");
   const reset = make("button", { type: "button" }, "Reset");
   const sent = make("dl", { class: "sent" });
-  const rows = fields.map(makeRow);
+  const rows = new Map(); // by the index of the field, once its section was opened
   const panel = document.getElementById("decoder");
   panel.append(
     make("label", { for: "frame" }, "Bytes, in any spelling of hexadecimal", ...(wire.framing ? [", with or without UART framing"] : []), ...(wire.can ? [", or lines of candump"] : []), ...(wire.crc.length ? [", with or without CRC"] : [])),
     bytes, verdict, strip, make("p", { class: "actions" }, reset, link), sent,
   );
-  for (const section of sections) panel.append(...makeSection(section));
+  const folds = sections.map(makeSection);
+  panel.append(...folds);
 
-  /** Tables of values and grids of flags, in the order of the fields; folded, if there are several sections. */
+  /** Folded, if there are several sections; what a fold holds is made when it is opened first. */
   function makeSection({ title, keys, open }) {
+    if (sections.length === 1) return make("div", {}, ...makeParts(keys));
+    const fold = make("details", { class: "fold" }, make("summary", {}, title));
+    fold.addEventListener("toggle", () => fill(), { once: true });
+    const fill = () => fold.childElementCount > 1 || fold.append(...makeParts(keys));
+    if (open) fill();
+    fold.open = open;
+    return fold;
+  }
+
+  /** Tables of values and grids of flags, in the order of the fields. */
+  function makeParts(keys) {
     const groups = [];
     for (const key of keys) {
       const flag = fields[key - 1].type === "bool";
@@ -46,22 +59,33 @@
       if (!grid && parts.at(-1)?.grid === false) parts.at(-1).keys.push(...group.keys);
       else parts.push({ grid, keys: [...group.keys] });
     }
-    const made = parts.map(({ grid, keys: some }) => (grid ? makeGrid(some) : makeTable(some)));
-    if (sections.length === 1) return made;
-    return [make("details", { class: "fold", ...(open ? { open: "" } : {}) }, make("summary", {}, title), ...made)];
+    return parts.map(({ grid, keys: some }) => (grid ? makeGrid(some) : makeTable(some)));
+  }
+
+  /** The number by which drawing and table know a field: that of the first element for all elements. */
+  function tieOf(key) {
+    return plan.leaders?.[key - 1] ?? key;
+  }
+
+  function rowOf(key) {
+    if (!rows.has(key - 1)) {
+      rows.set(key - 1, makeRow(fields[key - 1], key - 1));
+      if (shown) fillRow(key - 1, shown);
+    }
+    return rows.get(key - 1);
   }
 
   function makeTable(keys) {
     const table = make("table", { class: "live" }, make("caption", { class: "hidden" }, "Values of the fields"));
     table.append(make("thead", {}, make("tr", {}, ...["Field", "Raw", "Value", "Unit"].map((text) => make("th", { scope: "col" }, text)))));
-    table.append(make("tbody", {}, ...keys.map((key) => rows[key - 1].element())));
+    table.append(make("tbody", {}, ...keys.map((key) => rowOf(key).element())));
     return table;
   }
 
   function makeGrid(keys) {
     return make("ul", { class: "flag-grid", "aria-label": "Flags" }, ...keys.map((key) => {
-      const { value, note } = rows[key - 1];
-      return make("li", { class: `k${key}` }, make("label", {}, value, ` ${fields[key - 1].name}`), note);
+      const { value, note } = rowOf(key);
+      return make("li", { "data-key": tieOf(key) }, make("label", {}, value, ` ${fields[key - 1].name}`), note);
     }));
   }
 
@@ -73,7 +97,7 @@
     if (field.view) [box, value].filter(Boolean).forEach((widget) => widget.setAttribute("disabled", ""));
     box.addEventListener("change", () => edit(index, box, () => values.parseRaw(field, box.value)));
     if (value) value.addEventListener("change", () => edit(index, value, () => parseValue(field, value)));
-    const element = () => make("tr", { class: `k${key}` }, make("th", { scope: "row" }, field.name), make("td", {}, box), make("td", {}, ...(value ? [value] : []), note), make("td", {}, field.unit ?? ""));
+    const element = () => make("tr", { "data-key": tieOf(key) }, make("th", { scope: "row" }, field.name), make("td", {}, box), make("td", {}, ...(value ? [value] : []), note), make("td", {}, field.unit ?? ""));
     return { element, box, value, note };
   }
 
@@ -143,34 +167,53 @@
   // From raw values to what is shown
 
   function show(frame, remarks) {
-    const wrong = [];
-    rows.forEach(({ box, value, note }, index) => {
-      const field = fields[index];
+    shown = frame;
+    for (const index of rows.keys()) fillRow(index, frame);
+    const wrong = fields.flatMap((field, index) => {
       const one = shownOf(field, raw[index], frame);
-      box.removeAttribute("aria-invalid");
-      if (one === null) {
-        clear(rows[index]);
-        note.textContent = "not in the frame";
-        note.classList.remove("wrong");
-        return;
-      }
-      box.value = values.rawText(field, one);
-      const remark = values.remark(field, one, plan.enums);
-      note.textContent = remark.text;
-      note.classList.toggle("wrong", remark.wrong);
-      if (remark.wrong) wrong.push(`${field.name}: ${remark.text}`);
-      if (!value) return;
-      value.removeAttribute("aria-invalid");
-      if (field.type === "bool") value.checked = one === 1n;
-      else if (field.type === "enum") value.value = [...value.options].some((o) => o.value === String(one)) ? String(one) : "";
-      else value.value = values.physicalText(field, one);
+      const remark = one === null ? {} : values.remark(field, one, plan.enums);
+      return remark.wrong ? [`${field.name}: ${remark.text}`] : [];
     });
     const text = frames.hex(frame).replaceAll(" ", "").toLowerCase();
     link.setAttribute("href", `#try=${text}`);
     const more = wrong.length > 3 ? [`${wrong.length - 3} more fields are wrong`] : [];
     say([`${frame.length} bytes`, ...remarks, ...wrong.slice(0, 3), ...more].join(", "), wrong.length > 0);
+    fold(frame);
     light(frame);
     send(frame);
+  }
+
+  function fillRow(index, frame) {
+    const { box, value, note } = rows.get(index);
+    const field = fields[index];
+    const one = shownOf(field, raw[index], frame);
+    box.removeAttribute("aria-invalid");
+    if (one === null) {
+      clear(rows.get(index));
+      note.textContent = "not in the frame";
+      note.classList.remove("wrong");
+      return;
+    }
+    box.value = values.rawText(field, one);
+    const remark = values.remark(field, one, plan.enums);
+    note.textContent = remark.text;
+    note.classList.toggle("wrong", remark.wrong);
+    if (!value) return;
+    value.removeAttribute("aria-invalid");
+    if (field.type === "bool") value.checked = one === 1n;
+    else if (field.type === "enum") value.value = [...value.options].some((o) => o.value === String(one)) ? String(one) : "";
+    else value.value = values.physicalText(field, one);
+  }
+
+  /** Of arrays the elements that are in the frame have a fold, and one more, with which the frame can be made longer. */
+  function fold(frame) {
+    if (!plan.leaders) return;
+    let before = true;
+    sections.forEach(({ keys }, number) => {
+      const there = keys.some((key) => shownOf(fields[key - 1], raw[key - 1], frame) !== null);
+      folds[number].hidden = !there && !before;
+      before = there;
+    });
   }
 
   /** The value of a field as the frame holds it: bytes that are cut off are as many as there are; null for what is not there. */
@@ -202,7 +245,7 @@
     strip.replaceChildren(...Array.from(frame, (byte, number) => {
       const bits = Array.from({ length: 8 }, (_, bit) => {
         const at = number * 8 + bit;
-        return make("i", { class: `${owners[at] ? `k${owners[at]}` : "none"}${isSet(at) ? " on" : ""}` });
+        return make("i", { ...(owners[at] ? { "data-key": tieOf(owners[at]) } : {}), ...(isSet(at) ? { class: "on" } : {}) });
       });
       return make("span", { title: `byte ${number}` }, make("b", {}, frames.hex([byte])), ...bits);
     }));
@@ -270,6 +313,7 @@
   /** Nothing is left from before beside a frame that is not this message. */
   function empty() {
     raw = codec.fresh(plan);
+    shown = null;
     rows.forEach(clear);
     strip.replaceChildren();
     sent.replaceChildren();

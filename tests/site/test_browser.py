@@ -139,7 +139,7 @@ def test_drawing_and_table_are_tied_together_by_pointer_and_keyboard(browser, to
     with opened(browser, top, KINDS["message"]) as page:
         lit = "getComputedStyle(document.documentElement).getPropertyValue('--lit').trim()"
         fill = "(s) => getComputedStyle(document.querySelector(s)).getPropertyValue('--tie').trim()"
-        row, shape = ".fields .k5", "svg.layout .k5"
+        row, shape = ".fields [data-key='5']", "svg.layout [data-key='5']"
         assert page.evaluate(fill, row) == ""
         page.hover(shape + " rect")
         assert page.evaluate(fill, row) == page.evaluate(lit)
@@ -225,7 +225,7 @@ def test_without_javascript_everything_but_search_and_decoder_is_there(browser, 
         assert page.is_visible("svg.layout") and page.is_visible(".fields") and page.is_visible(".snippet.c")
         page.click("label:text-is('Python')")
         assert page.is_visible(".snippet.python") and not page.is_visible(".snippet.c")
-        page.click("svg.layout .k5")
+        page.click("svg.layout [data-key='5']")
         assert page.url.endswith("#field-cubecontrol_signal_enabled")
 
 

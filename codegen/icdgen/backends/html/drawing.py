@@ -12,6 +12,7 @@ from itertools import groupby, zip_longest
 
 from icdgen import layout
 from icdgen.backends.html.labels import Label, fit
+from icdgen.backends.html.links import Links
 from icdgen.backends.html.texts import clip
 from icdgen.describe.numbers import bit_range
 from icdgen.icd.model import Field, Message, Node
@@ -48,10 +49,10 @@ class Drawing:
     width: int = WIDTH
 
 
-def draw(message: Message, node: Node, anchors: list[str], first: int = 0, end: int | None = None) -> Drawing | None:
-    """The picture of bytes ``first`` to before ``end`` (all); None if there are none. ``anchors`` are those of the fields."""
+def draw(message: Message, node: Node, links: Links, first: int = 0, end: int | None = None) -> Drawing | None:
+    """The picture of bytes ``first`` to before ``end`` (all); None if there are none."""
     end = message.length if end is None else end
-    return _Canvas(message, node, anchors, first, end).drawing() if end > first else None
+    return _Canvas(message, node, links, first, end).drawing() if end > first else None
 
 
 def hatch(x: int, y: int, width: int, height: int) -> str:
@@ -73,27 +74,29 @@ def bytes_a_row(length: int, fields: Sequence[Field]) -> int:
 
 
 class _Canvas:
-    def __init__(self, message: Message, node: Node, anchors: list[str], first: int, end: int) -> None:
+    def __init__(self, message: Message, node: Node, links: Links, first: int, end: int) -> None:
         self.message, self.node, self.first, self.length = message, node, first, end - first
+        self.repeats = links.repeats(message)
         inside = [one for one in message.fields if one.at < 8 * end and one.at + one.bits > 8 * first]
         self.across = bytes_a_row(self.length, inside)
         self.cell = (WIDTH - LEFT) / (8 * self.across)
         self.shapes = [
-            Shape(key, one.type, f"{clip(self._told(one), 200)}: {bit_range(one.at, one.bits)}", anchors[key - 1])
-            for key, one in enumerate(message.fields, 1)
+            Shape(key, one.type, f"{clip(self._label(key), 200)}: {bit_range(one.at, one.bits)}", anchor)
+            for key, (one, anchor) in enumerate(zip(message.fields, links.anchors(message), strict=True), 1)
         ]
         self.owner = self._owners()[8 * first : 8 * end]
         self.grid, self.rows = self._grid()
         narrow = any(len(set(row)) > 2 * self.across for _, row in self.grid)
         self.row = (46 if narrow else 34) if self.across < 4 else 30
 
-    def _told(self, field: Field) -> str:
-        """Its name; of what is not always there also those of what may be in its place."""
+    def _label(self, key: int) -> str:
+        """The name of a field; of one that is not always there also those of what may be in its place."""
+        field, name = self.message.fields[key - 1], self.repeats.short(key)
         if not field.when:
-            return field.name
+            return name
         mine = layout.mask(field, self.node)
         others = [one.name for one in self.message.fields if one.when and layout.mask(one, self.node) & mine]
-        return " / ".join([field.name, *(name for name in others if name != field.name)][:4])
+        return " / ".join([name, *(other for other in others if other != field.name)][:4])
 
     def _owners(self) -> list[int]:
         """Key of the field that each bit of the frame belongs to, in bytes of bits from the left; 0: reserved."""
@@ -123,7 +126,7 @@ class _Canvas:
     def drawing(self) -> Drawing:
         for shape in self.shapes:
             shape.rects = self._rects(shape.key)
-            shape.labels = fit(shape.rects, self._told(self.message.fields[shape.key - 1]), shape.key)
+            shape.labels = fit(shape.rects, self._label(shape.key), shape.key)
         msb0 = self.node.bit_order == "msb0"
         columns = [
             (LEFT + (column + 0.5) * self.cell, str(column if msb0 else column // 8 * 8 + 7 - column % 8))

@@ -22,6 +22,7 @@ class FieldRow:
     at: int
     bits: int
     field: Field | None = None
+    name: str = ""
     anchor: str = ""
     type: str = ""
     enum_url: str = ""
@@ -56,14 +57,16 @@ def columns_of(rows: list[FieldRow]) -> list[str]:
     return [name for name in _COLUMNS if any(getattr(row, name) for row in rows)]
 
 
-def rows(message: Message, node: Node, links: Links, anchors: list[str]) -> list[FieldRow]:
-    """Fields and reserved bits in the order of the frame."""
+def rows(message: Message, node: Node, links: Links) -> list[FieldRow]:
+    """Fields and reserved bits in the order of the frame; of arrays that are shown by one element, that one."""
+    repeats, anchors = links.repeats(message), links.anchors(message)
     found = [
         _row(key, field, message, links, anchors[key - 1])
         for key, field in enumerate(message.fields, 1)
-        if not field.implied
+        if not field.implied and repeats.is_shown(key)
     ]
-    found += [FieldRow(0, gap.at, gap.bits) for gap in layout.gaps(message, node)]
+    for gap in layout.gaps(message, node):
+        found += [FieldRow(0, at, bits) for at, bits in repeats.shown_parts(gap.at, gap.bits)]
     return sorted(found, key=lambda row: row.at)
 
 
@@ -89,6 +92,7 @@ def _row(key: int, field: Field, message: Message, links: Links, anchor: str) ->
         at=field.at,
         bits=field.bits,
         field=field,
+        name=links.repeats(message).short(key),
         anchor=anchor,
         type=texts.type_name(field),
         enum_url=links.enum(field.enum) if field.enum else "",

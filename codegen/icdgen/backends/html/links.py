@@ -9,6 +9,7 @@ from __future__ import annotations
 from functools import lru_cache
 from zlib import crc32
 
+from icdgen.backends.html.repeats import Repeats
 from icdgen.icd.erratum import Erratum
 from icdgen.icd.model import Enum, Field, Icd, Message, Node
 from icdgen.icd.units import Unit
@@ -37,9 +38,11 @@ class Links:
     def __init__(self, icd: Icd) -> None:
         self._pages: dict[tuple[str, str, str], str] = {}
         self._anchors: dict[int, dict[str, str]] = {}
+        self._repeats = {id(message): Repeats(message) for node in icd.nodes for message in node.messages}
         for node in icd.nodes:
-            owners: list[Message | Enum] = [*node.messages, *node.enums]
-            self._anchors.update((id(one), _anchors(one, node.vocabulary)) for one in owners)
+            for message in node.messages:
+                self._anchors[id(message)] = _anchors_of_fields(message, self.repeats(message), node.vocabulary)
+            self._anchors.update((id(enum), _anchors_of_members(enum, node.vocabulary)) for enum in node.enums)
             self._give_out(node, "message", "", node.messages)
             self._give_out(node, "enum", "enum-", node.enums)
 
@@ -73,9 +76,17 @@ class Links:
         """Anchor of a field (``field-roll_angle``) or a member (``member-idle``) of its owner's page."""
         return self._anchors[id(owner)][name]
 
+    def anchors(self, message: Message) -> list[str]:
+        """Anchors of the fields of a message, in their order."""
+        return [self.anchor(message, field.name) for field in message.fields]
+
     def field(self, message: Message, field: Field) -> str:
         """``demo/estimated_roll.html#field-roll_angle``"""
         return f"{self.message(message)}#{self.anchor(message, field.name)}"
+
+    def repeats(self, message: Message) -> Repeats:
+        """The arrays of a message of which its page shows one element."""
+        return self._repeats[id(message)]
 
     def erratum(self, erratum: Erratum) -> str:
         """``errata.html#DEM-001``"""
@@ -86,12 +97,23 @@ class Links:
         return f"{UNITS}#unit-{unit.identifier}"
 
 
-def _anchors(owner: Message | Enum, vocabulary: tuple[str, ...]) -> dict[str, str]:
-    """Those of all fields by name, or of all members by value."""
+def _anchors_of_fields(message: Message, repeats: Repeats, vocabulary: tuple[str, ...]) -> dict[str, str]:
+    """By the name of the field; the fields of further elements have those of the first, where the page shows that alone."""
     taken: set[str] = set()
-    if isinstance(owner, Message):
-        return {f.name: _free("field-" + slug(f.identifier or f.name, vocabulary), taken) for f in owner.fields}
-    return {str(m.value): _free("member-" + slug(m.identifier or m.name, vocabulary), taken) for m in owner.members}
+    found: dict[str, str] = {}
+    for field, leader, name in zip(message.fields, repeats.leaders, repeats.names, strict=True):
+        first = message.fields[leader - 1]
+        if first is field:
+            found[field.name] = _free("field-" + slug(field.identifier or name, vocabulary), taken)
+        else:
+            found[field.name] = found[first.name]
+    return found
+
+
+def _anchors_of_members(enum: Enum, vocabulary: tuple[str, ...]) -> dict[str, str]:
+    """By the value of the member."""
+    taken: set[str] = set()
+    return {str(m.value): _free("member-" + slug(m.identifier or m.name, vocabulary), taken) for m in enum.members}
 
 
 def _free(name: str, taken: set[str]) -> str:

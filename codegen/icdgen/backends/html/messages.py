@@ -24,12 +24,15 @@ if TYPE_CHECKING:
 
 def values(relations: Relations, node: Node, message: Message, render: Renderer) -> dict[str, Any]:
     """Values of the page of a message that ``node`` declares."""
-    anchors = relations.anchors(message)
+    repeats = relations.links.repeats(message)
     parts = sections.bands(relations, message)
     shares = parts or sections.shares(message)
-    pictures = _pictures(message, node, anchors, parts)
-    rows = fields.rows(message, node, relations.links, anchors)
-    travels = relations.wire(message)
+    pictures = [drawing.draw(message, node, relations.links, one.first, one.end) for one in parts] or [
+        drawing.draw(message, node, relations.links)
+    ]
+    drawings = [picture for picture in pictures if picture is not None]
+    panels = sections.panels(message, repeats) if repeats.arrays else shares
+    rows = fields.rows(message, node, relations.links)
     shown = examples(message, node)
     is_received = message.telemetry_id is not None
     data = shown[0].frame if shown and is_received else codec.encode(node, message, message.fresh)
@@ -40,13 +43,13 @@ def values(relations: Relations, node: Node, message: Message, render: Renderer)
         "ids": texts.ids(message),
         "names": names(describe(relations.icd).message(message)),
         "facts": _facts(relations, node, message),
-        "drawings": pictures,
-        "keyed": any(picture.keyed for picture in pictures),
+        "drawings": drawings,
+        "keyed": any(picture.keyed for picture in drawings),
         "rows": rows,
         "columns": fields.columns_of(rows),
         "bands": [(one, fields.between(rows, one), picture) for one, picture in zip(parts, pictures, strict=False)],
         "shares": [(one, fields.between(rows, one)) for one in shares],
-        "buses": wire.buses(message, travels, data),
+        "buses": wire.buses(message, relations.wire(message), data),
         "example_data": is_received and bool(data),
         "examples": shown,
         "frames": frames(message, node),
@@ -54,7 +57,7 @@ def values(relations: Relations, node: Node, message: Message, render: Renderer)
         "contains": relations.contains[message.node, message.name],
         "contained_in": relations.contained_in[message.node, message.name],
         "errata": errata_of_message(message),
-        "plan": texts.script_json(_plan(node, message, pictures, shares, travels)),
+        "plan": texts.script_json(_plan(relations, node, message, drawings, panels)),
     }
 
 
@@ -67,7 +70,7 @@ def _facts(relations: Relations, node: Node, message: Message) -> list[tuple[str
     source = [f"{word} {number}" for word, number in (("table", message.table), ("page", message.page)) if number]
     facts = [
         ("Length", length_text(message), ""),
-        ("Fields", str(message.field_count), ""),
+        ("Fields", str(sum(not field.implied for _, field in relations.shown_fields(message))), ""),
         *_open_parts(message),
         ("End", "may be left out as far as it is zeros" if message.may_end_early else "", ""),
         ("Reserved", f"last {count(message.reserved, 'byte')}" if message.reserved else "", ""),
@@ -95,26 +98,16 @@ def _open_parts(message: Message) -> Iterator[tuple[str, str, str]]:
         yield "Open end" if part is message.tail else "Open part", f"{part.name}: up to {most}, {until}", ""
 
 
-def _pictures(message: Message, node: Node, anchors: list[str], parts: list[sections.Section]) -> list[drawing.Drawing]:
-    """One of each part; of what has none, one of the message."""
-    places = [(one.first, one.end) for one in parts] or [(0, message.length)]
-    made = [drawing.draw(message, node, anchors, first, end) for first, end in places]
-    return [picture for picture in made if picture is not None]
-
-
 def _plan(
-    node: Node,
-    message: Message,
-    pictures: list[drawing.Drawing],
-    shares: list[sections.Section],
-    travels: wire.Wire,
+    relations: Relations, node: Node, message: Message, drawings: list[drawing.Drawing], panels: list[sections.Section]
 ) -> dict[str, object]:
     enums = {field.enum.name: plan.enum_plan(field.enum) for field in message.fields if field.enum is not None}
-    shown = [one for one in shares if one.keys]
+    repeats = relations.links.repeats(message)
     return {
         **plan.message_plan(message, node),
         "enums": enums,
-        "drawings": [picture.plan for picture in pictures],
-        "sections": [{"title": f"{s.title}, {s.about}", "keys": s.keys, "open": s.open} for s in shown],
-        "wire": {**wire.page_facts(message, travels), "id_bytes": wire_ids.size(node.id_bits)},
+        "drawings": [picture.plan for picture in drawings],
+        "sections": [{"title": f"{s.title}, {s.about}", "keys": s.keys, "open": s.open} for s in panels if s.keys],
+        "leaders": repeats.leaders if repeats.arrays else None,
+        "wire": {**wire.page_facts(message, relations.wire(message)), "id_bytes": wire_ids.size(node.id_bits)},
     }

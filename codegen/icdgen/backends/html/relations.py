@@ -11,7 +11,7 @@ from icdgen.backends.html.wire import Speaker, Wire
 from icdgen.backends.python.objects.links import link_of
 from icdgen.icd.annex import Loggable
 from icdgen.icd.erratum import Erratum
-from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.icd.units import Unit
 from icdgen.protocol import facts
 
@@ -53,8 +53,8 @@ class Relations:
         spoken = {message.name: message for message in self.icd.messages_of(node)}
         for message in node.messages:
             self._errata(message.errata, Place(message.name, self.links.message(message)))
-            for field in message.fields:
-                place = Place(f"{message.name}: {field.name}", self.links.field(message, field))
+            for name, field in self.shown_fields(message):
+                place = Place(f"{message.name}: {name}", self.links.field(message, field))
                 self._errata(field.errata, place)
                 if field.enum is not None:
                     self.uses[field.enum.node, field.enum.name].append(place)
@@ -88,9 +88,11 @@ class Relations:
         """The message, as a link."""
         return Place(message.name, self.links.message(message))
 
-    def anchors(self, message: Message) -> list[str]:
-        """Anchors of the fields, in their order."""
-        return [self.links.anchor(message, field.name) for field in message.fields]
+    def shown_fields(self, message: Message) -> list[tuple[str, Field]]:
+        """The fields that the page of a message shows, with their names: of some arrays only those of the first element."""
+        repeats = self.links.repeats(message)
+        named = zip(repeats.names, message.fields, strict=True)
+        return [pair for key, pair in enumerate(named, 1) if repeats.is_shown(key)]
 
     def wire(self, message: Message) -> Wire:
         """How the message travels."""

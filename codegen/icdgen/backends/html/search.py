@@ -81,11 +81,11 @@ def _of_message(relations: Relations, node: Node, message: Message) -> Iterator[
     about = f"{speakers} {message.group} {message.summary}"
     context = f"{message.kind} {ids} · {node.title}"
     yield Entry("message", message.name, context, own, about, tuple(phrases), links.message(message))
-    for field in message.fields:
+    for name, field in relations.shown_fields(message):
         unit = f"{field.unit.symbol} {field.unit.identifier.replace('_', ' ')}" if field.unit else ""
         about = f"{node.name} {own} {unit} {field.summary}"
         context = f"{message.name} · {node.title}"
-        yield Entry("field", field.name, context, _words(field, node), about, (), links.field(message, field))
+        yield Entry("field", name, context, _words(field, node), about, (), links.field(message, field))
 
 
 def _of_enum(relations: Relations, node: Node, enum: Enum) -> Iterator[Entry]:

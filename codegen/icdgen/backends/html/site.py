@@ -34,7 +34,18 @@ if TYPE_CHECKING:
 # Written by hand; the pages load them.
 _LOADED = (
     *("style.css", "layout.css", "print.css", "icon.svg"),
-    *("theme.js", "site.js", "load.js", "sidebar.js", "search.js", "find.js", "filter.js", "errata.js", "copy.js"),
+    *(
+        "theme.js",
+        "site.js",
+        "load.js",
+        "sidebar.js",
+        "tie.js",
+        "search.js",
+        "find.js",
+        "filter.js",
+        "errata.js",
+        "copy.js",
+    ),
     *("codec.js", "frames.js", "packets.js", "pasted.js", "stream.js", "envelopes.js", "given.js", "recognize.js"),
     *("frame-links.js", "paste.js", "values.js", "lit.js", "try.js", "protocol.js"),
 )
@@ -89,8 +100,6 @@ def files(icd: Icd, render: Renderer, previous: Side | None = None) -> Iterator[
     yield from _guide(page, render)
     for name in _LOADED:
         yield PurePosixPath(name), render(name)
-    most = max((len(m.fields) for node in icd.nodes for m in node.messages), default=0)
-    yield PurePosixPath("highlight.css"), render("highlight.css.j2", most=most)
     yield PurePosixPath("search-index.js"), search.script(relations)
     yield PurePosixPath("frame-index.js"), recognition.script(relations)
     yield PurePosixPath("icd.json"), json.dumps(to_json(icd), indent=1) + "\n"
