@@ -5,13 +5,17 @@
 
 from __future__ import annotations
 
+import json
 import re
+import shutil
+from pathlib import Path
 
 import pytest
 
 from icdgen.definitions import kinds, run
 from icdgen.diagnostics import Findings
 from tests.definitions.test_can import FILES, field, message
+from tests.importer.test_command import icdgen
 
 SHAPES = FILES / "shapes"
 
@@ -26,8 +30,17 @@ def imported(path):
     return run.read(path, kinds.of(path))
 
 
+def imported_set(*paths):
+    files = [one for path in paths for one in (kinds.within(path) if path.is_dir() else [(path, kinds.of(path))])]
+    return {Path(one.definitions.file).name: one for one in run.read_set(files)}
+
+
 def findings(read):
     return [(one.code, one.severity) for one in read.definitions.troubles]
+
+
+def errors(read):
+    return [one for one in read.definitions.troubles if one.severity == "error"]
 
 
 @pytest.fixture(scope="module")
@@ -138,3 +151,117 @@ def test_kaitai_a_library_of_types_says_that_it_has_no_sequence(tmp_path):
     with pytest.raises(Findings) as error:
         imported(tmp_path / "library.ksy")
     assert "it has no `seq`, and so no field" in error.value.findings[0].message
+
+
+def test_xtce_files_that_refer_to_each_other_are_one_database_called_like_their_folder():
+    (read,) = imported_set(SHAPES / "pus").values()
+    assert findings(read) == [] and read.held == read.definitions.total == 4
+    (name, tree), = read.trees.items()  # fmt: skip
+    assert name == "pus" and [(one["name"], one["id"]) for one in tree["messages"]] == [
+        ("report", 7), ("alive", 7), ("connected", 7), ("ask alive", 7),
+    ]  # fmt: skip
+    assert field(read, "connected", "target") == {"at": 40, "bits": 8, "name": "target", "type": "uint"}
+    assert [one["const"] for one in message(read, "ask alive")["fields"]] == [17, 1]
+
+
+def test_xtce_files_that_do_not_refer_to_each_other_are_icds_of_their_own():
+    reads = imported_set(SHAPES / "aggregate.xml", FILES / "probe.xml", SHAPES / "pus")
+    assert {name for one in reads.values() for name in one.trees} == {"aggregate", "probe", "pus"}
+
+
+def test_xtce_a_file_alone_says_what_it_lacks_and_how_to_give_it():
+    with pytest.raises(Findings) as error:
+        imported(SHAPES / "pus" / "test.xml")
+    (finding,) = error.value.findings
+    assert "there is no container `/Service/report`" in finding.message and "icdgen import FILE FILE" in finding.help
+
+
+def test_xtce_two_files_that_define_one_name_are_reported_with_both(tmp_path):
+    folder = shutil.copytree(SHAPES / "pus", tmp_path / "pus")
+    (folder / "again.xml").write_text((folder / "service.xml").read_text())
+    (read,) = imported_set(folder).values()
+    lost = {one.message: one for one in errors(read)}
+    one = lost["the container `/Service/report` is in `again.xml` and in `service.xml`"]
+    assert (one.code, one.help, one.spot.line) == ("IMP076", "the first one is taken", 23)
+    assert one.spot.file.endswith("service.xml") and read.held == 4
+
+
+def test_eds_sheets_of_module_folders_find_types_and_design_parameters_of_each_other():
+    reads = imported_set(SHAPES / "cfs")
+    assert {one: read.held for one, read in reads.items()} == {
+        "config.xml": 0, "base_types.xml": 0, "packets.xml": 0, "pump.xml": 1, "lamp.xml": 1,
+    }  # fmt: skip
+    assert not any(errors(read) for read in reads.values())
+    assert message(reads["lamp.xml"], "LampTlm")["fields"] == [
+        {"at": 0, "bits": 16, "name": "Current", "type": "int"},
+        {"at": 16, "bits": 8, "name": "State", "type": "enum", "enum": "Mode"},
+    ]
+
+
+def test_eds_aliases_stand_for_scalars_arrays_containers_and_bases():
+    read = imported_set(SHAPES / "cfs")["pump.xml"]
+    assert message(read, "PumpTlm")["fields"] == [
+        {"at": 0, "bits": 8, "name": "State", "type": "enum", "enum": "Mode"},
+        {"at": 8, "bits": 16, "name": "Levels", "type": "uint", "count": 3},
+        {"at": 56, "bits": 16, "name": "Runs", "type": "uint"},
+    ]
+
+
+def test_eds_a_label_without_a_value_follows_the_one_before():
+    (enum,) = imported_set(SHAPES / "cfs")["pump.xml"].trees["pump"]["enums"]
+    assert [(one["name"], one["value"]) for one in enum["members"]] == [("OFF", 0), ("SLOW", 4), ("FAST", 5)]
+
+
+def test_eds_an_alias_of_itself_costs_what_uses_it(tmp_path):
+    folder = shutil.copytree(SHAPES / "cfs", tmp_path / "cfs")
+    types = folder / "core" / "eds" / "base_types.xml"
+    types.write_text(types.read_text().replace('name="Counter" type="uint16"', 'name="Counter" type="Counter"'))
+    reads = imported_set(folder)
+    (lost,) = errors(reads["pump.xml"])
+    assert "is an alias of itself" in lost.message and reads["lamp.xml"].held == 1
+
+
+def test_eds_a_sheet_alone_says_which_package_it_lacks_and_how_to_give_it():
+    with pytest.raises(Findings) as error:
+        imported(SHAPES / "cfs" / "lamp" / "eds" / "lamp.xml")
+    (finding,) = error.value.findings
+    assert "is of the package `PACKETS`" in finding.message and "the folder of both" in finding.help
+
+
+def test_a_broken_file_of_a_set_costs_itself(tmp_path):
+    folder = shutil.copytree(SHAPES / "pus", tmp_path / "pus")
+    (folder / "broken.xml").write_text('<SpaceSystem name="Broken"><TelemetryMetaData></SpaceSystem>')
+    reads = imported_set(folder)
+    (lost,) = errors(reads["broken.xml"])
+    assert lost.code == "IMP005" and lost.message.startswith("not XML")
+    assert sum(one.held for one in reads.values()) == 4
+
+
+def test_a_folder_is_imported_by_the_command(tmp_path):
+    shutil.copytree(SHAPES / "cfs", tmp_path / "cfs")
+    result = icdgen("import", "cfs", cwd=tmp_path)
+    assert result.returncode == 0, result.stdout + result.stderr
+    assert "without messages of their own: cfs/config/eds/config.xml, cfs/core/eds/packets.xml" in result.stdout
+    assert sorted(path.name for path in (tmp_path / "icd").iterdir()) == ["lamp.yaml", "pump.yaml"]
+    said = json.loads(icdgen("import", "cfs", "--update", "--format", "json", cwd=tmp_path).stdout)
+    assert {one["definition"]: one["held"] for one in said["definitions"]}["cfs/pump/eds/pump.xml"] == 1
+    assert [one["file"] for one in said["files"]] == ["icd/lamp.yaml", "icd/pump.yaml"] and said["check"] == []
+
+
+def test_what_cannot_be_imported_together_is_misuse(tmp_path):
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "manual.txt").write_text("A manual\n")
+    shutil.copy(SHAPES / "cases.ksy", tmp_path)
+    for arguments, why in (
+        (["empty"], "there is no definition in the folder empty"),
+        (["cases.ksy", "manual.txt"], "manual.txt is not a known definition"),
+        (["cases.ksy", "lost.xml"], "lost.xml does not exist"),
+        (["empty", "--kind", "eds"], "there is no definition of the kind eds in the folder empty"),
+    ):
+        result = icdgen("import", *arguments, cwd=tmp_path)
+        assert result.returncode == 2 and why in result.stderr, result.stderr
+
+
+def test_help_names_all_kinds(tmp_path):
+    text = icdgen("import", "--help", cwd=tmp_path).stdout
+    assert [name for name in kinds.names() if not re.search(rf"\b{name}\b", text)] == []

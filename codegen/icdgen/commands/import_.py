@@ -14,6 +14,7 @@ import click
 
 from icdgen.commands.common import PATH, format_option, in_colour, print_findings, say, write_file
 from icdgen.diagnostics import Finding, Findings, has_errors
+from icdgen.errors import UserError
 
 if TYPE_CHECKING:
     from icdgen.definitions.model import Reader
@@ -40,9 +41,9 @@ ABOUT_FILES = frozenset({"IMP002", "IMP003", "IMP005"})
 
 
 @click.command("import")
-@click.argument("manual", metavar="FILE", type=PATH)
+@click.argument("files", metavar="FILE|FOLDER...", type=PATH, nargs=-1, required=True)
 @click.option("--out", type=PATH, default=Path("icd"), show_default=True, help="Folder for the ICDs, one file a node.")
-@click.option("--kind", help="Kind of a definition that is not known by how it begins: dbc, kcd, sym, arxml ...")
+@click.option("--kind", help="Kind of a definition that is not recognized by how it begins: xtce, dbc, ksy ...")
 @click.option(
     "--profile", "words", metavar="PROFILE", help="Vocabulary of the manual: a YAML file, or the name of a shipped one."
 )
@@ -66,7 +67,7 @@ ABOUT_FILES = frozenset({"IMP002", "IMP003", "IMP005"})
 @format_option("text", "json")
 @click.option("--jobs", type=click.IntRange(1, 64), help="Processes that read pages (default: one a core).")
 def import_(
-    manual: Path,
+    files: tuple[Path, ...],
     out: Path,
     kind: str | None,
     words: str | None,
@@ -79,20 +80,27 @@ def import_(
     form: str,
     jobs: int | None,
 ) -> None:
-    """Read a vendor's manual (PDF, or text with tab-separated tables) or a definition into reviewable ICDs.
+    """Read a vendor's manual (PDF, or text with tab-separated tables) or definitions into reviewable ICDs.
 
-    Definitions are CAN databases (DBC, KCD, SYM, ARXML). --profile, --report, --descriptions, --explore, --pages and
-    --jobs are of manuals.
+    Definitions are CAN databases (dbc, kcd, sym, arxml), MAVLink dialects (mavlink, mavlink1), XTCE (xtce), electronic
+    data sheets of CCSDS SOIS (eds), Kaitai Struct (ksy) and models of SunSpec (sunspec). Files that refer to each
+    other are given together, or as the folder that contains them:
+
+    \b
+      icdgen import mdb/pus.xml mdb/types.xml
+      icdgen import cfs/modules
+
+    --profile, --report, --descriptions, --explore, --pages and --jobs are for manuals.
 
     Exit status: 0 if the ICDs contain everything that was found and `icdgen check` has no errors for them, else 1.
     """
-    from icdgen.definitions import kinds
     from icdgen.importer import console, profile, run, targets
 
-    reader = kinds.get(kind) if kind is not None else kinds.of(manual)
-    if reader is not None:
-        _define(manual, reader, out, update, dry_run, form)
+    definitions = _definitions(files, kind)
+    if definitions:
+        _define(definitions, out, update, dry_run, form)
         return
+    (manual,) = files
     try:
         vocabulary = profile.load(profile.find(words))
         with _progress() as progress:
@@ -121,27 +129,56 @@ def import_(
     sys.exit(1 if (result.failed and not explore) or invalid else 0)
 
 
-def _define(file: Path, reader: Reader, out: Path, update: bool, dry_run: bool, form: str) -> None:
-    """What a definition becomes."""
+def _definitions(files: tuple[Path, ...], kind: str | None) -> list[tuple[Path, Reader]]:
+    """The definitions among files and below folders; none for a manual. Raises `UserError` for what cannot be read together."""
+    from icdgen.definitions import kinds
+
+    given = kinds.get(kind) if kind is not None else None
+    found: dict[Path, tuple[Path, Reader]] = {}
+    for path in files:
+        if path.is_dir():
+            inside = [one for one in kinds.within(path) if given is None or one[1].name == given.name]
+            if not inside:
+                of_kind = f" of the kind {given.name}" if given else ""
+                help = f"kinds are {', '.join(kinds.names())}; import a manual, or a file that --kind names, by its own name"
+                raise UserError(f"there is no definition{of_kind} in the folder {path}", help)
+        else:
+            reader = given or kinds.of(path)
+            if reader is None and len(files) == 1:
+                return []
+            if reader is None:
+                reason = "is not a known definition" if path.exists() else "does not exist"
+                raise UserError(f"{path} {reason}", "import manuals one by one; --kind names the kind of definitions")
+            inside = [(path, reader)]
+        for one in inside:
+            found.setdefault(one[0].resolve(), one)
+    return list(found.values())
+
+
+def _define(files: list[tuple[Path, Reader]], out: Path, update: bool, dry_run: bool, form: str) -> None:
+    """Imports definitions: one, or several that may refer to each other."""
     from icdgen.definitions import console, run
     from icdgen.importer import targets
 
     try:
-        read = run.read(file, reader)
-        read.targets = targets.aim(read.trees, out, update, dry_run, run.TOLD)
+        reads = [run.read(*files[0])] if len(files) == 1 else run.read_set(files)
+        trees = {name: tree for read in reads for name, tree in read.trees.items()}
+        aimed = targets.aim(trees, out, update, dry_run, run.TOLD)
     except Findings as error:
-        _refuse(error, file, form)
+        _refuse(error, files[0][0], form)
         sys.exit(1)
     if not dry_run:
-        targets.write(read.targets)
-    checked = targets.check(read.targets)
+        targets.write(aimed)
+    checked = targets.check(aimed)
     if form == "json":
-        click.echo(console.as_json(read, checked))
+        click.echo(console.as_json(reads, aimed, checked))
     else:
         colour = in_colour(sys.stdout)
-        click.echo(console.report(read, colour), color=colour or None)
-        _say_files(read.targets, checked, dry_run)
-    sys.exit(1 if read.failed or has_errors(checked) else 0)
+        click.echo(console.report(reads, colour), color=colour or None)
+        _say_files(aimed, checked, dry_run)
+        if not trees:
+            say("no ICD is written: no message can be held")
+    sys.exit(1 if not trees or any(read.failed for read in reads) or has_errors(checked) else 0)
 
 
 def _explore(result: Result, vocabulary: Profile, form: str) -> None:

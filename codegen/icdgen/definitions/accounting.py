@@ -105,6 +105,12 @@ class Account:
             to.warn(UNUSED, what, "the ICD does not contain it: add it by hand if you need it", "note", entry.line)
 
 
+def settle(element: Element) -> None:
+    """Mark an element with all within as read, if its reads are recorded, because a finding names it already."""
+    if isinstance(element, AccountedElement):
+        element.settle()
+
+
 class AccountedElement(Element):
     """XML element that records which of its attributes were read, and whether its text and itself were."""
 

@@ -4,25 +4,36 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from typing import Any
 
 from icdgen.definitions.run import Read
 from icdgen.diagnostics import Finding
 from icdgen.importer import console
+from icdgen.importer.targets import Target
 from icdgen.reports.excerpt import printable
 
 _LISTED = 20  # identifiers that are shown; all are in the JSON, and in the ICD
 
 
-def report(read: Read, colour: bool = False) -> str:
-    """Everything to look at, then the figures and the names that got identifiers."""
+def report(reads: Sequence[Read], colour: bool = False) -> str:
+    """Of each definition everything to look at, then the figures and the names that got identifiers."""
+    shown = [one for one in reads if len(reads) == 1 or one.trees or one.definitions.total or one.definitions.troubles]
+    blocks = ["\n".join(_lines(one, colour)) for one in shown]
+    if others := [printable(one.definitions.file) for one in reads if one not in shown]:
+        names = ", ".join(others[:_LISTED]) + (f" and {len(others) - _LISTED} more" if len(others) > _LISTED else "")
+        blocks.append(f"without messages of {'its' if len(others) == 1 else 'their'} own: {names}")
+    return "\n\n".join(blocks)
+
+
+def _lines(read: Read, colour: bool) -> list[str]:
     found = read.definitions
-    return "\n".join([*console.findings(found.troubles, found.file, colour), *map(printable, _summary(read))])
+    return [*console.findings(found.troubles, found.file, colour), *map(printable, _summary(read))]
 
 
 def _summary(read: Read) -> list[str]:
     names, found = read.identifiers, read.definitions
     lines = [
-        f"{found.file}: {read.kind}, {read.held} of {found.total} messages held",
+        f"{found.files}: {read.kind}, {read.held} of {found.total} messages held",
         console.severities(found.troubles),
     ]
     if names:
@@ -33,12 +44,22 @@ def _summary(read: Read) -> list[str]:
     return lines
 
 
-def as_json(read: Read, checked: Sequence[Finding]) -> str:
-    """The report for programs; ``checked`` are the findings of `icdgen check` for the files."""
+def as_json(reads: Sequence[Read], targets: Sequence[Target], checked: Sequence[Finding]) -> str:
+    """The report for programs; ``checked`` are the findings of `icdgen check` for the files.
+
+    The keys of a single definition stand beside the files, those of several in a list `definitions`.
+    """
+    listed = [_as_item(one) for one in reads]
+    head = listed[0] if len(listed) == 1 else {"definitions": listed}
+    tail = {"files": console.files_as_json(targets), "check": console.checked_as_json(checked)}
+    return json.dumps({**head, **tail}, indent=2, ensure_ascii=False)
+
+
+def _as_item(read: Read) -> dict[str, Any]:
     found = read.definitions
-    findings = [{**console.finding_as_json(one), "line": one.spot.line} for one in found.troubles]
-    written, remarks = console.files_as_json(read.targets), console.checked_as_json(checked)
-    return json.dumps(
-        {"definition": found.file, "kind": read.kind, "messages": found.total, "held": read.held, "findings": findings,
-         "identifiers": read.identifiers, "files": written, "check": remarks}, indent=2, ensure_ascii=False,
-    )  # fmt: skip
+    findings = []
+    for one in found.troubles:
+        place = {"file": one.spot.file} if one.spot.file else {}
+        findings.append({**console.finding_as_json(one), **place, "line": one.spot.line})
+    return {"definition": found.file, "kind": read.kind, "messages": found.total, "held": read.held, "findings": findings,
+            "identifiers": read.identifiers}  # fmt: skip

@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from xml.etree.ElementTree import Element
 
 from icdgen.definitions import eds_sheets, packets, safe_xml
+from icdgen.definitions.accounting import Account, settle
 from icdgen.definitions.eds_interfaces import Interfaces, Sending
 from icdgen.definitions.eds_layout import Layout, Structs
 from icdgen.definitions.eds_sheets import Sheets
 from icdgen.definitions.eds_types import Types, described
 from icdgen.definitions.frames import BIG, ORDERS
-from icdgen.definitions.model import Definitions, Item, Network, NotHeld
+from icdgen.definitions.model import Definitions, Item, Network, NotHeld, Source
 from icdgen.definitions.wording import line, node_name
+from icdgen.diagnostics import Findings
 
 PROCESS, UNSENT = "IMP083", "IMP084"
 _SPACE = "ccsds.org/schema/sois/seds"
+_WITHOUT_EFFECT = frozenset({
+    "schemaLocation", "Device.name", "ContainerDataType.abstract",
+    "Variable.type", "Variable.readOnly",  # the values of variables are read, which tell the topics of interfaces
+})  # fmt: skip
 
 
 class Eds:
@@ -25,24 +32,57 @@ class Eds:
     needs: tuple[str, ...] = ("defusedxml",)
 
     def knows(self, start: str) -> bool:
-        return safe_xml.root_of(start) in eds_sheets.ROOTS and _SPACE in start
+        root = safe_xml.root_of(start)
+        return root == eds_sheets.PARAMETERS or (root in eds_sheets.ROOTS and _SPACE in start)
 
     def read(self, file: str, data: bytes) -> Definitions:
         """Raises `Findings` for an XML, or one beside it, that cannot be read."""
+        account = Account(_WITHOUT_EFFECT)
         to = Definitions(file)
-        sheets = Sheets(file, data, to)
-        types, structs = Types(to, sheets), Structs()
-        sent, alone = Interfaces(sheets).sent()
-        found = [one for one in (_read(sending, sheets, types, structs, to) for sending in sent) if one is not None]
-        network = Network(node_name(file), _title(sheets) or node_name(file), {**ORDERS[BIG]})
-        packets.fill(network, found, to)
-        packets.apart(network.messages)
-        _say_process([one for one in found if one.is_by_interface], to)
-        _say_unsent(alone, sheets, to)
-        network.structs = _used(list(structs.items.values()), network.messages)
-        network.declare(types.enums.declared())
-        to.networks.append(network)
+        sheets = Sheets(safe_xml.parse(file, data, account=account), eds_sheets.beside(file, len(data)), to)
+        _define(sheets, to)
+        account.elements(sheets.root)
+        account.report(to)
         return to
+
+    def read_set(self, sources: Sequence[Source]) -> list[Definitions]:
+        """What each file defines, with the types and design parameters of all, and of the files beside them."""
+        made = [Definitions(one.file) for one in sources]
+        roots: dict[str, Element] = {}
+        for source, to in zip(sources, made, strict=True):
+            try:
+                roots[source.file] = safe_xml.parse(source.file, source.data, account=Account())
+            except Findings as error:
+                to.refuse(error)
+        for to in made:
+            if (root := roots.get(to.file)) is None:
+                continue
+            others = [(path, other) for path, other in roots.items() if path != to.file]
+            others += [(path, other) for path, other in eds_sheets.beside(to.file, 0) if path not in roots]
+            sheets = Sheets(root, others, to)
+            if sheets.own:
+                _define(sheets, to)
+        for to in made:
+            if to.file in roots:
+                account = Account(_WITHOUT_EFFECT)
+                account.elements(roots[to.file])
+                account.report(to)
+        return made
+
+
+def _define(sheets: Sheets, to: Definitions) -> None:
+    """Adds the ICD of the packages of a file."""
+    types, structs = Types(to, sheets), Structs()
+    sent, alone = Interfaces(sheets).sent()
+    found = [one for one in (_read(sending, sheets, types, structs, to) for sending in sent) if one is not None]
+    network = Network(node_name(to.file), _title(sheets) or node_name(to.file), {**ORDERS[BIG]})
+    packets.fill(network, found, to)
+    packets.apart(network.messages)
+    _say_process([one for one in found if one.is_by_interface], to)
+    _say_unsent(alone, sheets, to)
+    network.structs = _used(list(structs.items.values()), network.messages)
+    network.declare(types.enums.declared())
+    to.networks.append(network)
 
 
 class _Found:
@@ -83,6 +123,7 @@ def _read(sending: Sending, sheets: Sheets, types: Types, structs: Structs, to: 
         return _Found(sending, layout, {**_group(sheets, container), **described(container)}, sheets)
     except NotHeld as why:
         to.left_out(line(container.get("name"), 200), why, sheets.line(container))
+        settle(container)
         return None
 
 
@@ -127,3 +168,5 @@ def _say_unsent(alone: list[Element], sheets: Sheets, to: Definitions) -> None:
         what = "1 container" if len(alone) == 1 else f"{len(alone)} containers"
         text = f"no interface carries {what}: {shown}"
         to.warn(UNSENT, text, "they are left out", "note", sheets.line(alone[0]))
+        for one in alone:
+            settle(one)

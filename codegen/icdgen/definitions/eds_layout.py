@@ -184,7 +184,7 @@ class Layout:
     def _indices(self, type_: Element, name: str) -> int:
         """How many elements an array has whose index is of a type."""
         chain = self.types.chain(type_)
-        values = [whole(one.get("value", ""), "a label") for one in chain[-1].iterfind("EnumerationList/Enumeration")]
+        values = [value for _, value in self.sheets.labels(chain[-1])]
         if values:
             return max(values) - min(values) + 1
         low, high = self.types.piece(type_, type_, f"the index of `{name}`").range.of_integers()

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from xml.etree.ElementTree import Element
 
 from icdgen.definitions import kinds, safe_xml
-from icdgen.definitions.eds_values import evaluate
+from icdgen.definitions.eds_values import evaluate, whole
 from icdgen.definitions.model import Definitions, NotHeld, unreadable
 from icdgen.definitions.wording import line
 
 ROOTS = ("PackageFile", "DataSheet")
-_PARAMETERS = "DesignParameters"
+PARAMETERS, _ALIAS = "DesignParameters", "AliasDataType"
 TWICE = "IMP076"
 MOST_FILES = 200
 MOST_BYTES = 32_000_000  # of all files
+_TOGETHER = "import it together with the file that has it: icdgen import FILE FILE, or the folder of both"
 _START = 65_536  # bytes by which a file is known
 _DEEPEST = 20  # values that are defined by values
 _LONGEST = 2000  # characters of a value
@@ -26,12 +27,12 @@ _REFERENCE = re.compile(r"\$\{([^${}]{1,200})\}")
 class Sheets:
     """What references reach. ``own`` are the packages of the file itself."""
 
-    def __init__(self, file: str, data: bytes, to: Definitions) -> None:
-        """Raises `Findings` for a file that cannot be read."""
+    def __init__(self, root: Element, others: Iterable[tuple[str, Element]], to: Definitions) -> None:
+        """``others`` are files to which it may refer, with their outermost elements."""
         self.to = to
-        self.lines: dict[Element, int] = {}
-        self.root = safe_xml.parse(file, data, self.lines)
+        self.root = root
         self.own: list[Element] = []
+        self._within = set(root.iter())
         self.all: list[Element] = []  # packages
         self._found: dict[tuple[str, str], Element] = {}
         self._scopes: dict[Element, tuple[str, str]] = {}  # package and component in which something stands
@@ -39,10 +40,10 @@ class Sheets:
         self._defines: dict[str, tuple[str, str, str]] = {}  # value, package and file
         self._again: dict[str, str] = {}  # what is there again, and where
         self._values: dict[tuple[str, str], str] = {}
-        self._note(file, self.root)
+        self._note(to.file, root)
         self.own = list(self.all)
-        for path, root in _beside(file, len(data)):
-            self._note(path, root)
+        for path, other in others:
+            self._note(path, other)
 
     def _note(self, file: str, root: Element) -> None:
         for element in root.iter():
@@ -51,7 +52,7 @@ class Sheets:
             name = package.get("name", "")
             for define in package.iterfind("Define"):
                 self._define(name, define, file)
-            if root.tag == _PARAMETERS:
+            if root.tag == PARAMETERS:
                 continue
             if name in self._files:
                 self._again.setdefault(name, file)
@@ -85,7 +86,7 @@ class Sheets:
 
     def line(self, element: Element) -> int | None:
         """Where something stands, if that is in the file itself."""
-        return self.lines.get(element)
+        return getattr(element, "line", None) if element in self._within else None
 
     def package(self, element: Element) -> str:
         """The name of the package in which something stands."""
@@ -97,6 +98,14 @@ class Sheets:
         if text is None:
             return default
         return self._filled(text, self._scopes.get(element, ("", ""))[0], 0).strip() if "${" in text else text.strip()
+
+    def labels(self, type_: Element) -> Iterator[tuple[str, int]]:
+        """Labels of an enumeration with their values; one without a value follows the one before. Raises `NotHeld`."""
+        value = -1
+        for one in type_.iterfind("EnumerationList/Enumeration"):
+            text = self.attribute(one, "value")
+            value = whole(text, "the value of a label") if text or "value" in one.attrib else value + 1
+            yield self.attribute(one, "label"), value
 
     def says(self, element: Element, key: str) -> bool:
         """Whether an attribute says `true`."""
@@ -119,7 +128,7 @@ class Sheets:
             return known
         of = next((one for one in (name, f"{package}/{name}") if one in self._defines), None)
         if of is None:
-            raise NotHeld(f"nothing in the file or beside it defines `${{{line(name, 100)}}}`")
+            raise NotHeld(f"nothing in the file or beside it defines `${{{line(name, 100)}}}`", _TOGETHER)
         text, where, _ = self._defines[of]
         self._twice(f"${{{of}}}", self._defines[of][2])
         text = self._filled(text, where, depth + 1)
@@ -147,7 +156,18 @@ class Sheets:
             self.to.warn(TWICE, text, "the first one is taken")
 
     def find(self, kind: str, reference: str, seen_from: Element) -> Element:
-        """The type or interface that a reference names. Raises `NotHeld` if there is none."""
+        """The type or interface that a reference names; of an alias that for which it stands. Raises `NotHeld`."""
+        element = self._find(kind, reference, seen_from)
+        aliases = {element}
+        while element.tag == _ALIAS:
+            element = self._find(kind, self.attribute(element, "type"), element)
+            if element in aliases:
+                raise NotHeld(f"the type `{line(reference, 100)}` is an alias of itself")
+            aliases.add(element)
+        return element
+
+    def _find(self, kind: str, reference: str, seen_from: Element) -> Element:
+        """What a reference names, an alias too. Raises `NotHeld` if there is nothing."""
         package, component = self._scopes[seen_from]
         inner = f"{package}/{component}//{reference}" if component else ""
         for path in (inner, f"{package}/{reference}", reference):
@@ -158,13 +178,17 @@ class Sheets:
         of = reference.rpartition("/")[0]
         if of and of not in self._files:
             raise NotHeld(
-                f"`{line(reference, 100)}` is of the package `{line(of, 60)}`, which is neither in the file nor beside it"
+                f"`{line(reference, 100)}` is of the package `{line(of, 60)}`, which is neither in the file nor beside it",
+                _TOGETHER,
             )
         raise NotHeld(f"there is no {kind} `{line(reference, 100)}`")
 
 
-def _beside(file: str, size: int) -> Iterator[tuple[str, Element]]:
-    """Other data sheets and design parameters in the folder of a file, by name. Raises `Findings` for one that cannot be read."""
+def beside(file: str, size: int) -> Iterator[tuple[str, Element]]:
+    """Other data sheets and design parameters in the folder of a file, by name. Raises `Findings` for one that cannot be read.
+
+    ``size`` are the bytes that were read already.
+    """
     own = Path(file)
     count = 0
     for path in sorted(own.parent.glob("*.xml")):
@@ -175,7 +199,7 @@ def _beside(file: str, size: int) -> Iterator[tuple[str, Element]]:
                 start = opened.read(_START).decode("utf-8-sig", "replace")
         except OSError:
             continue  # nobody's, as far as is known
-        if safe_xml.root_of(start) not in (*ROOTS, _PARAMETERS):
+        if safe_xml.root_of(start) not in (*ROOTS, PARAMETERS):
             continue
         data = kinds.contents(path)
         count, size = count + 1, size + len(data)

@@ -182,16 +182,11 @@ class Types(Reading):
 
     def _labels(self, made: Piece, type_: Element, where: str) -> None:
         choices: dict[int, str] = {}
-        for one in type_.iterfind("EnumerationList/Enumeration"):
+        for label, value in self.sheets.labels(type_):
             self.step()
-            label, value = self.sheets.attribute(one, "label"), self.sheets.attribute(one, "value")
-            raw = (
-                coded(whole(value, "the value of a label"), made.code, made.bits)
-                if made.item["type"] != "bytes"
-                else None
-            )
+            raw = coded(value, made.code, made.bits) if made.item["type"] != "bytes" else None
             if raw is None:
-                raise NotHeld(f"{where} never has the value `{line(value, 60)}` of `{line(label, 60)}`")
+                raise NotHeld(f"{where} never has the value `{value}` of `{line(label, 60)}`")
             choices.setdefault(raw, label)
             made.values.setdefault(label, raw)
         if not choices:

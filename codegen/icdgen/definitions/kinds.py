@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Sequence
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import cast
 
-from icdgen.definitions.model import Definitions, Reader, unreadable
+from icdgen.definitions.model import Definitions, Reader, Source, unreadable
+from icdgen.diagnostics import Findings
 from icdgen.errors import UserError
 
 GROUP = "icdgen.definitions"
@@ -60,15 +63,58 @@ def of(path: Path) -> Reader | None:
     return next((reader for reader in readers if reader.knows(text)), next(by_suffix, None))
 
 
+def within(folder: Path) -> list[tuple[Path, Reader]]:
+    """The definitions in a folder and below it, by path; other files and hidden folders are passed over."""
+    found: list[tuple[Path, Reader]] = []
+    for where, folders, files in os.walk(folder):
+        folders[:] = sorted(one for one in folders if not one.startswith("."))
+        for name in sorted(files):
+            path = Path(where, name)
+            if path.is_file() and (reader := of(path)) is not None:
+                found.append((path, reader))
+    return sorted(found, key=lambda one: one[0])
+
+
+def read_set(paths: Sequence[Path], reader: Reader) -> list[Definitions]:
+    """What files of one kind define: together where they may refer to each other. Raises `UserError` if a library is missing.
+
+    A file that cannot be read costs itself.
+    """
+    _need(reader)
+    most = getattr(reader, "most_bytes", MAX_BYTES)
+    made: list[Definitions] = []
+    sources: list[Source] = []
+    for path in paths:
+        try:
+            sources.append(Source(str(path), contents(path, most)))
+        except Findings as error:
+            made.append(Definitions(str(path)))
+            made[-1].refuse(error)
+    if (together := getattr(reader, "read_set", None)) is not None:
+        return [*made, *together(sources)]
+    for source in sources:
+        try:
+            made.append(reader.read(*source))
+        except Findings as error:
+            made.append(Definitions(source.file))
+            made[-1].refuse(error)
+    return made
+
+
 def read(path: Path, reader: Reader) -> Definitions:
     """What a file defines. Raises `Findings` where it cannot be read, and `UserError` where a library is missing."""
+    _need(reader)
+    return reader.read(str(path), contents(path, getattr(reader, "most_bytes", MAX_BYTES)))
+
+
+def _need(reader: Reader) -> None:
+    """Raises `UserError` where a library is missing."""
     missing = [module for module in reader.needs if find_spec(module) is None]
     if missing:
         raise UserError(
             f"reading {reader.title} takes {' and '.join(missing)}, which {'is' if len(missing) == 1 else 'are'} not installed",
             "pip install 'icdgen[definitions]'",
         )
-    return reader.read(str(path), contents(path, getattr(reader, "most_bytes", MAX_BYTES)))
 
 
 def contents(path: Path, most: int = MAX_BYTES) -> bytes:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.icd import units, wire_ids
@@ -19,7 +19,11 @@ Item = dict[str, Any]  # a message, field, enumeration, member or struct as it s
 
 
 class NotHeld(Exception):
-    """A message that an ICD cannot hold; the text says why."""
+    """A message that an ICD cannot hold; the text says why, and ``help`` what to do if there is something."""
+
+    def __init__(self, text: str, help: str = "") -> None:
+        super().__init__(text)
+        self.help = help
 
 
 @dataclass
@@ -69,21 +73,58 @@ class Network:
 
 @dataclass
 class Definitions:
-    """Everything that a file defines. ``total`` counts its messages, those that are not held among them."""
+    """Everything that a file defines, with ``more`` files that are read as one with it.
+
+    ``total`` counts its messages, those that are not held among them.
+    """
 
     file: str
     networks: list[Network] = field(default_factory=list)
     total: int = 0
     troubles: list[Trouble] = field(default_factory=list)
+    more: int = 0
 
-    def left_out(self, name: str, why: object, line: int | None = None) -> None:
-        """Notes that a message is not held."""
-        spot = Spot(line=line)
-        self.troubles.append(Trouble(NOT_HELD, f"message `{name}` is not held: {why}", spot, severity="error"))
+    @property
+    def files(self) -> str:
+        """The file, and how many others, for people."""
+        others = "1 more file" if self.more == 1 else f"{self.more} more files"
+        return f"{self.file} and {others}" if self.more else self.file
 
-    def warn(self, code: str, message: str, help: str = "", severity: str = "warning", line: int | None = None) -> None:
-        """Notes a fault of the file."""
-        self.troubles.append(Trouble(code, message, Spot(line=line), help, severity))
+    def left_out(self, name: str, why: object, line: int | None = None, file: str = "") -> None:
+        """Notes that a message is not held. ``file`` is where it stands, if several are read as one."""
+        spot = Spot(line=line, file=file if file != self.file else "")
+        help = why.help if isinstance(why, NotHeld) else ""
+        self.troubles.append(Trouble(NOT_HELD, f"message `{name}` is not held: {why}", spot, help, "error"))
+
+    def warn(
+        self,
+        code: str,
+        message: str,
+        help: str = "",
+        severity: str = "warning",
+        line: int | None = None,
+        file: str = "",
+    ) -> None:
+        """Notes a fault of the file, or of ``file`` if several are read as one."""
+        spot = Spot(line=line, file=file if file != self.file else "")
+        self.troubles.append(Trouble(code, message, spot, help, severity))
+
+    def refuse(self, findings: Findings) -> None:
+        """Notes that the file cannot be read."""
+        for one in findings.findings:
+            self.warn(one.code, one.message, one.help, "error", one.place.line if one.place.line > 1 else None)
+
+    def take(self, part: Definitions) -> None:
+        """Takes the findings of a file that is read as one with others."""
+        file = part.file if part.file != self.file else ""
+        self.troubles += [one._replace(spot=one.spot._replace(file=one.spot.file or file)) for one in part.troubles]
+
+
+class Source(NamedTuple):
+    """A file with what stands in it."""
+
+    file: str
+    data: bytes
 
 
 class Reader(Protocol):
@@ -92,7 +133,8 @@ class Reader(Protocol):
     name: str  # as in `--kind`
     title: str  # for people
     needs: tuple[str, ...]  # modules that reading takes, of the extra `definitions`
-    # `most_bytes`, if it is there, is how large a file may be.
+    # `most_bytes`, if it is there, is how large a file may be. A kind whose files refer to each other has
+    # `read_set(sources: Sequence[Source]) -> list[Definitions]`; files that belong together are one of them.
 
     def knows(self, start: str) -> bool:
         """Whether a file that begins so is of this kind."""

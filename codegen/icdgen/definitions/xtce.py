@@ -2,18 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator
+import os
+from collections.abc import Hashable, Iterator, Mapping, Sequence
+from pathlib import Path
 from xml.etree.ElementTree import Element
 
-from icdgen.definitions import packets, safe_xml
+from icdgen.definitions import packets, safe_xml, xtce_files
+from icdgen.definitions.accounting import Account, settle
 from icdgen.definitions.frames import BIG, ORDERS
-from icdgen.definitions.model import Definitions, Item, Network, NotHeld
+from icdgen.definitions.model import Definitions, Item, Network, NotHeld, Source
 from icdgen.definitions.wording import line, node_name
 from icdgen.definitions.xtce_layout import Layout, Part, Told
 from icdgen.definitions.xtce_names import Names, beside, called
 from icdgen.definitions.xtce_types import Types, described
+from icdgen.diagnostics import Findings
 
 _TELECOMMAND, _TELEMETRY = packets.TELECOMMAND, packets.TELEMETRY
+_WITHOUT_EFFECT = frozenset(
+    {
+        "schemaLocation",
+        "SpaceSystem.Header",  # who changed what when
+        "ArrayParameterType.numberOfDimensions",  # the dimensions themselves are read
+        "ArrayArgumentType.numberOfDimensions",
+    }
+    | {  # of the value after calibration; where there is no encoding they are read
+        f"{kind}{of}Type.{key}"
+        for kind in ("Integer", "Float")
+        for of in ("Parameter", "Argument")
+        for key in ("signed", "sizeInBits")
+    }
+)
 IN_HEADER, BASE_ONLY = "IMP086", "IMP087"
 _HAZARDOUS = frozenset({"vital", "critical", "severe"})
 
@@ -30,19 +48,46 @@ class Xtce:
 
     def read(self, file: str, data: bytes) -> Definitions:
         """Raises `Findings` for an XML that cannot be read."""
-        to = Definitions(file)
-        root = safe_xml.parse(file, data)
-        names = Names(file, root)
-        types = Types(to, names)
-        found = _identified(list(_all(names, types, to)), to)
-        title = line(called(root), 100) or node_name(file)
-        network = Network(node_name(file), title, {**ORDERS[BIG], **described(root)})
-        packets.fill(network, found, to)
-        network.messages = _paired(network.messages)
-        packets.apart(network.messages)
-        network.declare(types.enums.declared())
-        to.networks.append(network)
-        return to
+        root = safe_xml.parse(file, data, account=Account())
+        return _define({file: root}, Definitions(file), node_name(file))
+
+    def read_set(self, sources: Sequence[Source]) -> list[Definitions]:
+        """What each set of files defines in which one refers to another, called like their folder; and each other file."""
+        roots: dict[str, Element] = {}
+        made: list[Definitions] = []
+        for source in sources:
+            try:
+                roots[source.file] = safe_xml.parse(source.file, source.data, account=Account())
+            except Findings as error:
+                made.append(Definitions(source.file))
+                made[-1].refuse(error)
+        for files in xtce_files.sets(roots):
+            first = next(iter(files))
+            folder = Path(os.path.commonpath([Path(file).absolute().parent for file in files]))
+            name = node_name(first if len(files) == 1 else f"{folder.name}.xml")
+            made.append(_define(files, Definitions(first, more=len(files) - 1), name))
+        return made
+
+
+def _define(roots: Mapping[str, Element], to: Definitions, name: str) -> Definitions:
+    """Adds the ICD of the systems of files that are one database."""
+    names = Names(roots, to)
+    types = Types(to, names)
+    found = _identified(list(_all(names, types, to)), to)
+    root = next(iter(roots.values()))
+    title = line(called(root), 100) if len(roots) == 1 else ""
+    network = Network(name, title or name, {**ORDERS[BIG], **(described(root) if title else {})})
+    packets.fill(network, found, to)
+    network.messages = _paired(network.messages)
+    packets.apart(network.messages)
+    network.declare(types.enums.declared())
+    to.networks.append(network)
+    for file, one in roots.items():
+        account, part = Account(_WITHOUT_EFFECT), Definitions(file)
+        account.elements(one)
+        account.report(part)
+        to.take(part)
+    return to
 
 
 class _Found:
@@ -86,7 +131,8 @@ def _all(names: Names, types: Types, to: Definitions) -> Iterator[_Found]:
             more = {**_group(names, element), **described(element)}
             yield _Found(_TELEMETRY, element, layout, more, id(element) in bases)
         except NotHeld as why:
-            to.left_out(element.get("name", ""), why)
+            to.left_out(element.get("name", ""), why, *names.place(element))
+            settle(element)
     for element in names.all("command"):
         if element.tag != "MetaCommand" or element.get("abstract") == "true":
             continue
@@ -107,7 +153,8 @@ def _all(names: Names, types: Types, to: Definitions) -> Iterator[_Found]:
             more = {**_group(names, element), **_hazard(chain), **described(element)}
             yield _Found(_TELECOMMAND, element, layout, more)
         except NotHeld as why:
-            to.left_out(element.get("name", ""), why)
+            to.left_out(element.get("name", ""), why, *names.place(element))
+            settle(element)
 
 
 def _identified(found: list[_Found], to: Definitions) -> list[_Found]:

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import posixpath
+from collections.abc import Mapping
+from pathlib import Path
 from xml.etree.ElementTree import Element
 
 from icdgen.definitions import safe_xml
-from icdgen.definitions.model import NotHeld, unreadable
+from icdgen.definitions.model import Definitions, NotHeld, unreadable
 from icdgen.definitions.wording import line
 
 ICD = (
     "ICD"  # the name space of names, and the beginning of what is said beside XTCE, as `icdgen --lang xtce` writes them
 )
+TWICE = "IMP076"
+_TOGETHER = "if it is in another file, import both together: icdgen import FILE FILE, or the folder of both"
 _DEEPEST = 100  # systems within each other
 _SETS = {
     "ParameterTypeSet": "parameter type", "ArgumentTypeSet": "argument type", "ParameterSet": "parameter",
@@ -22,13 +26,22 @@ _SETS = {
 class Names:
     """Everything that references reach, by its kind and path."""
 
-    def __init__(self, file: str, root: Element) -> None:
-        """Names lose their namespaces. Raises `Findings` for systems too deep within each other."""
-        for element in root.iter():
-            element.tag = safe_xml.local(element.tag)
+    def __init__(self, roots: Mapping[str, Element], to: Definitions) -> None:
+        """``roots`` are the outermost systems by their file.
+
+        Elements lose their namespaces. Raises `Findings` for systems too deep within each other.
+        """
         self._found: dict[tuple[str, str], Element] = {}
         self._systems: dict[int, str] = {}
+        self._files: dict[int, str] = {}
         self._senders: dict[int, Element] = {}  # commands by their container
+        self._to = to
+        for file, root in roots.items():
+            for element in root.iter():
+                element.tag = safe_xml.local(element.tag)
+            self._note_file(file, root)
+
+    def _note_file(self, file: str, root: Element) -> None:
         left = [(root, "", 0)]
         while left:
             system, above, depth = left.pop()
@@ -38,12 +51,20 @@ class Names:
             for meta in (one for one in system if one.tag in ("TelemetryMetaData", "CommandMetaData")):
                 for group in meta:
                     for one in group if group.tag in _SETS else ():
-                        self._note(_SETS[group.tag], one, path)
+                        self._note(_SETS[group.tag], one, path, file)
             left += [(one, path, depth + 1) for one in reversed(system.findall("SpaceSystem"))]
 
-    def _note(self, kind: str, element: Element, path: str) -> None:
-        self._found.setdefault((kind, f"{path}/{element.get('name', '')}"), element)
+    def _note(self, kind: str, element: Element, path: str, file: str) -> None:
+        first = self._found.setdefault((kind, f"{path}/{element.get('name', '')}"), element)
         self._systems[id(element)] = path
+        self._files[id(element)] = file
+        if first is not element and self._files[id(first)] != file:
+            name = line(f"{path}/{element.get('name', '')}", 100)
+            text = f"the {kind} `{name}` is in `{Path(self._files[id(first)]).name}` and in `{Path(file).name}`"
+            is_lost = kind in ("command", "container")
+            severity = "error" if is_lost else "warning"
+            self._to.warn(TWICE, text, "the first one is taken", severity, line_of(element), file)
+            return
         container = element.find("CommandContainer") if kind == "command" else None
         if container is not None:
             self._found.setdefault(("command container", f"{path}/{container.get('name', '')}"), container)
@@ -51,6 +72,10 @@ class Names:
             self._senders[id(container)] = element
         for argument in element.iterfind("ArgumentList/Argument"):
             self._systems[id(argument)] = path
+
+    def place(self, element: Element) -> tuple[int | None, str]:
+        """Line and file in which something stands."""
+        return line_of(element), self._files.get(id(element), "")
 
     def all(self, kind: str) -> list[Element]:
         """Those of a kind, as they stand in the file."""
@@ -110,7 +135,7 @@ class Names:
                 return self.find("parameter", "/".join(words[:length]), seen_from), tuple(words[length:])
             except NotHeld:
                 continue
-        raise NotHeld(f"there is no parameter `{line(reference, 100)}`")
+        raise NotHeld(f"there is no parameter `{line(reference, 100)}`", _TOGETHER if "/" in reference else "")
 
     def find(self, kind: str, reference: str, seen_from: Element) -> Element:
         """What a reference names: in the system, or one around it. Raises `NotHeld` if there is nothing."""
@@ -120,8 +145,13 @@ class Names:
             if found is not None:
                 return found
             if not path or reference.startswith("/"):
-                raise NotHeld(f"there is no {kind} `{line(reference, 100)}`")
+                raise NotHeld(f"there is no {kind} `{line(reference, 100)}`", _TOGETHER if "/" in reference else "")
             path = path.rpartition("/")[0]
+
+
+def line_of(element: Element) -> int | None:
+    """The line in which an element begins."""
+    return getattr(element, "line", None)
 
 
 def called(element: Element) -> str:

@@ -9,6 +9,7 @@ from fractions import Fraction
 from typing import Any
 from xml.etree.ElementTree import Element
 
+from icdgen.definitions.accounting import settle
 from icdgen.definitions.enumerations import MOST_SPECIAL, special
 from icdgen.definitions.frames import BIG, LITTLE
 from icdgen.definitions.model import Item, NotHeld
@@ -170,6 +171,8 @@ class Types(Reading):
             said = _time(made.item, chain) if is_time else {} if encoding is None else calibration(encoding)
         except ValueError as error:
             self._raw_only(where, str(error))
+            for type_ in chain:
+                settle(type_)
             return False
         if "points" in said and made.item["type"] != "float":
             said = ended(said, made.bits, made.item["type"] == "int")
@@ -333,7 +336,8 @@ def _adjusted(dynamic: Element) -> tuple[str, int, int | None]:
 
 def _unit(chain: list[Element]) -> dict[str, str]:
     """The first type that has units: `m` and `s` to the power of -2 are `m/s^2`."""
-    units = next((found for type_ in chain if (found := type_.findall("UnitSet/Unit"))), [])
+    sets = [one for type_ in chain for one in type_.iterfind("UnitSet")]  # many are empty
+    units = next((found for one in sets if (found := one.findall("Unit"))), [])
     parts = ""
     for one in units:
         power, text = one.get("power", "1"), line("".join(one.itertext()), 60)

@@ -21,6 +21,7 @@ _COLOURS = {"error": "31;1", "warning": "33;1", "note": "36"}
 
 def where(file: str, spot: Spot) -> str:
     """``manual.pdf, page 12``, ``manual.txt:482``"""
+    file = spot.file or file
     text = f"{file}:{spot.line}" if spot.line is not None else file
     return f"{text}, page {spot.page}" if spot.page is not None else text
 

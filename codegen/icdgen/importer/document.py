@@ -35,11 +35,13 @@ class Spot(NamedTuple):
     line: int | None = None
     table: int | None = None
     order: int | None = None  # which table it is, counted from 0: numbers may be missing, or occur twice
+    file: str = ""  # of several files that are one source, the file
 
     @property
     def place(self) -> str:
-        """``page 12``, ``line 482``; "" for the document as a whole."""
-        return f"page {self.page}" if self.page is not None else f"line {self.line}" if self.line is not None else ""
+        """``page 12``, ``line 482``, ``types.xml, line 3``; "" for the document as a whole."""
+        within = f"page {self.page}" if self.page is not None else f"line {self.line}" if self.line is not None else ""
+        return ", ".join(filter(None, (self.file, within)))
 
 
 @dataclass(slots=True)
