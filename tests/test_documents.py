@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from icdgen.backends.html.guide import anchor_of
+from scripts import reference_pages
 from tests import documents
 from tests.conftest import ROOT
 
@@ -38,6 +39,11 @@ def test_every_link_leads_to_a_page_and_heading_that_exists(page):
         if not target.exists() or (anchor and anchor not in anchors(target)):
             dead.append(link)
     assert dead == []
+
+
+def test_generated_reference_pages_are_current():
+    old = [path.name for path, text in reference_pages.pages().items() if path.read_text("utf-8") != text]
+    assert old == [], "run `python -m scripts.reference_pages`"
 
 
 def test_the_index_lists_every_page():

@@ -10,6 +10,7 @@ from urllib.parse import urlsplit
 import pytest
 
 from icdgen.protocol import facts, uart
+from tests import documents
 from tests.c import harness
 from tests.conformance import ROOT
 from tests.sim.device import simulator
@@ -71,9 +72,9 @@ def test_the_example_gives_up_when_nobody_answers(program):
     assert (done.returncode, done.stdout, done.stderr) == (1, "", "no reply, asked 4 times\n")
 
 
-def test_the_readme_shows_the_example_as_it_is():
+def test_the_guide_shows_the_example():
     code = EXAMPLE.read_text(encoding="utf-8").partition("*/\n")[2]
-    assert code in (ROOT / "README.md").read_text(encoding="utf-8")
+    assert code in documents.text("guides/driver-in-c")
 
 
 def test_the_example_talks_to_the_simulator(program):

@@ -8,86 +8,131 @@ import shutil
 import socket
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from scripts.page_commands import MARK, script, steps
+from tests.c import harness as c
 from tests.conftest import ROOT
+from tests.python import packages
+from tests.rust import harness as rust
+from tests.rust.tools import STD, Toolchain
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-# What takes minutes or installs something: CI runs the scripts, the tests' environment has the packages. The server of
-# the site, whose port may be taken, is tried in tests/site.
-ELSEWHERE = ("scripts/", "pip install", "icdgen docs --serve")
-SERVES = ("icdgen sim",)  # in a terminal of its own
-FINDINGS = ("icdgen diff", "icdgen import")  # whose exit status tells of what was found
+SUITE = "scripts/test"  # this test is a part of it
+FRAME = bytes.fromhex("020166 08e81c")  # 21.5 C
+_BYTES = ", ".join(f"0x{byte:02x}" for byte in FRAME)
 
+C = f"""
+#include "battery.h"
+#include <stdio.h>
 
-def steps() -> Iterator[tuple[str, str]]:
-    """Each command without its remark, and what the README shows of its output."""
-    for language, block in re.findall(r"^```(console|sh)\n(.*?)^```", README, re.MULTILINE | re.DOTALL):
-        lines = block.splitlines() if language == "sh" else re.split(r"^\$ ", block, flags=re.MULTILINE)
-        for step in filter(None, lines):
-            command, _, shown = step.partition("\n")
-            yield re.sub(r"\s+# .*", "", command).strip(), shown.strip()
+static bool show(const uint8_t *frame, size_t length)
+{{
+    %s
+    (void)printf("%%.2f\\n", temperature);
+    return true;
+}}
 
-
-@pytest.fixture
-def ports() -> dict[str, str]:
-    """Free ones for those of the README."""
-    with socket.create_server(("127.0.0.1", 0)) as one, socket.create_server(("127.0.0.1", 0)) as other:
-        return {"4000": str(one.getsockname()[1]), "4001": str(other.getsockname()[1])}
+int main(void)
+{{
+    const uint8_t frame[] = {{{_BYTES}}};
+    return show(frame, sizeof frame) ? 0 : 1;
+}}
+"""
+RUST = f"""
+fn main() -> Result<(), icd::Error> {{
+    let frame = &[{_BYTES}][..];
+    %s
+    println!("{{temperature}}");
+    Ok(())
+}}
+"""
 
 
 @pytest.fixture(scope="module")
 def clone(tmp_path_factory) -> Path:
-    """The files of this repository as they are now, in one of two revisions whose branch is main."""
+    """A copy of the files of this repository, without those that only tests use."""
     folder = tmp_path_factory.mktemp("clone")
     listed = subprocess.run(
         ["git", "ls-files", "-co", "--exclude-standard", "-z"], cwd=ROOT, capture_output=True, text=True, check=True
     ).stdout
     for name in filter(None, listed.split("\0")):
-        if (ROOT / name).is_file() and not name.startswith(("generated/", "tests/wrong/", "tests/diff/")):
+        if (ROOT / name).is_file() and not name.startswith(("generated/", "tests/")):
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(ROOT / name, folder / name)
-    name = ["-c", "user.name=A", "-c", "user.email=a@b.c"]
-    for words in (["init", "-q", "-b", "main"], ["add", "icd"], [*name, "commit", "-qm", "1"], ["add", "."],
-                  [*name, "commit", "-qm", "2"]):  # fmt: skip
-        subprocess.run(["git", *words], cwd=folder, check=True)
     return folder
 
 
-def test_every_command_works_as_it_stands_and_shows_what_is_shown(clone, ports, tmp_path):
-    programs = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    env = {**os.environ, "PATH": programs, "HOME": str(tmp_path)}
-    servers, folder, done = [], clone, []
-    try:
-        for step in steps():
-            command, shown = (re.sub(r"\b400[01]\b", lambda found: ports[found[0]], text) for text in step)
-            if command.startswith(ELSEWHERE):
-                continue
-            if command.startswith(SERVES):
-                server = subprocess.Popen(
-                    ["bash", "-c", f"exec {command}"], cwd=folder, env=env, stdout=subprocess.PIPE, text=True
-                )
-                servers.append(server)
-                assert shown in server.stdout.readline()
-                continue
-            if " && cd " in command:
-                command, _, entered = command.partition(" && cd ")
-            else:
-                entered = ""
-            ran = subprocess.run(
-                ["bash", "-c", command], cwd=folder, env=env, capture_output=True, text=True, timeout=600
-            )
-            got = ran.stdout + ran.stderr
-            assert ran.returncode in ((0, 1) if command.startswith(FINDINGS) else (0,)), f"{command}\n{got}"
-            assert "error: " not in ran.stderr, f"{command}\n{got}"
-            assert shown in got, f"{command}\n{got}"
-            folder = folder / entered
-            done.append(command)
-    finally:
-        for server in servers:
-            server.kill()
-            server.communicate()
-    assert len(done) > 25
+@pytest.fixture
+def free_port() -> str:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        return str(server.getsockname()[1])
+
+
+def test_every_command_runs_in_order_in_one_shell_and_prints_what_is_shown(clone, free_port, tmp_path):
+    typed = [step for step in steps(README.replace("4000", free_port)) if not step.command.startswith(SUITE)]
+    ran = subprocess.run(
+        ["bash", "-c", script([step.command for step in typed])],
+        cwd=clone,
+        env=_environment(tmp_path),
+        capture_output=True,
+        text=True,
+        timeout=600,
+    )
+    outputs = re.split(rf"^{MARK} \d+\n", ran.stdout, flags=re.MULTILINE)[1:]
+    assert ran.returncode == 0, f"{typed[len(outputs) - 1].command}\n{ran.stdout}\n{ran.stderr}"
+    assert len(outputs) == len(typed) + 1 and len(typed) > 10
+    missing = [step for step, output in zip(typed, outputs, strict=False) if step.shown not in output]
+    assert missing == [], ran.stdout
+
+
+def _environment(home: Path) -> dict[str, str]:
+    """Environment of a user with an empty home, without the virtual environment in which the tests run."""
+    own = Path(sys.prefix) / "bin"
+    path = os.pathsep.join(part for part in os.environ["PATH"].split(os.pathsep) if Path(part) != own)
+    tools = {name.upper() + "_HOME": str(Path.home() / f".{name}") for name in ("cargo", "rustup")}
+    return {**tools, **os.environ, "HOME": str(home), "PATH": path}
+
+
+@pytest.fixture(scope="module")
+def battery(tmp_path_factory) -> Path:
+    """The ICD with which the README begins."""
+    folder = tmp_path_factory.mktemp("battery")
+    subprocess.run([sys.executable, "-m", "icdgen", "init", "battery"], cwd=folder, check=True, capture_output=True)
+    return folder / "icd" / "battery.yaml"
+
+
+def snippet(language: str) -> str:
+    """First block of a language."""
+    return re.findall(rf"^```{language}\n(.*?)^```", README, re.MULTILINE | re.DOTALL)[0]
+
+
+def test_the_message_shown_is_that_of_the_first_icd(battery):
+    assert snippet("yaml") in battery.read_text("utf-8")
+
+
+def test_the_c_shown_reads_the_message(battery, tmp_path):
+    headers = c.generate(c.read(battery), tmp_path / "c")
+    source = tmp_path / "program.c"
+    source.write_text(C % snippet("c"))
+    program = c.compile(source, "-std=c99", *c.WARNINGS, f"-I{headers}", output=tmp_path / "program")
+    assert subprocess.run([program], capture_output=True, text=True).stdout == "21.50\n"
+
+
+def test_the_python_shown_reads_the_message(battery, tmp_path):
+    package = packages.write(packages.read(battery), tmp_path, "readme_messages")
+    values = {"frame": FRAME}
+    package.module()
+    exec(snippet("python").replace("icdgen_messages", "readme_messages"), values)
+    assert values["temperature"] == 21.5
+
+
+def test_the_rust_shown_reads_the_message(battery, tmp_path):
+    library = rust.generate(rust.read(battery), tmp_path)
+    toolchain = Toolchain("default")
+    source = tmp_path / "program.rs"
+    source.write_text(RUST % snippet("rust"))
+    program = toolchain.program(source, toolchain.library(library, "0", *STD), tmp_path / "program")
+    assert subprocess.run([program], capture_output=True, text=True).stdout == "21.5\n"

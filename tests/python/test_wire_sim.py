@@ -10,6 +10,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
+from tests import documents
 from tests.conftest import ROOT
 from tests.python import packages
 from tests.sim.device import simulator
@@ -178,9 +179,9 @@ def test_logs_that_come_unasked_are_told(shipped, wire):
     assert [type(event) for event in heard] == [wire.Log]
 
 
-def test_the_readme_holds_the_example():
+def test_the_guide_shows_the_example():
     _, code = EXAMPLE.read_text().split("\n\n", 1)
-    assert f"```python\n{code}```\n" in (ROOT / "README.md").read_text()
+    assert f"```python\n{code}```\n" in documents.text("guides/python")
 
 
 def test_the_example_talks_to_the_simulator_of_the_command_line(shipped, tmp_path):

@@ -1,10 +1,11 @@
-"""The example of the README that talks to a simulated node, as it stands there."""
+"""The example of the guide that talks to a simulated node, as the guide shows it."""
 
 from __future__ import annotations
 
 import shutil
 from urllib.parse import urlsplit
 
+from tests import documents
 from tests.conftest import ROOT
 from tests.rust import harness
 from tests.rust.tools import run
@@ -15,9 +16,9 @@ REQUEST = "src/bin/request.rs"
 PORT = "127.0.0.1:4000"
 
 
-def test_the_readme_holds_the_example():
+def test_the_guide_shows_the_example():
     _, code = (EXAMPLES / REQUEST).read_text().split("\n", 1)
-    assert f"```rust\n{code}```\n" in (ROOT / "README.md").read_text()
+    assert f"```rust\n{code}```\n" in documents.text("guides/rust")
 
 
 def test_it_talks_to_the_simulator_of_the_command_line(tmp_path):
