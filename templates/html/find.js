@@ -6,8 +6,10 @@
  * An entry of the index is kind, title, context, further words of its name, what is said about it, exact phrases, address.
  */
 const icdgenFind = (() => {
-  const RANKS = { node: 6, message: 6, enumeration: 4, protocol: 3.5, unit: 2.5, field: 1.5, guide: 1.2, member: 1, erratum: 0.8, note: 0.4 };
+  const RANKS = { node: 9, message: 9, enumeration: 5, protocol: 8, unit: 2.5, field: 1.5, guide: 1.2, member: 1, erratum: 0.8, note: 0.4 };
+  const PAGES = new Set(["node", "message", "enumeration", "protocol", "unit", "guide"]); // a name means these rather than a part of them
   const EXACT = 1;
+  const RELATED = 0.9; // another form of the word: `detumble`, `detumbling`
   const PREFIX = 0.8;
   const WITHIN = 0.4;
   const CLOSE = 0.6;
@@ -17,15 +19,19 @@ const icdgenFind = (() => {
   // What follows names another message, which the one that is meant repeats.
   const PART = /(?<=\w)_part_\w+$/;
 
-  const squashed = (text) => text.toLowerCase().replace(/[^\p{L}\p{N}]+/gu, "");
+  const lower = (text) => text.normalize("NFKC").toLowerCase(); // I²C is I2C
+  const squashed = (text) => lower(text).replace(/[^\p{L}\p{N}]+/gu, "");
 
   /** Words of a text or an identifier, in small letters. */
   function wordsOf(text) {
     const apart = text.replace(/(\p{Ll}|\p{N})(\p{Lu})/gu, "$1 $2").replace(/(\p{Lu})(\p{Lu}\p{Ll})/gu, "$1 $2");
-    return apart.toLowerCase().split(/[^\p{L}\p{N}%°µ]+/u).filter(Boolean);
+    return lower(apart).split(/[^\p{L}\p{N}%°µ]+/u).filter(Boolean);
   }
 
-  const plainWords = (text) => text.toLowerCase().split(/[^\p{L}\p{N}%°µ]+/u).filter(Boolean);
+  const plainWords = (text) => lower(text).split(/[^\p{L}\p{N}%°µ]+/u).filter(Boolean);
+
+  /** A word without its ending. */
+  const stem = (word) => word.replace(/(?<=\p{L}{4})(?:ing|ed|es|e|s)$/u, "");
 
   /** Prepares an index: `find(text)` gives at most `most` entries, the best first; `find.sure` tells whether words were found as given. */
   function finder(rows) {
@@ -44,19 +50,22 @@ const icdgenFind = (() => {
       tags: new Set(tags ? tags.toLowerCase().split("|") : []),
     }));
     const words = [...vocabulary.keys()];
+    const stems = words.map(stem);
 
     /** How well each word of the vocabulary fits a word of the query. */
     function fits(word, guess) {
-      const found = new Float32Array(words.length);
+      const found = new Float64Array(words.length);
       words.forEach((one, id) => {
         if (one === word) found[id] = EXACT;
+        else if (stems[id] === stem(word)) found[id] = RELATED;
         else if (one.startsWith(word)) found[id] = PREFIX;
-        else if (word.length > 1 && one.includes(word)) found[id] = WITHIN;
+        else if (word.length > 2 && one.includes(word)) found[id] = WITHIN;
         else if (guess) found[id] = CLOSE * likeness(word, one);
       });
       return found;
     }
 
+    const sure = (value) => (value > WITHIN ? value : 0); // in prose a part of a word says nothing
     const best = (ids, fit) => ids.reduce((most, id) => Math.max(most, fit[id]), 0);
 
     /** The larger, the better; 0 if a word that matters is missing. */
@@ -66,10 +75,10 @@ const icdgenFind = (() => {
       for (let at = 0; at < asked.length; at += 1) {
         const fit = fitting[at];
         const own = best(entry.own, fit);
-        const value = Math.max(10 * own, 4 * best(entry.context_, fit), 3 * best(entry.about, fit));
+        const value = Math.max(10 * own, 4 * best(entry.context_, fit), 3 * sure(best(entry.about, fit)));
         if (!value && !query.optional[at]) return 0;
         points += value || (query.optional[at] ? 1 : 0);
-        for (const id of entry.own) if (fit[id] >= CLOSE / 2 && fit[id] === own) covered.add(id);
+        for (const id of entry.own) if (fit[id] >= CLOSE / 2 && fit[id] !== WITHIN && fit[id] === own) covered.add(id);
       }
       points /= asked.length;
       const named = [...entry.named].filter((id) => covered.has(id)).length;
@@ -80,7 +89,9 @@ const icdgenFind = (() => {
 
     function exactness(entry, query) {
       if (entry.tags.has(query.plain)) return 120;
-      return query.squashed && entry.names.includes(query.squashed) ? 100 : 0;
+      if (!query.squashed) return 0;
+      if (entry.names.includes(query.squashed)) return PAGES.has(entry.kind) ? 100 : 2;
+      return PAGES.has(entry.kind) && entry.names.some((name) => stem(name) === stem(query.squashed)) ? 90 : 0;
     }
 
     function find(text, most = 24) {

@@ -11,6 +11,7 @@ from icdgen.backends.c import CBackend
 from icdgen.backends.html.links import Links
 from icdgen.backends.python import PythonBackend
 from icdgen.backends.rust import RustBackend
+from icdgen.site import make, write
 from tests.conftest import ROOT
 from tests.site.conftest import program
 
@@ -92,6 +93,30 @@ QUERIES = {
     "configuraton adcs": "cubeacp/adcs_configuration.html",
 }
 
+# What somebody types who has not read the manual, and the page that must come first.
+FIRST = {
+    "detumble": "cubeacp/set_detumbling_control_parameters.html",
+    "attitude CAN": ANGLES,
+    "star tracker enabled": "cubeacp/set_star_tracker_configuration.html#field-star_tracking_module_enable",
+    "deploy": "cubeacp/deploy_magnetometer_boom.html",
+    "unix time": "common/current_unix_time.html",
+    "error 3": "common/enum-tc_error_reason.html#member-incorrect_parameter",
+    "i2c address": "common/protocol.html#lines",
+    "timeout": "common/protocol.html#times",
+    "log mask": "cubeacp/index.html#log-mask",
+}
+NOTHING = [
+    "",
+    "  ",
+    "xyzzyqwert",
+    "!!!",
+    "battery voltage",
+    "coffee machine",
+    "propulsion",
+    "temperature of moon",
+    "warp drive",
+]
+
 
 def found(site, queries: list[str]) -> list[list[str]]:
     """The addresses that each query gives, the best first."""
@@ -119,8 +144,19 @@ def fits(url: str, best: list[str]) -> bool:
     return url in best or ("/protocol" in url and any(one.partition("/")[2] == url.partition("/")[2] for one in best))
 
 
+def test_words_of_somebody_who_has_not_read_the_manual_lead_to_the_page_first(site):
+    results = found(site, list(FIRST))
+    assert [(q, r[:2]) for (q, url), r in zip(FIRST.items(), results, strict=True) if r[:1] != [url]] == []
+
+
+def test_a_quantity_finds_the_fields_of_its_units(tmp_path):
+    write(make([ROOT / "examples" / "devices" / "p31u" / "p31u.yaml"]), tmp_path)
+    ((first, *_),) = found(tmp_path, ["battery voltage"])
+    assert first == "p31u/housekeeping.html#field-power_battery"
+
+
 def test_what_is_nothing_finds_nothing(site):
-    assert found(site, ["", "  ", "xyzzyqwert", "!!!"]) == [[], [], [], []]
+    assert found(site, NOTHING) == [[]] * len(NOTHING)
 
 
 @pytest.mark.parametrize("backend", [CBackend, PythonBackend, RustBackend])

@@ -41,10 +41,16 @@ def entries(relations: Relations) -> Iterator[Entry]:
         if protocol.has_page(relations, node):
             for words_, title, place in protocol.entries(relations, node, links.protocol(node.name)):
                 yield Entry("protocol", title, place.text, "", f"protocol {words_}", (), place.url)
+        if node.loggable:
+            url = f"{links.node(node.name)}#log-mask"
+            yield Entry(
+                "protocol", "Log mask", node.title, "", "protocol bits selection frames that are logged", (), url
+            )
         for message in node.messages:
             yield from _of_message(relations, node, message)
+        codes = _error_codes(relations, node)
         for enum in node.enums:
-            yield from _of_enum(relations, node, enum)
+            yield from _of_enum(relations, node, enum, enum.name in codes)
         for erratum in node.errata:
             about = " ".join([*(f"table {table}" for table in erratum.tables), erratum.why])
             title = f"{erratum.id} {erratum.title}"
@@ -78,17 +84,26 @@ def _of_message(relations: Relations, node: Node, message: Message) -> Iterator[
         phrases += [f"telecommand {message.set_id}", f"telemetry {message.get_id}"]
     phrases += _table(message.table)
     speakers = " ".join(one.name for one in relations.speakers[node.name])
-    about = f"{speakers} {message.group} {message.summary}"
+    buses = " ".join(bus for bus in texts.BUSES if bus in relations.icd.protocol_of(node))
+    about = f"{speakers} {message.group} {buses} {message.summary}"
     context = f"{message.kind} {ids} · {node.title}"
     yield Entry("message", message.name, context, own, about, tuple(phrases), links.message(message))
     for name, field in relations.shown_fields(message):
-        unit = f"{field.unit.symbol} {field.unit.identifier.replace('_', ' ')}" if field.unit else ""
+        unit = (
+            f"{field.unit.symbol} {field.unit.identifier.replace('_', ' ')} {field.unit.quantity}" if field.unit else ""
+        )
         about = f"{node.name} {own} {unit} {field.summary}"
         context = f"{message.name} · {node.title}"
         yield Entry("field", name, context, _words(field, node), about, (), links.field(message, field))
 
 
-def _of_enum(relations: Relations, node: Node, enum: Enum) -> Iterator[Entry]:
+def _error_codes(relations: Relations, node: Node) -> set[str]:
+    """Names of the node's enumerations that hold the error codes of a protocol."""
+    spoken = [relations.icd.protocol_of(one) for one in relations.speakers[node.name]]
+    return {section["errors"]["enum"] for section in spoken if "enum" in section.get("errors", {})}
+
+
+def _of_enum(relations: Relations, node: Node, enum: Enum, is_error: bool) -> Iterator[Entry]:
     links, own = relations.links, " ".join(words(enum.identifier or enum.name, node.vocabulary)).lower()
     about = f"enum {node.name} {enum.summary}"
     yield Entry("enumeration", enum.name, node.title, own, about, tuple(_table(enum.table)), links.enum(enum))
@@ -96,7 +111,8 @@ def _of_enum(relations: Relations, node: Node, enum: Enum) -> Iterator[Entry]:
         url = f"{links.enum(enum)}#{links.anchor(enum, str(member.value))}"
         context = f"{enum.name} = {member.values} · {node.title}"
         about = f"{node.name} {own} {member.summary}"
-        yield Entry("member", member.name, context, _words(member, node), about, (), url)
+        phrases = (f"error {member.value}", f"error code {member.value}") if is_error else ()
+        yield Entry("member", member.name, context, _words(member, node), about, phrases, url)
 
 
 def _words(thing: Message | Field | Enum | Member, node: Node) -> str:
