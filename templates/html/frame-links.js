@@ -8,12 +8,16 @@ const icdgenFrameLinks = (() => {
   const load = () => icdgenLoad(...NEEDED);
   const isLoaded = () => typeof icdgenRecognize !== "undefined" && Boolean(globalThis.icdgenFrameIndex);
 
-  /** `{ links, error }`: `links` have title, context and url, several if each is as likely. */
+  /**
+   * `{ links, error, leftOut }`: `links` have title, context and url, one a frame; several of one frame if each is as
+   * likely, with an error. `leftOut` are reports about frames that cannot be decoded.
+   */
   function of(text) {
     try {
-      return { links: icdgenRecognize.recognize(globalThis.icdgenFrameIndex, text).map(link), error: "" };
+      const found = icdgenRecognize.recognize(globalThis.icdgenFrameIndex, text);
+      return { links: found.map(link), error: "", leftOut: found.flatMap((one) => one.leftOut) };
     } catch (error) {
-      return { links: (error.readings ?? []).map(link), error: error.message, ambiguous: Boolean(error.readings) };
+      return { links: (error.readings ?? []).map(link), error: error.message, leftOut: [] };
     }
   }
 
@@ -22,7 +26,7 @@ const icdgenFrameLinks = (() => {
     const hex = [...one.data].map((byte) => byte.toString(16).padStart(2, "0")).join("");
     return {
       title: told ? `${told} ${one.message}` : one.message,
-      context: [`${told ? "" : `${one.what} · `}${one.title}`, ...one.remarks].join(" · "),
+      context: [...(one.time ? [one.time] : []), `${told ? "" : `${one.what} · `}${one.title}`, ...one.remarks.filter((text) => !text.startsWith("left out: "))].join(" · "),
       url: `${root}${one.url}${told ? "" : `#try=${hex}`}`,
     };
   }

@@ -11,9 +11,15 @@ const icdgenGiven = ((frames, packets, pasted, stream, envelopes) => {
 
   /** The data in bytes, and remarks about what was around it; bytes that do not fit as they are. Throws an Error, too. */
   function unwrap(wire, length, bytes) {
-    if (hasLength(wire, length, bytes)) return surelyEnveloped(wire, length, bytes) ?? { data: bytes, remarks: [] };
+    const begun = wire.stream && envelopes.faultOfBeginning(wire.stream, bytes, "this node", () => ["this message"]);
+    if (hasLength(wire, length, bytes)) {
+      const sure = surelyEnveloped(wire, length, bytes);
+      if (!sure && begun?.isCertain) throw new Error(begun.text);
+      return sure ?? { data: bytes, remarks: begun ? [`the data begin like a packet: ${begun.text}`] : [] };
+    }
     const taken = wire.stream && ofEnvelopes(wire, length, bytes);
     if (taken) return taken;
+    if (begun) throw new Error(begun.text);
     const read = wire.framing && stream.messages(wire, bytes);
     return read ? ofStream(wire, length, read) : bare(wire, length, bytes);
   }
@@ -43,16 +49,19 @@ const icdgenGiven = ((frames, packets, pasted, stream, envelopes) => {
     if (best) {
       const [first, ...others] = best.events.filter(mine);
       const left = others.length ? [`${others.length} other frame${others.length === 1 ? "" : "s"} left out`] : [];
-      return { data: first.data, remarks: [envelopes.removed(first), ...left, ...envelopes.around(best)] };
+      return { data: first.data, remarks: [envelopes.removed(wire.stream, first), ...left, ...envelopes.around(best.lost)] };
     }
-    const wrong = heard.map((one) => envelopes.damaged(wire.stream, one)).find(Boolean);
-    if (wrong) throw new Error(wrong);
+    const damaged = heard.flatMap((one) => one.events).find((one) => one.event === "checksum");
+    if (damaged && envelopes.isMarked(wire.stream)) {
+      const faults = envelopes.DIRECTIONS.map((what) => envelopes.faultOf(wire.stream, what, damaged.frame, true, "this node", () => ["this message"]));
+      throw new Error(envelopes.likeliest(faults.filter(Boolean)).text);
+    }
     const other = envelopes.isMarked(wire.stream) && heard.flatMap((one) => one.events).find((one) => one.event === "unknown_id" && one.is === "proven");
-    if (other) throw new Error(`in an envelope with id ${other.id}, which is another message's`);
+    if (other) throw new Error(`in an envelope with id ${envelopes.idText(wire.stream, other.id)}, which is another message's`);
     return null;
   }
 
-  function ofStream(wire, length, { messages, remarks }) {
+  function ofStream(wire, length, { messages, remarks, errors }) {
     const mine = messages.filter(([id]) => wire.ids.includes(id));
     if (!mine.length) throw new Error(`framed with id ${messages[0][0]}, which is another message's`);
     const found = mine.map((body) => [body[0], body.slice(1)]).map(([id, data]) => ({ id, data, ...fitting(wire, length, id, data) }));
@@ -61,7 +70,7 @@ const icdgenGiven = ((frames, packets, pasted, stream, envelopes) => {
     if (!best.fits) notChecked(wire, length, best.id, best.data);
     const left = messages.length - 1;
     const others = left ? [`${left} other frame${left === 1 ? "" : "s"} left out`] : [];
-    return { data: best.fits ?? best.data, remarks: [`framing with id ${best.id} removed`, ...(best.remarks ?? []), ...others, ...remarks] };
+    return { data: best.fits ?? best.data, remarks: [`framing with id ${best.id} removed`, ...(best.remarks ?? []), ...others, ...remarks, ...errors] };
   }
 
   function bare(wire, length, bytes) {
@@ -99,7 +108,7 @@ const icdgenGiven = ((frames, packets, pasted, stream, envelopes) => {
     if (!mine.length) throw new Error(`CAN packets of id ${idOf(given[0])}, which is another message's`);
     const { messages, open } = packets.join({ can }, mine, () => length);
     const found = messages.find((one) => ["telecommand", "reply"].includes(one.kind));
-    if (found) return { data: found.data, remarks: [`data of CAN packets with id ${found.id}`] };
+    if (found) return { data: found.data, remarks: [`data of CAN packets with id ${found.id}`, ...timed(found)] };
     if (open.length) throw new Error(`${open[0].count - open[0].pieces.size} of ${open[0].count} packets are missing`);
     throw new Error(`CAN packets with id ${idOf(mine[0])} that carry no data`);
   }
@@ -108,9 +117,14 @@ const icdgenGiven = ((frames, packets, pasted, stream, envelopes) => {
   function identified(wire, given) {
     const own = given.find((one) => wire.ids.includes(one.id));
     const { id, extended } = own ?? given[0];
+    const others = given.filter((one) => one !== own).length;
+    const left = others ? [`${others} other CAN packet${others === 1 ? "" : "s"} left out`] : [];
     if (!own) throw new Error(`CAN identifier ${packets.idText(id, extended)}, which is not this message's`);
-    return { data: own.data, remarks: [`CAN identifier ${packets.idText(id, extended)} removed`] };
+    return { data: own.data, remarks: [`CAN identifier ${packets.idText(id, extended)} removed`, ...timed(own), ...left] };
   }
+
+  /** When a packet was received, as candump printed it. */
+  const timed = ({ time }) => (time ? [`time ${time}`] : []);
 
   return { unwrap, messageIn };
 })(...(typeof icdgenFrames === "undefined" ? ["frames", "packets", "pasted", "stream", "envelopes"].map((name) => require(`./${name}.js`)) : [icdgenFrames, icdgenPackets, icdgenPasted, icdgenStream, icdgenEnvelopes]));

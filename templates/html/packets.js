@@ -5,22 +5,22 @@ const icdgenPackets = (() => {
   const partOf = (can, name, id) => Math.floor(id / 2 ** can.parts[name][0]) % 2 ** can.parts[name][1];
   const kindOf = (types, number) => Object.keys(types).find((kind) => types[kind] === number);
 
-  /** Messages as `{ kind, id, source, destination, data }`; `open` are begun and not complete, `odd` counts what is none. */
+  /** Messages as `{ kind, id, source, destination, data, time }`, of several packets the time of the last; `open` are begun and not complete, `odd` counts what is none. */
   function join(speaker, packets, lengthOf) {
     const { can } = speaker;
     const [messages, open] = [[], []];
     let odd = 0;
-    for (const { id, data } of packets) {
+    for (const { id, data, time } of packets) {
       const [type, channel, source, destination] = ["type", "channel", "source", "destination"].map((name) => partOf(can, name, id));
       const kind = kindOf(can.types, type);
       const long = kindOf(can.extended_types, type);
       if (kind) {
         if (data.length > (WITH_DATA.includes(kind) ? can.data_bytes : 0)) odd += 1;
-        else messages.push({ kind, id: channel, source, destination, data });
+        else messages.push({ kind, id: channel, source, destination, data, time });
       } else if (long && can.extended) {
         const done = extended(can, open, { key: [type, channel, source, destination].join(), kind: long, id: channel, source, destination }, data, lengthOf);
         if (done === null) odd += 1;
-        else if (done) messages.push(done);
+        else if (done) messages.push({ ...done, time });
       } else {
         odd += 1;
       }

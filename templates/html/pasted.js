@@ -1,7 +1,7 @@
 "use strict";
 /* What a person copied -> bytes or CAN packets: the same spellings as `icdgen decode` takes. */
 const icdgenPasted = ((frames) => {
-  const BEFORE = /^(?:\([\d.:\s-]+\)\s*)?(?:[A-Za-z]+\d+\s+)?(?:[TR]X\s[-BEP ]*)?/.source;
+  const BEFORE = /^(?:\((?<time>[\d.:\s-]+)\)\s*)?(?:[A-Za-z]+\d+\s+)?(?:[TR]X\s[-BEP ]*)?/.source;
   const ID = "(?<id>[0-9A-Fa-f]{8}|[0-9A-Fa-f]{3})";
   const PACKETS = [
     new RegExp(`${BEFORE}${ID}\\s*\\[(?<size>\\d{1,2})\\]\\s*(?<data>(?:[0-9A-Fa-f]{2}(?:\\s+|$))*|remote request)(?:'.*)?$`),
@@ -60,7 +60,7 @@ const icdgenPasted = ((frames) => {
     const size = Number(groups.size ?? data.length);
     const fits = data.length === size || (/^t/i.test(line) && data.length === size + STAMP);
     if (groups.data !== "remote request" && !fits) return null;
-    return { id: parseInt(groups.id, 16), data: data.slice(0, size), extended: groups.id.length === 8 };
+    return { id: parseInt(groups.id, 16), data: data.slice(0, size), extended: groups.id.length === 8, time: (groups.time ?? "").trim() };
   }
 
   function dump(text) {

@@ -2,7 +2,8 @@
 /*
  * What a frame is: node, message and direction are found, framing, ids and checksums come off, as `icdgen decode` does it.
  *
- * A reading is `{ what, message, node, title, url, id, data, checked, remarks }`, `what` being telecommand, telemetry, request,
+ * A reading is `{ what, message, node, title, url, id, data, checked, remarks, leftOut, time }`, `leftOut` being reports about other
+ * packets of the input, `time` what candump printed, `what` telecommand, telemetry, request,
  * acknowledge, refusal, or configuration where nothing tells the direction.
  */
 const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
@@ -62,28 +63,75 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
     const heard = talking.filter((one) => one.stream).flatMap((speaker) => envelopes.DIRECTIONS.map((what) => heardOf(index, speaker, what, data)));
     const found = heard.filter((one) => one.read.length && (!one.lost || envelopes.isMarked(one.speaker.stream)));
     if (!found.length) {
-      const wrong = heard.map((one) => envelopes.damaged(one.speaker.stream, one)).find(Boolean);
-      if (wrong) throw new Error(wrong);
+      const firsts = heard.filter((one) => envelopes.isMarked(one.speaker.stream)).flatMap((one) => one.faults.slice(0, 1));
+      const at = Math.min(...firsts.map((one) => one.at));
+      const fault = envelopes.likeliest(firsts.filter((one) => one.at === at));
+      if (fault) throw new Error(fault.text);
       return [];
     }
     const least = Math.min(...found.map((one) => one.lost));
     const clean = found.filter((one) => one.lost === least);
     const most = Math.max(...clean.map((one) => one.read.length));
     const best = clean.filter((one) => one.read.length === most);
-    const chosen = Array.from({ length: most }, (_, at) => decided(best.map((one) => one.read[at]), "a frame in an envelope"));
-    return [noted(chosen[0], ...envelopes.around(best[0])), ...chosen.slice(1)];
+    const chosen = Array.from({ length: most }, (_, at) => [best[0].read[at].span, decided(best.map((one) => one.read[at]), "a frame in an envelope")]);
+    let lost = least;
+    // Packets of the other direction between them.
+    for (const other of found.filter((one) => !best.includes(one) && best.some(({ speaker }) => speaker === one.speaker))) {
+      for (const one of other.read) {
+        if (chosen.some(([span]) => overlaps(span, one.span))) continue;
+        chosen.push([one.span, one]);
+        lost -= one.span[1] - one.span[0];
+      }
+    }
+    const left = leftOut(heard.filter(({ speaker }) => speaker === best[0].speaker), chosen.map(([span]) => span));
+    const [first, ...others] = chosen.sort(([a], [b]) => a[0] - b[0]).map(([, one]) => one);
+    return [noted(without(first, ...left), ...envelopes.around(lost)), ...others];
+  }
+
+  const overlaps = (one, other) => one[0] < other[1] && other[0] < one[1];
+
+  /** Packets beside those that were read, each as the direction explains it whose header fits best. */
+  function leftOut(heard, read) {
+    const beside = heard.flatMap((one) => one.faults).filter((one) => !read.some((span) => overlaps(span, [one.at, one.end])));
+    const places = [...new Set(beside.map((one) => one.at))].sort((a, b) => a - b);
+    const found = [];
+    let end = 0;
+    for (const place of places) {
+      const fault = envelopes.likeliest(beside.filter(({ at }) => at === place));
+      if (place >= end) found.push(fault.text); // what seems to begin within a damaged packet is no packet of its own
+      end = Math.max(end, fault.end);
+    }
+    return found;
+  }
+
+  const namesOf = (index, speaker) => (direction, id) =>
+    numbersOf((direction === "telemetry" ? speaker.telemetry : speaker.telecommands)[id]).map((number) => index.messages[number][0]);
+
+  /** What is wrong with bytes that begin as a packet of a link does; null if they do not. */
+  function begunOf(index, talking, data) {
+    const every = talking.filter((one) => one.stream).map((one) => envelopes.faultOfBeginning(one.stream, data, one.title, namesOf(index, one)));
+    return envelopes.likeliest(every.filter(Boolean));
   }
 
   /** What one direction of a link makes of the bytes. */
   function heardOf(index, speaker, what, data) {
     const { events, lost } = envelopes.decode(speaker.stream, what, data);
     const ids = what === "telemetry" ? speaker.telemetry : speaker.telecommands;
-    const read = events.filter(({ event }) => event === "message").flatMap((one) => {
-      const number = numberOf(index, ids[one.id], one.data);
-      if (number === undefined || !fits(index, number, one.data)) return [];
-      return [reading(index, speaker, what, number, one.id, one.data, [envelopes.removed(one)], Boolean(speaker.stream.check))];
-    });
-    return { speaker, events, lost, read };
+    const [read, faults] = [[], []];
+    for (const one of events) {
+      const number = one.event === "message" ? numberOf(index, ids[one.id], one.data) : undefined;
+      if (number !== undefined && fits(index, number, one.data)) {
+        const note = envelopes.removed(speaker.stream, one);
+        const found = reading(index, speaker, what, number, one.id, one.data, [note], Boolean(speaker.stream.check));
+        read.push({ ...found, span: [one.at, one.end] });
+        continue;
+      }
+      const isWhole = one.event === "cut" ? one.whole : one.event !== "framing";
+      const fault = envelopes.faultOf(speaker.stream, what, one.frame, isWhole, speaker.title, namesOf(index, speaker));
+      // Without a sync, noise is as likely as a packet.
+      if (fault && (fault.isOfMessage || envelopes.hasSync(speaker.stream))) faults.push({ ...fault, at: one.at, end: one.end });
+    }
+    return { speaker, lost, read, faults };
   }
 
   // UART
@@ -103,8 +151,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
         }
       }
       if (!found.length) throw wrong[0];
-      const left = wrong.map((error) => `another frame of the stream is left out: ${error.message}`);
-      return [noted(found[0], ...left, ...read.remarks), ...found.slice(1)];
+      return [noted(without(found[0], ...wrong.map((error) => error.message), ...read.errors), ...read.remarks), ...found.slice(1)];
     }
     return [];
   }
@@ -120,6 +167,26 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
 
   function bare(index, talking, data) {
     if (!data.length) throw new Error("there are no bytes");
+    const fault = begunOf(index, talking, data);
+    if (fault) throw new Error(fault.text);
+    stream.refusePieces(talking, data);
+    const plainly = talking.filter((one) => !one.stream);
+    if (!plainly.length) throw noPacket(index, talking, data);
+    return guessed(index, plainly, data);
+  }
+
+  /** Bytes without the framing that their node has: what they can be shows only if the message is named. */
+  function noPacket(index, talking, data) {
+    const syncs = talking.flatMap((one) => envelopes.DIRECTIONS.map((direction) => envelopes.syncText(one.stream, direction)));
+    const begin = [...new Set(syncs.filter(Boolean))].join(" or ");
+    const nodes = talking.map((one) => one.title).join(", ");
+    const text = `${data.length} byte${data.length === 1 ? " is" : "s are"} no packet of ${nodes}${begin ? `: packets begin with ${begin}` : ""}`;
+    const candidates = eachOnce([...byId(index, talking, data), ...byLength(index, talking, data)]);
+    return candidates.length ? new Ambiguous(`${text}; as data alone they can be of a message`, candidates) : new Error(text);
+  }
+
+  /** A message without framing, by its id or its length. */
+  function guessed(index, talking, data) {
     const given = `${data.length} byte${data.length === 1 ? "" : "s"}`;
     const withId = byId(index, talking, data);
     const plain = byLength(index, talking, data);
@@ -205,7 +272,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
 
   function reading(index, speaker, what, number, id, data = new Uint8Array(), remarks = [], checked = false) {
     const [message, url, , owner] = index.messages[number];
-    return { what, message, node: speaker.node, title: speaker.title, url, id, data, checked, remarks, owner, key: `${what} ${url}` };
+    return { what, message, node: speaker.node, title: speaker.title, url, id, data, checked, remarks, owner, leftOut: [], time: "", key: `${what} ${url}` };
   }
 
   /** The message, if the bytes are as many as it has, or the right checksum follows them. */
@@ -229,15 +296,17 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
       }
     }
     if (!found.length) throw wrong[0];
-    const left = wrong.length ? [`${wrong.length} of ${given.length} CAN packets are left out: ${wrong[0].message}`] : [];
-    return [noted(found[0], ...left), ...found.slice(1)];
+    const counts = new Map();
+    for (const { message } of wrong) counts.set(message, (counts.get(message) ?? 0) + 1);
+    const left = [...counts].map(([text, count]) => `${text} (${count} CAN packet${count > 1 ? "s" : ""})`);
+    return [without(found[0], ...left), ...found.slice(1)];
   }
 
-  function ofIdentifier(index, talking, { id, data, extended }) {
+  function ofIdentifier(index, talking, { id, data, extended, time }) {
     const identifier = packets.idText(id, extended);
     const found = eachOnce(talking.flatMap((speaker) => [...withId(index, speaker, id, data)]));
     if (!found.length) throw whyNot(index, talking.map((speaker) => [speaker, [id, data]]), `no message has the CAN identifier ${identifier}`);
-    return noted(decided(found, `a packet with the CAN identifier ${identifier}`), `CAN identifier ${identifier} removed`);
+    return noted({ ...decided(found, `a packet with the CAN identifier ${identifier}`), time }, `CAN identifier ${identifier} removed`);
   }
 
   function onCan(index, able, given) {
@@ -249,9 +318,10 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
         const number = ids(kind)[id];
         return number !== undefined && (!["telecommand", "reply"].includes(kind) || data.length === lengthOf(index, number));
       });
-      const read = known.map(({ kind, id, source, destination, data }) =>
-        reading(index, speaker, OF_CAN[kind], ids(kind)[id], id, data, [`CAN, from address ${source} to ${destination}`]),
-      );
+      const read = known.map(({ kind, id, source, destination, data, time }) => {
+        const found = reading(index, speaker, OF_CAN[kind], ids(kind)[id], id, data, [`CAN, from address ${source} to ${destination}`]);
+        return { ...found, time };
+      });
       return { speaker, joined, read };
     });
     const most = Math.max(...found.map((one) => one.read.length));
@@ -264,7 +334,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
     });
     const { messages, open, odd } = complete[0].joined;
     const left = messages.length + open.length + odd - most;
-    return left ? [noted(chosen[0], `${left} of the CAN messages are left out: no message, or not complete`), ...chosen.slice(1)] : chosen;
+    return left ? [without(chosen[0], `${left} of the CAN messages are no message of the ICD, or not complete`), ...chosen.slice(1)] : chosen;
   }
 
   function whyNoCan(index, { speaker, joined }, given) {
@@ -324,6 +394,8 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
     return new Error(`${told.join(" or ")}, ${data.length} given after the id ${id}`);
   }
 
+  /** The same, with reports about other packets of the input, which cannot be decoded. */
+  const without = (one, ...texts) => noted({ ...one, leftOut: [...one.leftOut, ...texts] }, ...texts.map((text) => `left out: ${text}`));
   const noted = (one, ...remarks) => ({ ...one, remarks: [...one.remarks, ...remarks] });
   /** The readings by name, the first few of them; one that has two directions once. */
   function named(found) {

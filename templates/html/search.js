@@ -23,12 +23,14 @@
     const text = whole && typed === whole.trim().replace(/\s+/g, " ") ? whole : typed;
     const found = find(text).map((entry) => ({ ...entry, what: entry.kind, url: root + entry.url }));
     const { sure } = find;
-    const pasted = typed.length > 3 ? icdgenFrameLinks.of(text) : { links: [], error: "" };
+    const pasted = typed.length > 3 ? icdgenFrameLinks.of(text) : { links: [], error: "", leftOut: [] };
     const frames = pasted.links.slice(0, 12).map((link) => ({ ...link, what: "frame" }));
     const shown = frames.length ? (sure && found.length ? [...found, ...frames] : frames) : found;
     chosen = shown.length ? 0 : -1;
     list.replaceChildren(...shown.map(option));
     const wrong = !frames.length && pasted.error && icdgenFrameLinks.looksLikeBytes(text) ? `No frame: ${pasted.error}` : "";
+    if (pasted.links.length > frames.length) list.append(nothing(`${pasted.links.length - frames.length} more: the box of the first page lists all`));
+    for (const one of pasted.leftOut) list.append(nothing(`Not decoded: ${one}`));
     if (wrong || (!shown.length && typed)) list.append(nothing(wrong || "Nothing of that name"));
     open(list.childElementCount > 0);
     mark();

@@ -1,7 +1,7 @@
 "use strict";
 /* A stream of bytes with framing -> the messages in it, and what went wrong. */
 const icdgenStream = (() => {
-  /** `{ events: [{ event, message }], lost }`: `lost` bytes belong to no message. `framing` is escape, start, end and escaped. */
+  /** `{ events: [{ event, message }], lost }`: `lost` bytes belong to no message, `open` of them are of one that has not ended. `framing` is escape, start, end and escaped. */
   function decode(speaker, bytes) {
     const [escape, start, end, doubled] = speaker.framing;
     const events = [];
@@ -46,7 +46,7 @@ const icdgenStream = (() => {
         }
       }
     }
-    return { events, lost: lost + run };
+    return { events, lost: lost + run, open: inside ? run : 0 };
   }
 
   /** `{ messages, remarks }` of the stream; null where no message begins. Throws an Error where what begins is none. */
@@ -54,13 +54,13 @@ const icdgenStream = (() => {
     const [escape, start] = speaker.framing;
     const begins = (at) => bytes[at] === escape && bytes[at + 1] === start;
     if (!bytes.some((_, at) => begins(at))) return null;
-    const { events, lost } = decode(speaker, bytes);
+    const { events, lost, open } = decode(speaker, bytes);
     const found = events.filter((one) => one.event === "message").map((one) => one.message);
     if (!found.length && begins(0)) throw new Error(broken(events));
     if (!found.length) return null;
     const around = lost ? [`${lost} byte${lost === 1 ? "" : "s"} around the frame belong to none`] : [];
     const errors = events.filter((one) => one.event !== "message").map((one) => `the stream has an error: ${one.event}`);
-    return { messages: found, remarks: [...around, ...errors] };
+    return { messages: found, remarks: around, errors: open > 1 ? [...errors, broken([])] : errors };
   }
 
   function broken(events) {
@@ -68,6 +68,14 @@ const icdgenStream = (() => {
     return events.length ? "the framing is empty" : "the framing begins, but the end of the message is missing";
   }
 
-  return { messages };
+  /** Throws an Error for bytes that are a piece of a frame with framing: its first byte, or all but its beginning. */
+  function refusePieces(talking, bytes) {
+    for (const [escape, , end] of talking.filter((one) => one.framing).map((one) => one.framing)) {
+      if (bytes.length === 1 && bytes[0] === escape) throw new Error(broken([]));
+      if (bytes.length > 2 && bytes.at(-2) === escape && bytes.at(-1) === end) throw new Error("the framing ends, but the start of the message is missing");
+    }
+  }
+
+  return { messages, refusePieces };
 })();
 if (typeof module !== "undefined") module.exports = icdgenStream;

@@ -41,7 +41,8 @@ def test_all_messages_of_a_recorded_stream_are_found_and_what_is_wrong_in_it_is_
     clock, epoch = sent("receiver", "telemetry", 0x0122, bytes(20)), sent("receiver", "telemetry", 0x0161, bytes(4))
     first, second = recognize(ICD, b"\x00\xb5" + clock + epoch[:-1] + b"\0" + epoch)
     assert [one.message.name for one in (first, second)] == ["Navigation Clock", "End of Epoch"]
-    assert "the stream has an error: checksum" in first.remarks
+    wrong = "a packet of receiver, `End of Epoch` (telemetry 01 61) has a wrong checksum: it is 66 00, expected 66 C7"
+    assert first.left_out == (wrong,) and f"left out: {wrong}" in first.remarks
     assert any("14 bytes around the frame belong to none" in remark for remark in first.remarks)
 
 
@@ -53,7 +54,9 @@ def test_what_the_sender_chose_of_the_envelope_is_said():
 def test_a_wrong_checksum_is_said_and_nothing_is_read():
     line = bytearray(sent("receiver", "telemetry", 0x0161, bytes(4)))
     line[-1] ^= 1
-    with pytest.raises(BadLength, match="with id 353, has a wrong checksum"):
+    with pytest.raises(
+        BadLength, match=r"`End of Epoch` \(telemetry 01 61\) has a wrong checksum: it is 66 C6, expected 66 C7"
+    ):
         recognize(ICD, bytes(line))
 
 

@@ -62,11 +62,7 @@ def test_every_packet_of_a_log_is_a_message_and_what_none_knows_is_said(icd):
         ("Brake", BRAKE),
         ("Drive", BRAKE),
     ]
-    assert (
-        found[0]
-        .remarks[-1]
-        .startswith("1 of 4 CAN packets are left out: no message of train has the CAN identifier 0x7FF")
-    )
+    assert found[0].left_out == ("no message of train has the CAN identifier 0x7FF (1 CAN packet)",)
     assert [one.message.name for one in recognize(icd, log, "train", "Brake")] == ["Brake"]
 
 
@@ -99,3 +95,24 @@ def test_a_message_that_is_named_is_read_from_an_identifier_that_none_has(icd):
 def test_a_remote_request_asks_for_the_telemetry_of_its_identifier(icd):
     (found,) = recognize(icd, "100#R")
     assert (found.what, found.message.name) == ("request", "Drive")
+
+
+CANDUMP = f"(1600000000.250000) can0 100#{DRIVE}\n(1600000001.500000) can0 7FF#00\n(1600000002.000000) can0 101#{BRAKE}"
+
+
+def test_the_times_of_candump_are_kept(icd):
+    found = recognize(icd, CANDUMP)
+    assert [one.time for one in found] == ["1600000000.250000", "1600000002.000000"]
+    assert found[0].to_json()["time"] == "1600000000.250000"
+    assert "time" not in recognize(icd, f"100#{DRIVE}")[0].to_json()
+
+
+def test_a_message_of_several_packets_has_the_time_of_the_last(shipped):
+    (message,) = [one for one in shipped.node("cubeacp").messages if one.telemetry_id == 0xBE]
+    pieces = [bytes(range(at, at + 7))[: message.length - at].ljust(7, b"\0") for at in range(0, message.length, 7)]
+    lines = [
+        f"(10.{number}) can0 08BE0201#{piece.hex()}{len(pieces) - 1 - number:02x}"
+        for number, piece in enumerate(pieces)
+    ]
+    (found,) = recognize(shipped, "\n".join(lines))
+    assert (found.message.name, found.time) == (message.name, f"10.{len(pieces) - 1}")

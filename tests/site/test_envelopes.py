@@ -10,14 +10,19 @@ import pytest
 
 from icdgen.backends.html import recognition, wire
 from icdgen.backends.html.relations import Relations
+from icdgen.errors import UserError
 from icdgen.icd.fmt import format_text
 from icdgen.loading import load
 from icdgen.recognize import recognize
+from icdgen.recognize.envelopes import sync_of
+from icdgen.recognize.reading import speaker_of
 from icdgen.site import make, write
 from icdgen.vectors.make import make as golden
 from tests.conftest import ROOT
 from tests.features.enveloped import recorded
+from tests.features.outputs import icd_of as motor_of
 from tests.recognize.test_asked import LIMIT, load_pack, sent
+from tests.recognize.test_cut_frames import MOTOR, POWER, SPEED, packets, prefixes
 from tests.site.test_pasted import node
 from tests.site.test_recognize import on_the_command_line, on_the_page
 
@@ -61,6 +66,69 @@ def test_what_is_pasted_is_what_the_command_line_says_it_is(name):
     assert sum(isinstance(one, list) for one in expected) > 30
 
 
+@pytest.mark.parametrize("name", NAMES)
+def test_no_piece_of_a_golden_frame_is_decoded_on_the_page_either(name):
+    icd = icd_of(name)
+    index = json.loads(json.dumps(recognition.index(Relations(icd))))
+    sent_frames = [packet for _, packet in packets(icd)]
+    cuts = [cut.hex() for packet in sent_frames for cut in prefixes(packet, 20)]
+    assert [row for row in zip(cuts, on_the_page(index, cuts), strict=True) if isinstance(row[1], list)] == []
+    source = random.Random(3)
+    ends = [packet[source.randrange(1, len(packet)) :].hex() for packet in sent_frames for _ in range(6)]
+    holes = []
+    for packet in sent_frames:
+        at = source.randrange(1, len(packet))
+        holes.append((packet[:at] + packet[at + 2 :]).hex())
+    texts = [*ends, *holes]
+    shown = [one if not isinstance(one, dict) else None for one in on_the_page(index, texts)]
+    assert shown == [on_the_command_line(icd, text) for text in texts]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_page_of_a_message_takes_no_piece_of_a_packet_for_its_data_in_silence(name):
+    icd = icd_of(name)
+    relations = Relations(icd)
+    for message in icd.nodes[0].messages:
+        facts = wire.page_facts(message, relations.wire(message))
+        cuts = [cut.hex() for _, packet in packets(icd) for cut in prefixes(packet, 20)]
+        found = node(
+            """([wire, length, texts]) => texts.map((text) => attempt(() => {
+                const { data, remarks } = given.messageIn(wire, length, text);
+                const [least, step] = wire.lengths ?? [length, 1];
+                const fits = data.length >= least && data.length <= length && (data.length - least) % step === 0;
+                return fits && !remarks.length ? text : null;
+            })).filter((one) => typeof one === "string")""",
+            [facts, message.length, cuts],
+        )
+        has_sync = bool(sync_of(speaker_of(icd, icd.nodes[0])))
+        assert found == [] or not has_sync, message.name
+
+
+def test_the_page_says_why_a_packet_cannot_be_decoded_as_the_command_line_does(tmp_path):
+    motor = motor_of(MOTOR, tmp_path)
+    index = json.loads(json.dumps(recognition.index(Relations(motor))))
+    texts = ["a55a03020186", POWER[:-2] + "0f", "a55a090009", "a55a030107 0b", "a55a03ff", "a5", "000102"]
+    for text, one in zip(texts, on_the_page(index, texts), strict=True):
+        with pytest.raises(UserError) as wrong:
+            recognize(motor, text)
+        plain = str(wrong.value).replace("`", "").replace("motor has", "it has").replace("motor", "Motor")
+        assert one["error"] == plain if plain.startswith("a packet") else "no packet of Motor" in one["error"]
+
+
+def test_the_page_reads_packets_of_both_directions_and_reports_the_others(tmp_path):
+    motor = motor_of(MOTOR, tmp_path)
+    index = json.loads(json.dumps(recognition.index(Relations(motor))))
+    text = SPEED + "a55a090009" + POWER + "a55a03"
+    (shown,) = on_the_page(index, [text])
+    assert shown == on_the_command_line(motor, text) and len(shown) == 2
+    script = json.dumps(str(ROOT / "templates" / "html" / "recognize.js"))
+    left = node(f"([index, text]) => require({script}).recognize(index, text)[0].leftOut", [index, text])
+    assert left == [
+        one.replace("`", "").replace("motor has", "it has").replace("motor", "Motor")
+        for one in recognize(motor, text)[0].left_out
+    ]
+
+
 def test_the_page_of_a_message_takes_its_envelope_off():
     icd = icd_of("ubx")
     relations = Relations(icd)
@@ -77,7 +145,7 @@ def test_the_page_of_a_message_takes_its_envelope_off():
         }))""",
         [facts, message.length, texts],
     )
-    assert found[0] == ["00000000", "envelope with id 353 removed; 1 other frame left out"]
+    assert found[0] == ["00000000", "envelope with id 01 61 removed; 1 other frame left out"]
     assert found[1][0] == "4ab37b0f" and "33 bytes around the frame belong to none" in found[1][1]
     assert "wrong checksum" in str(found[2]) and "another message's" in str(found[3])
 

@@ -131,3 +131,24 @@ def test_boxes_of_the_drawing_hold_the_values(browser, site):
         assert page.locator("svg.layout .lit .value").all_text_contents() == ["-12.34 deg", "0.10 deg", "0.00 deg"]
         page.click("#decoder button:text-is('Reset')")
         assert page.locator("svg.layout .lit .value").count() == 0
+
+
+def test_several_frames_are_all_listed_and_one_that_cannot_be_decoded_is_reported(browser, site):
+    top = site.as_uri() + "/"
+    two = "1F 7F 92 2E FB 0A 00 00 00 1F FF 1F 7F 93 10 00 20 00 30 00 1F FF"
+    with opened(browser, top, KINDS["home"]) as page:
+        for text, bad in (
+            (two, ""),
+            (two + " 1F 7F 92 2E 1F FF", "Not decoded:"),
+            (WHOLE["UART"] + " 1F 7F 6F 1F FF", ""),
+        ):
+            page.fill("#paste", "")
+            page.focus("#paste")
+            page.evaluate(PASTE, text)
+            page.wait_for_selector("#pasted li")
+            page.click("#paste-go")
+            assert page.url == top + KINDS["home"]
+            shown = page.inner_text("#pasted")
+            assert "Estimated Attitude Angles" in shown and bad in shown
+            assert ("Estimated Angular Rates" in shown) == text.startswith(two)
+        assert "Not decoded: no message of" in shown or "Not decoded: no message has the id" in shown

@@ -14,7 +14,7 @@ from icdgen.errors import UserError
 from icdgen.recognize import recognize
 from icdgen.values.errors import Ambiguous
 from tests.conftest import ROOT
-from tests.recognize.test_identifiers import BRAKE, DRIVE, train
+from tests.recognize.test_identifiers import BRAKE, CANDUMP, DRIVE, train
 from tests.recognize.ways import BARE, WHOLE
 from tests.site.conftest import program
 
@@ -130,3 +130,20 @@ def test_what_is_wrong_is_said(index):
     assert [
         (text, one) for (text, says), one in zip(said.items(), found, strict=True) if says not in one["error"]
     ] == []
+
+
+def test_the_page_keeps_the_times_of_candump_and_reports_packets_that_no_message_has(tmp_path):
+    icd = train(tmp_path)
+    index = json.loads(json.dumps(recognition.index(Relations(icd))))
+    code = f"""
+        const {{ recognize }} = require({json.dumps(str(SCRIPT))});
+        const [index, text] = JSON.parse(require("node:fs").readFileSync(0, "utf8"));
+        process.stdout.write(JSON.stringify(recognize(index, text).map((one) => [one.time, one.leftOut])));
+    """
+    done = subprocess.run(
+        [program("node"), "-e", code], input=json.dumps([index, CANDUMP]), capture_output=True, text=True
+    )
+    assert json.loads(done.stdout) == [
+        ["1600000000.250000", ["no message has the CAN identifier 0x7FF (1 CAN packet)"]],
+        ["1600000002.000000", []],
+    ]

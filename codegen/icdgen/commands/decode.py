@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _LONGEST_ID, _OF_BYTE = 10, (1, 2, 3)  # digits: of an id of 32 bits; of a byte, in decimals or not
 _MOST = 1_000_000  # bytes that are read for frames
-_CSV = ("frame", "node", "message", "direction", "id", "field", "raw", "value", "unit", "remarks")
+_CSV = ("frame", "node", "message", "direction", "id", "field", "raw", "value", "unit", "remarks", "time")
 
 
 @click.command()
@@ -35,7 +35,8 @@ def decode(arguments: tuple[str, ...], icds: tuple[Path, ...], kind: str | None,
     FRAME may have its framing, id and checksum or not; it may be - for standard input, @FILE or the name of a file, text or
     bytes as they came over the line, with any number of frames. NODE (a name) and MESSAGE (an id or a name) are found where
     the frame tells them; what is ambiguous is said. NODE may be left out where there is one only. JSON is an object, of
-    several frames an array. Exit status: 1 if a field that must hold a constant holds something else.
+    several frames an array. Exit status: 1 if a field that must hold a constant holds something else, or if a packet
+    between the frames cannot be decoded, which is reported; 2 if there is no frame that can be decoded.
     """
     from icdgen import recognize
 
@@ -45,7 +46,11 @@ def decode(arguments: tuple[str, ...], icds: tuple[Path, ...], kind: str | None,
     if node is not None and message is None and arguments[0].lower() == node and arguments[1].isdecimal():
         found = [one if one.id is not None else one.noted(_no_id(arguments[1], node)) for one in found]
     {"text": _print_text, "json": _print_json, "csv": _print_csv}[form](found)
-    sys.exit(1 if any(one.has_wrong_constant for one in found) else 0)
+    left = [text for one in found for text in one.left_out]
+    if form == "csv":  # the other forms have it among the remarks
+        for text in left:
+            say(f"left out: {text}", err=True)
+    sys.exit(1 if left or any(one.has_wrong_constant for one in found) else 0)
 
 
 def _no_id(word: str, node: str) -> str:
@@ -180,6 +185,8 @@ def _print_text(found: Sequence[Reading]) -> None:
     for number, one in enumerate(found):
         if number:
             click.echo("")
+        if one.time:
+            say(f"time {one.time}")
         if one.frame is not None:
             print_frame(one.frame)
         else:
@@ -199,8 +206,8 @@ def _print_csv(found: Sequence[Reading]) -> None:
     for number, one in enumerate(found):
         start = (number, one.speaker.node.name, one.message.name, one.what, "" if one.id is None else one.id)
         if one.frame is None or not one.frame.rows:
-            writer.writerow((*start, "", "", "", "", "; ".join(one.remarks)))
+            writer.writerow((*start, "", "", "", "", "; ".join(one.remarks), one.time))
         for row in one.frame.rows if one.frame else ():
             unit = row.field.unit_symbol
-            writer.writerow((*start, row.field.name, row.raw_text, row.text, unit, "; ".join(row.remarks)))
+            writer.writerow((*start, row.field.name, row.raw_text, row.text, unit, "; ".join(row.remarks), one.time))
     click.echo(out.getvalue(), nl=False)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 
 from icdgen_runtime.wire.can import CanEvent, CanJoiner, CanMessage, CanPacket
 
@@ -26,23 +28,24 @@ def readings(speakers: Sequence[Speaker], packets: Sequence[Printed], asked: Ask
         text = "a packet has an 11-bit identifier, those of the ICD have 29 bits"
         raise NotFound(text, "candump prints them with 8 digits")
     sent = [CanPacket(packet.id, packet.data) for packet in packets]
+    times = [packet.time for packet in packets]
     able = [speaker for speaker in speakers if speaker.facts.can]
-    found = [_of_speaker(speaker, sent) for speaker in able]
+    found = [_of_speaker(speaker, sent, times) for speaker in able]
     most = max(len(one) for one in found)
     if most == 0:
         raise _why_none(able[0], sent)
     complete = [one for one in found if len(one) == most]
     chosen = [_chosen([one[number] for one in complete], asked) for number in range(most)]
     left = _left_out(complete[0][0].speaker, sent) - most
-    note = [f"{left} of the CAN messages are left out: no message, or not complete"] if left else []
-    return [chosen[0].noted(*note), *chosen[1:]]
+    note = [f"{left} of the CAN messages are no message of the ICD, or not complete"] if left else []
+    return [chosen[0].without(*note), *chosen[1:]]
 
 
 def by_identifier(speakers: Sequence[Speaker], packets: Sequence[Printed], asked: Asked) -> list[Reading]:
     """The message of each packet where the identifier is the id. Raises `NotFound`, `BadLength` or `Ambiguous` if none is one."""
     found, wrong = match.each(packets, lambda packet: _by_identifier(speakers, packet, asked))
-    left = [f"{len(wrong)} of {len(packets)} CAN packets are left out: {wrong[0]}"] if wrong else []
-    return [found[0].noted(*left), *found[1:]]
+    left = [f"{error} ({count} CAN packet{'s' * (count > 1)})" for error, count in Counter(map(str, wrong)).items()]
+    return [found[0].without(*left), *found[1:]]
 
 
 def _by_identifier(speakers: Sequence[Speaker], packet: Printed, asked: Asked) -> Reading:
@@ -52,13 +55,18 @@ def _by_identifier(speakers: Sequence[Speaker], packet: Printed, asked: Asked) -
         help = "`icdgen show NODE` lists what there is; name the message to have the bytes read all the same"
         raise match.why_not([(one, (packet.id, packet.data)) for one in speakers], NotFound(text, help))
     one = match.decided(found, f"a packet with the CAN identifier {packet.identifier}", asked)
-    return one.noted(f"CAN identifier {packet.identifier} removed")
+    return replace(one, time=packet.time).noted(f"CAN identifier {packet.identifier} removed")
 
 
-def _of_speaker(speaker: Speaker, packets: list[CanPacket]) -> list[Reading]:
-    told, _ = _told(speaker, packets)
-    read = (_reading(speaker, event.message) for event in told if event.message)
-    return [one for one in read if one is not None]
+def _of_speaker(speaker: Speaker, packets: list[CanPacket], times: list[str]) -> list[Reading]:
+    joiner = CanJoiner(speaker.link, senders=len(packets))
+    found = []
+    for packet, time in zip(packets, times, strict=True):
+        for event in joiner.feed(0, packet):
+            reading = _reading(speaker, event.message) if event.message else None
+            if reading is not None:
+                found.append(replace(reading, time=time))  # of several packets the one that completes the message
+    return found
 
 
 def _reading(speaker: Speaker, told: CanMessage) -> Reading | None:

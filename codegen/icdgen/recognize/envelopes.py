@@ -3,49 +3,142 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from dataclasses import dataclass, field
+from typing import Literal, NamedTuple
 
 from icdgen_runtime.wire.envelope import Direction
 from icdgen_runtime.wire.stream import StreamDecoder, StreamEvent
 
-from icdgen.recognize import match
+from icdgen.describe.ids import id_text
+from icdgen.recognize import faults, match
 from icdgen.recognize.asked import Asked
+from icdgen.recognize.faults import Fault
 from icdgen.recognize.reading import Reading, Speaker
-from icdgen.values.errors import BadLength
 
 DIRECTIONS: tuple[Direction, ...] = ("telecommand", "telemetry")
 
 
-class Heard(NamedTuple):
+class Span(NamedTuple):
+    """Bytes of the line from ``at`` on, without ``end``."""
+
+    at: int
+    end: int
+
+    def overlaps(self, other: Span) -> bool:
+        """Whether there is a byte that is in both."""
+        return self.at < other.end and other.at < self.end
+
+
+class _Listener(StreamDecoder):
+    """Decoder that also says where on the line each packet lies, and what it consists of."""
+
+    def __init__(self, speaker: Speaker, direction: Direction) -> None:
+        super().__init__(speaker.link, direction)
+        self.packets: dict[int, tuple[Span, bytes]] = {}  # by the index of the event
+        self._at = self._end = 0
+
+    def _frame(self, frame: bytes, size: int, fault: str | None, events: list[StreamEvent]) -> None:
+        self._at, self._end = self._end, self._end + size
+        super()._frame(frame, size, fault, events)
+        if fault:
+            self.packets[len(events) - 1] = Span(self._at, self._end), frame
+
+    def _front(self, at: int, events: list[StreamEvent]) -> int | None:
+        self._at, before = at, len(events)
+        count = super()._front(at, events)
+        if len(events) > before and len(events) - 1 not in self.packets:  # its length cannot be
+            header = self._buffer[at : at + self._form.header_bytes]
+            self.packets[len(events) - 1] = Span(at, at + 1), bytes(header)
+        return count
+
+    def _judge(self, frame: bytes, events: list[StreamEvent]) -> Literal["message", "proven", "doubtful"]:
+        verdict = super()._judge(frame, events)
+        end = self._end if self._line else self._at + len(frame)
+        self.packets[len(events) - 1] = Span(self._at, end), frame
+        return verdict
+
+
+@dataclass(frozen=True, slots=True)
+class Heard:
     """What one direction of a link makes of the bytes; ``lost`` of them belong to no message."""
 
     speaker: Speaker
-    readings: list[Reading]
-    events: list[StreamEvent]
+    direction: Direction
     lost: int
+    readings: list[Reading] = field(default_factory=list)
+    spans: list[Span] = field(default_factory=list)  # of the readings
+    faults: list[tuple[Span, Fault]] = field(default_factory=list)
 
 
 def readings(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> list[Reading]:
     """The messages, of the direction that leaves the least, of those that have what is asked for if any has.
 
-    There are none if nothing is in an envelope, or hardly by intent.
+    Packets of the other direction between them are read as well. There are none if nothing is in an envelope.
 
-    Raises `BadLength` if there is one whose checksum is wrong, `Ambiguous`.
+    Raises `BadLength` or `NotFound` if there is a packet which is cut off, damaged or of no message; `Ambiguous`.
     """
     heard = [_heard(one, direction, data) for one in speakers if one.facts.stream for direction in DIRECTIONS]
     found = [one for one in heard if one.readings and (one.lost == 0 or _is_marked(one.speaker))]
     if not found:
-        for one in heard:
-            if one.events and one.events[0].event == "checksum" and _is_marked(one.speaker):
-                raise BadLength(_wrong(one), 0, len(data), "a byte of it is damaged, or the frame is of another node")
+        if fault := _likeliest(heard):
+            raise fault.error
         return []
     found = [one for one in found if any(map(asked.fits, one.readings))] or found
     least, fewer = min((one.lost, -len(one.readings)) for one in found)
-    most = -fewer
-    best = [one for one in found if (one.lost, len(one.readings)) == (least, most)]
-    chosen = [match.decided([one.readings[at] for one in best], "a frame in an envelope", asked) for at in range(most)]
-    wrong = dict.fromkeys(event.event for event in best[0].events if event.event not in ("message", "gap"))
-    return [chosen[0].noted(*match.around(least, wrong)), *chosen[1:]]
+    best = [one for one in found if (one.lost, -len(one.readings)) == (least, fewer)]
+    chosen = {
+        best[0].spans[at]: match.decided([one.readings[at] for one in best], "a frame in an envelope", asked)
+        for at in range(-fewer)
+    }
+    others = [one for one in found if one not in best and any(one.speaker is other.speaker for other in best)]
+    for other in others:
+        for span, reading in zip(other.spans, other.readings, strict=True):
+            if not any(map(span.overlaps, chosen)):
+                chosen[span] = reading
+                least -= span.end - span.at
+    left = _left_out([one for one in heard if one.speaker is best[0].speaker], list(chosen))
+    first, *rest = [chosen[span] for span in sorted(chosen)]
+    return [first.without(*left).noted(*match.around(least, ())), *rest]
+
+
+def begun(speakers: Sequence[Speaker], data: bytes) -> Fault | None:
+    """What is wrong with bytes that begin as a packet of a link does; None if they do not."""
+    every = []
+    for speaker in speakers:
+        form = speaker.link.stream
+        for direction in DIRECTIONS if form else ():
+            if form and faults.begins_packet(form, direction, data):
+                packet = faults.packet_begun(speaker, direction, data)
+                every.append(faults.fault_of(speaker, direction, *packet))
+    return max(filter(None, every), key=lambda one: one.rank, default=None)
+
+
+def _left_out(heard: Sequence[Heard], read: Sequence[Span]) -> list[str]:
+    """Packets beside those that were read, each as the direction explains it whose header fits best."""
+    likeliest: dict[int, tuple[Span, Fault]] = {}
+    for span, fault in (both for one in heard for both in one.faults):
+        if not any(map(span.overlaps, read)) and (span.at not in likeliest or fault.rank > likeliest[span.at][1].rank):
+            likeliest[span.at] = span, fault
+    found, end = [], 0
+    for at, (span, fault) in sorted(likeliest.items()):
+        if at >= end:  # what seems to begin within a damaged packet is no packet of its own
+            found.append(fault.text)
+        end = max(end, span.end)
+    return found
+
+
+def sync_of(speaker: Speaker) -> str:
+    """Bytes that the packets of a node begin with, for people."""
+    form = speaker.link.stream
+    return " or ".join(filter(None, dict.fromkeys(faults.sync_text(form, one) for one in DIRECTIONS))) if form else ""
+
+
+def _likeliest(heard: Sequence[Heard]) -> Fault | None:
+    """The first fault, as the direction explains it whose header fits best."""
+    firsts = [one.faults[0] for one in heard if one.faults and _is_marked(one.speaker)]
+    at = min((span.at for span, _ in firsts), default=0)
+    fitting = [fault for span, fault in firsts if span.at == at]
+    return max(fitting, key=lambda one: one.rank, default=None)
 
 
 def _is_marked(speaker: Speaker) -> bool:
@@ -55,22 +148,44 @@ def _is_marked(speaker: Speaker) -> bool:
 
 
 def _heard(speaker: Speaker, direction: Direction, data: bytes) -> Heard:
-    decoder = StreamDecoder(speaker.link, direction)
+    decoder = _Listener(speaker, direction)
     events = decoder.feed(data)
-    known = getattr(speaker.ids, direction)
-    found = []
-    for event in events:
-        if event.event != "message" or event.id is None:
+    heard = Heard(speaker, direction, decoder.discarded + decoder.pending)
+    for number, event in enumerate(events):
+        if event.event == "gap":
             continue
-        message = match.message_of(speaker.icd, [one.message for one in known.get(event.id, ())], event.data)
-        if message is not None and match.miscounted(speaker, message, event.data) is None:
-            chosen = ", ".join(f"{role} {value}" for role, value in event.values.items())
-            note = f"envelope with id {event.id} removed" + (f"; it has {chosen}" if chosen else "")
-            checked = speaker.link.stream is not None and speaker.link.stream.check is not None
-            found.append(Reading(speaker, direction, message, event.id, event.data, checked=checked, remarks=(note,)))
-    return Heard(speaker, found, events, decoder.discarded + decoder.pending)
+        span, packet = decoder.packets.get(number, (None, b""))
+        reading = _reading(speaker, direction, event) if event.event == "message" else None
+        if span is None:
+            continue
+        if reading is not None:
+            heard.readings.append(reading)
+            heard.spans.append(span)
+        elif fault := _fault(speaker, direction, packet, event.event != "framing"):
+            heard.faults.append((span, fault))
+    if decoder.pending:
+        begin = len(data) - decoder.pending
+        whole = faults.packet_begun(speaker, direction, data[begin:])
+        if fault := _fault(speaker, direction, *whole):
+            heard.faults.append((Span(begin, len(data)), fault))
+    return heard
 
 
-def _wrong(heard: Heard) -> str:
-    id = heard.events[0].id
-    return f"a message in an envelope{'' if id is None else f', with id {id},'} has a wrong checksum"
+def _fault(speaker: Speaker, direction: Direction, packet: bytes, is_whole: bool) -> Fault | None:
+    """The fault of what seems to be a packet; None if noise is as likely."""
+    fault = faults.fault_of(speaker, direction, packet, is_whole)
+    form = speaker.link.stream
+    return fault if fault and form and (fault.is_of_message or faults.has_sync(form)) else None
+
+
+def _reading(speaker: Speaker, direction: Direction, event: StreamEvent) -> Reading | None:
+    assert event.id is not None
+    known = getattr(speaker.ids, direction)
+    message = match.message_of(speaker.icd, [one.message for one in known.get(event.id, ())], event.data)
+    if message is None or match.miscounted(speaker, message, event.data) is not None:
+        return None
+    form = speaker.facts.stream
+    chosen = ", ".join(f"{role} {value}" for role, value in event.values.items())
+    note = f"envelope with id {id_text(form, event.id)} removed" + (f"; it has {chosen}" if chosen else "")
+    checked = form is not None and form.check is not None
+    return Reading(speaker, direction, message, event.id, event.data, checked=checked, remarks=(note,))

@@ -11,7 +11,7 @@ from icdgen_runtime.wire.uart import UartDecoder, UartEvent
 
 from icdgen.describe.numbers import byte_count
 from icdgen.icd.model import Icd
-from icdgen.recognize import bus, envelopes, match
+from icdgen.recognize import bus, envelopes, faults, match
 from icdgen.recognize.asked import Asked, asked_for
 from icdgen.recognize.given import of_asked
 from icdgen.recognize.pasted import Pasted, read
@@ -62,12 +62,15 @@ def _readings(icd: Icd, speakers: Sequence[Speaker], pasted: Pasted, asked: Aske
         found = bus.readings(speakers, pasted.packets, asked)
     else:
         found = _framed(speakers, pasted.whole, asked) or _unframed(icd, speakers, pasted, asked)
+    left_out = [text for one in found for text in one.left_out]
     found = asked.of(found)
     if asked.messages and not any(map(asked.is_of, found)):
         text = f"the frame is not {asked.names} but {found[0].title}"
         raise NotFound(text, "leave the message out, or name that one")
     if asked.messages:
         found = [one for one in found if asked.is_of(one)]
+    if not found[0].left_out:  # the reading that had the reports is not of the message or kind
+        found[0] = found[0].without(*left_out)
     note = (f"read as {pasted.form}",) if pasted.form else ()
     return [_decoded(icd, one.noted(*note)) for one in found]
 
@@ -75,7 +78,11 @@ def _readings(icd: Icd, speakers: Sequence[Speaker], pasted: Pasted, asked: Aske
 def _framed(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> list[Reading]:
     """The messages in a stream with framing; none if it has none, or its bytes are just those of the message asked for."""
     if asked.can_be(data):
-        return _surely_enveloped(speakers, data, asked)
+        if enveloped := _surely_enveloped(speakers, data, asked):
+            return enveloped
+        if (fault := envelopes.begun(speakers, data)) and fault.is_certain:
+            raise fault.error
+        return []
     if enveloped := envelopes.readings(speakers, data, asked):
         return enveloped
     for framing in dict.fromkeys(speaker.link.framing for speaker in speakers if speaker.link.framing):
@@ -91,9 +98,23 @@ def _framed(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> list[Read
             continue
         found, wrong = match.each(bodies, partial(_of_body, talking, asked=asked))
         errors = [event.event for event in events if event.event != "message"]
-        unknown = [f"another frame of the stream is left out: {error}" for error in wrong]
-        return [found[0].noted(*unknown, *match.around(decoder.discarded + decoder.pending, errors)), *found[1:]]
+        left = [str(error) for error in wrong] + [f"the stream has an error: {one.replace('_', ' ')}" for one in errors]
+        if decoder.pending > 1:
+            left.append(_broken([]))
+        around = match.around(decoder.discarded + decoder.pending, ())
+        return [found[0].without(*left).noted(*around), *found[1:]]
     return []
+
+
+def _refuse_pieces(speakers: Sequence[Speaker], data: bytes) -> None:
+    """Raises `BadLength` for bytes that are a piece of a frame with framing: its first byte, or all but its beginning."""
+    for framing in dict.fromkeys(speaker.link.framing for speaker in speakers if speaker.link.framing):
+        if data == bytes((framing.escape,)):
+            raise BadLength(_broken([]), 0, len(data), "the frame is cut off")
+        if len(data) > 2 and data.endswith(bytes((framing.escape, framing.end))):
+            raise BadLength(
+                "the framing ends, but the start of the message is missing", 0, len(data), "the frame is cut off"
+            )
 
 
 def _surely_enveloped(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> list[Reading]:
@@ -130,10 +151,35 @@ def _unframed(icd: Icd, speakers: Sequence[Speaker], pasted: Pasted, asked: Aske
 
 
 def _bare(icd: Icd, speakers: Sequence[Speaker], data: bytes, asked: Asked) -> Reading:
-    if asked.messages:
-        return of_asked(icd, speakers[0], asked.messages, data)
-    if not data:
+    if not data and not asked.messages:
         raise BadLength("there are no bytes", 1, 0, "give a frame")
+    fault = envelopes.begun(speakers, data)
+    if asked.messages:
+        one = of_asked(icd, speakers[0], asked.messages, data)
+        return one.noted(f"the data begin like a packet: {fault.text}") if fault else one
+    if fault:
+        raise fault.error
+    _refuse_pieces(speakers, data)
+    # Where packets are not recognized by their first bytes, any bytes may be a piece of one.
+    plainly = [one for one in speakers if one.link.stream is None or (asked.kind and faults.has_sync(one.link.stream))]
+    if not plainly:
+        raise _no_packet(speakers, data, asked)
+    return _guessed(plainly, data, asked)
+
+
+def _no_packet(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> Ambiguous | NotFound:
+    """Bytes without the framing that their node has: what they can be shows only if the message is named."""
+    nodes, syncs = match.nodes_of(speakers), dict.fromkeys(map(envelopes.sync_of, speakers))
+    begin = f", which begin with {' or '.join(filter(None, syncs))}" if any(syncs) else ""
+    text = f"{byte_count(len(data))} are no packet of {nodes}{begin}"
+    candidates = asked.of([*match.by_id(speakers, data), *match.by_length(speakers, data)])
+    if candidates:
+        return Ambiguous(f"{text}; as data alone they can be {match.named(candidates)}", match.HELP)
+    return NotFound(text, f"check that the capture is complete; {match.HELP} reads the data of a message alone")
+
+
+def _guessed(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> Reading:
+    """A message without framing, by its id or its length. Raises `Ambiguous`, `BadLength` or `NotFound`."""
     given = byte_count(len(data))
     with_id, plain = match.by_id(speakers, data), match.by_length(speakers, data)
     if any(map(asked.fits, plain)) and not any(map(asked.fits, with_id)):

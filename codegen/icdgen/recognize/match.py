@@ -177,7 +177,9 @@ def why_not(apart: Sequence[Apart], unknown: NotFound) -> BadLength | NotFound:
         wrong = miscounted(speaker, message, data) if len(data) in message.lengths else None
         if wrong is not None:
             return wrong
-    told = " or ".join(f"`{m.name}` ({describe(m)}) has {length_text(m)}" for _, m, _, _ in known.values())
+    told = " or ".join(
+        f"`{m.name}` ({describe(m, s.facts.stream)}) has {length_text(m)}" for s, m, _, _ in known.values()
+    )
     _, first, id, data = next(iter(known.values()))
     if len(known) > 1 and any(len(data) in message.lengths for _, message, _, data in known.values()):
         return none_of([message for _, message, _, _ in known.values()], f"the {len(data)} bytes after the id {id}")

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-_BEFORE = r"(?:\([\d.:\s-]+\)\s*)?(?:[A-Za-z]+\d+\s+)?(?:[TR]X\s[-BEP ]*)?"  # time, interface, direction
+_BEFORE = r"(?:\((?P<time>[\d.:\s-]+)\)\s*)?(?:[A-Za-z]+\d+\s+)?(?:[TR]X\s[-BEP ]*)?"  # time, interface, direction
 _ID = r"(?P<id>[0-9A-Fa-f]{8}|[0-9A-Fa-f]{3})"
 _FORMS = (
     re.compile(
@@ -21,11 +21,12 @@ _STAMP = 2  # bytes of the time that an slcan adapter may append
 
 
 class Printed(NamedTuple):
-    """A packet. ``extended``: the identifier has 29 bits, not 11."""
+    """A packet. ``extended``: the identifier has 29 bits, not 11. ``time``: as candump printed it; empty without one."""
 
     id: int
     data: bytes
     extended: bool
+    time: str = ""
 
     @property
     def identifier(self) -> str:
@@ -49,4 +50,5 @@ def _packet(line: str) -> Iterator[Printed]:
     size = int(match.groupdict().get("size") or len(data))
     if text != "remote request" and len(data) not in (size, size + _STAMP if line[0] in "tT" else size):
         return
-    yield Printed(int(match["id"], 16), data[:size], len(match["id"]) == 8)
+    time = (match.groupdict().get("time") or "").strip()
+    yield Printed(int(match["id"], 16), data[:size], len(match["id"]) == 8, time)

@@ -73,6 +73,8 @@ class Reading:
     error: int | None = None
     checked: bool = False
     remarks: tuple[str, ...] = ()
+    left_out: tuple[str, ...] = ()  # of the first reading of an input: its packets that cannot be decoded, and why
+    time: str = ""  # when the frame was received, as the tool that recorded it printed that
 
     @property
     def key(self) -> tuple[str, str, str]:
@@ -87,7 +89,9 @@ class Reading:
     @property
     def title(self) -> str:
         """``request for Attitude (telemetry 146)``, for people."""
-        told = f"`{self.message.name}` ({describe(self.message)}) of {self.speaker.node.name}"
+        told = (
+            f"`{self.message.name}` ({describe(self.message, self.speaker.facts.stream)}) of {self.speaker.node.name}"
+        )
         if self.what in KINDS:
             return told
         if self.error is None:
@@ -105,14 +109,20 @@ class Reading:
         shown = None if self.frame is None else replace(self.frame, remarks=(*self.frame.remarks, *remarks))
         return replace(self, frame=shown, remarks=(*self.remarks, *remarks))
 
+    def without(self, *left_out: str) -> Reading:
+        """The same, with reports about other packets of the input, which cannot be decoded."""
+        notes = [f"left out: {one}" for one in left_out]
+        return replace(self.noted(*notes), left_out=(*self.left_out, *left_out))
+
     def to_json(self) -> dict[str, object]:
         """The frame as `Frame.to_json` has it, with ``direction``; what has no data of its own as a short form of it."""
+        time: dict[str, object] = {"time": self.time} if self.time else {}
         if self.frame is not None:
-            return {**self.frame.to_json(), "direction": self.what}
+            return {**self.frame.to_json(), "direction": self.what, **time}
         found: dict[str, object] = {
             "node": self.speaker.node.name,
             "message": self.message.name,
             "direction": self.what,
         }
-        found |= {"id": self.id} | ({} if self.error is None else {"error": self.error})
+        found |= {"id": self.id} | ({} if self.error is None else {"error": self.error}) | time
         return found | ({"remarks": list(self.remarks)} if self.remarks else {})

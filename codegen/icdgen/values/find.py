@@ -8,8 +8,10 @@ from contextlib import suppress
 from typing import Protocol, TypeVar
 
 from icdgen import naming
+from icdgen.describe.ids import id_text
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Field, Icd, Message, Node, Tail
 from icdgen.icd.paths import arrays_of
+from icdgen.protocol.envelope import Stream
 from icdgen.suggest import close_words
 from icdgen.values.errors import Ambiguous, NotFound
 
@@ -17,6 +19,7 @@ KINDS = (TELECOMMAND, TELEMETRY, CONFIGURATION)
 MOST_LISTED = 20
 _INDEX = re.compile(r"\[(.*?)\]")
 _NUMBER = re.compile(r"[0-9]{1,20}|0[xX][0-9A-Fa-f]{1,20}")
+_BYTES = re.compile(r"[0-9A-Fa-f]{2}(?:[ /][0-9A-Fa-f]{2}){1,3}")
 
 
 class _HasName(Protocol):
@@ -75,7 +78,7 @@ def find_frame(icd: Icd, words: Sequence[str]) -> tuple[Node, str, list[str]]:
 
 
 def find_message(icd: Icd, node_name: str, key: str, kind: str | None = None) -> Message:
-    """The message of a node, included ones among them, by id (``146``, ``0x92``), name (in any case) or identifier.
+    """The message of a node, included ones among them, by id (``146``, ``0x92``, ``01 35``), name (in any case) or identifier.
 
     ``kind`` narrows the search; "telecommand" and "telemetry" also find the configuration messages that can be sent and
     requested. Raises `NotFound` or `Ambiguous`, with suggestions.
@@ -102,9 +105,12 @@ def find_sharing(icd: Icd, node_name: str, key: str, kind: str | None = None) ->
 
 
 def _by_id(messages: Sequence[Message], key: str, kind: str | None) -> list[Message]:
-    if not _NUMBER.fullmatch(key.strip()):
+    key = key.strip()
+    if _BYTES.fullmatch(key):  # an id of several bytes, as `describe` writes it
+        key = "0x" + re.sub("[ /]", "", key)
+    if not _NUMBER.fullmatch(key):
         return []
-    wanted = int(key, 0) if key.strip()[:2] in ("0x", "0X") else int(key)
+    wanted = int(key, 0) if key[:2] in ("0x", "0X") else int(key)
     return [m for m in messages if wanted in _ids(m, kind)]
 
 
@@ -160,9 +166,9 @@ def is_of_kind(message: Message, kind: str) -> bool:
     return message.kind == kind
 
 
-def describe(message: Message) -> str:
-    """``telemetry 146``, ``configuration 120/247``"""
-    return f"{message.kind} {'/'.join(map(str, message.ids))}"
+def describe(message: Message, form: Stream | None = None) -> str:
+    """``telemetry 146``, ``configuration 120/247``; ``telemetry 01 35`` where the packets of ``form`` have such ids."""
+    return f"{message.kind} {'/'.join(id_text(form, id) for id in message.ids)}"
 
 
 def _ids(message: Message, kind: str | None) -> tuple[int | None, ...]:

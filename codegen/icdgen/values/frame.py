@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from dataclasses import field as dataclass_field
 from fractions import Fraction
 
 from icdgen import codec, layout
@@ -11,6 +12,8 @@ from icdgen.describe.bounds import bounds
 from icdgen.describe.numbers import bit_range, exact_text, value_text
 from icdgen.icd import floats
 from icdgen.icd.model import Field, Icd, Message, Node
+from icdgen.protocol import facts
+from icdgen.protocol.envelope import Stream
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +112,7 @@ class Frame:
     data: bytes
     rows: tuple[Row, ...]
     remarks: tuple[str, ...] = ()
+    form: Stream | None = dataclass_field(default=None, compare=False, repr=False)  # packets of the node
 
     @property
     def wrong_constants(self) -> list[Row]:
@@ -137,7 +141,8 @@ def frame(icd: Icd, node: Node, message: Message, data: bytes, notes: dict[str, 
             raw = raw[: codec.elements_of(ends[field.name], values)]
         extra = (notes or {}).get(field.name)
         rows.append(Row(field, raw, (*remarks(field, raw), *((extra,) if extra else ()))))
-    return Frame(node, message, data, tuple(rows), tuple(_reserved(owner, message, data)))
+    form = facts.of(icd, node).stream
+    return Frame(node, message, data, tuple(rows), tuple(_reserved(owner, message, data)), form)
 
 
 def remarks(field: Field, raw: int | bytes) -> list[str]:

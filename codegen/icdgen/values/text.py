@@ -19,7 +19,7 @@ _COLUMNS = [
 def to_text(frame: Frame, width: int | None = None) -> str:
     """Message, bytes and a table of its fields. ``width`` is that of the terminal, None for a pipe."""
     message = frame.message
-    lines = [f"{frame.node.name}: {message.name} ({describe(message)}), {byte_count(len(frame.data))}"]
+    lines = [f"{frame.node.name}: {message.name} ({describe(message, frame.form)}), {byte_count(len(frame.data))}"]
     if frame.data:
         lines.append(frame.data.hex(" "))
     text = "".join(clean(line) + "\n" for line in lines)

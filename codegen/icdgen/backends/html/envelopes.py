@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from icdgen_runtime.wire.envelope import Direction
 from icdgen_runtime.wire.stream import stream_encode
 
+from icdgen.describe.ids import pair_bytes
 from icdgen.describe.numbers import bit_range
 from icdgen.icd.model import Message
 from icdgen.icd.rules.wording import count
@@ -72,6 +73,8 @@ def script_facts(form: Stream, message: Message | None = None) -> dict[str, obje
     }
     if form.check:
         found["check"] = _check(form.check)
+    if size := pair_bytes(form):
+        found["id_pairs"] = size
     for direction in ("telecommand", "telemetry"):
         rows = [row for row in form.rows(direction) if ids is None or row.id in ids]
         found[direction] = [[row.id, row.least, row.most, row.seed] for row in rows]

@@ -1,0 +1,23 @@
+"""Ids as people write them."""
+
+from __future__ import annotations
+
+from icdgen.protocol.envelope import Stream
+
+
+def pair_bytes(form: Stream | None) -> int:
+    """Bytes that an id is written as, ``01 35``; 0 where it is written as a number.
+
+    Protocols whose header has the id as several bytes, the most significant first, write these apart (class and number,
+    say). Ids in little-endian order are numbers.
+    """
+    field = form.of("id") if form else None
+    if field is None or field.little or field.shift or field.bits != 8 * field.size or field.size < 2:
+        return 0
+    return field.size
+
+
+def id_text(form: Stream | None, id: int) -> str:
+    """``01 35`` where the packets have such ids, else ``309``."""
+    size = pair_bytes(form)
+    return id.to_bytes(size, "big").hex(" ").upper() if size else str(id)

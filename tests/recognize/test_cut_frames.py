@@ -1,0 +1,220 @@
+"""A frame that is cut off is an error: it is never decoded as another message, nor with bytes of its header as values."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from icdgen.errors import UserError
+from icdgen.icd.model import Icd
+from icdgen.loading import load
+from icdgen.protocol import facts, stream, uart
+from icdgen.recognize import recognize
+from icdgen.values.errors import Ambiguous, BadLength, NotFound
+from icdgen.vectors.make import make as golden
+from tests.conftest import ROOT
+from tests.features.outputs import icd_of
+
+LINKS = sorted((ROOT / "examples" / "links").glob("*.yaml"))
+DEVICES = [ROOT / "examples" / "devices" / "ublox" / "ublox.yaml"]
+MOST_ROWS = 3  # golden frames of each message
+
+MOTOR = """\
+icdgen: 1
+node: {name: motor, title: Motor, byte_order: big, bit_order: msb0}
+protocol:
+  stream:
+    delimited_by: length
+    header:
+      - {at: 0, bits: 16, role: sync, value: [0xA5, 0x5A]}
+      - {at: 16, bits: 8, role: id}
+      - {at: 24, bits: 8, role: length}
+    trailer:
+      - {at: 0, bits: 8, role: checksum, checksum: sum8}
+  checksums:
+    sum8: {kind: sum, width: 8, init: 0, xor_out: 0, covers: {from: id, to: data}}
+messages:
+  - name: Power
+    id: 2
+    kind: telemetry
+    length: 6
+    fields:
+      - {at: 0, bits: 16, name: Voltage, type: uint, formula: raw*0.001, unit: V}
+      - {at: 16, bits: 16, name: Current, type: int, formula: raw*0.001, unit: A}
+      - {at: 32, bits: 16, name: Temperature, type: int, formula: raw*0.01, unit: C}
+  - name: Set Speed
+    id: 3
+    kind: telecommand
+    length: 2
+    fields:
+      - {at: 0, bits: 16, name: Speed, type: uint}
+  - {name: Stop, id: 4, kind: telecommand, length: 0}
+"""
+SPEED, POWER = "a55a030201868c", "a55a02060001000200030e"
+
+BATTERY = """\
+icdgen: 1
+node: {name: battery, title: Battery whose replies have a status, byte_order: big, bit_order: msb0}
+protocol:
+  stream:
+    delimited_by: length
+    header:
+      - {at: 0, bits: 8, role: sync, value: 0xDD}
+      - {at: 8, bits: 8, role: id}
+      - {at: 16, bits: 8, role: flags}
+      - {at: 24, bits: 8, role: length}
+    trailer:
+      - {at: 0, bits: 16, role: checksum, checksum: sum16}
+      - {at: 16, bits: 8, role: constant, value: 0x77}
+  checksums:
+    sum16: {kind: sum, width: 16, init: 0xFFFF, xor_out: 0xFFFF, covers: {from: flags, to: data}}
+messages:
+  - {name: Basic, id: 3, kind: telemetry, length: 2, fields: [{at: 0, bits: 16, name: Voltage, type: uint, unit: mV}]}
+  - {name: Version, id: 5, kind: telemetry, length: 0, fields: [{at: 0, name: Version, type: text, size: rest, up_to: 40}]}
+"""
+
+
+def packets(icd: Icd) -> list[tuple[str, bytes]]:
+    """Some golden frames of each message as they are sent, with the name of the message."""
+    found = []
+    for node in icd.nodes:
+        known = facts.of(icd, node)
+        for message in golden(icd, node).messages:
+            for row in message.rows[:: max(1, len(message.rows) // MOST_ROWS)][:MOST_ROWS]:
+                for direction in ("telecommand", "telemetry"):
+                    id = getattr(message.message, f"{direction}_id")
+                    if id is None:
+                        continue
+                    if known.stream:
+                        found.append((message.message.name, stream.encode(known.stream, direction, id, row.frame)))
+                    elif known.framing:
+                        body = bytes([id]) + row.frame
+                        found.append((message.message.name, uart.encode(known.framing, body)))
+    return found
+
+
+def names_in(icd: Icd, data: bytes, *words: str) -> list[str]:
+    try:
+        return [one.message.name for one in recognize(icd, data, *words)]
+    except UserError:
+        return []
+
+
+def prefixes(packet: bytes, most: int = 60) -> list[bytes]:
+    """The packet cut after each byte; of a long one after many."""
+    sizes = range(1, len(packet))
+    chosen = sorted({*sizes[:most], *sizes[-20:], *random.Random(len(packet)).sample(sizes, min(len(sizes), 20))})
+    return [packet[:size] for size in chosen]
+
+
+@pytest.fixture(scope="module", params=[*LINKS, *DEVICES], ids=lambda file: file.stem)
+def link(request) -> Icd:
+    loaded = load([request.param])
+    assert loaded.ok
+    return loaded.icd
+
+
+def test_every_golden_frame_of_a_link_is_found_while_it_is_complete(link):
+    for name, packet in packets(link):
+        try:
+            (one,) = recognize(link, packet)
+        except Ambiguous as error:
+            assert f"`{name}`" in str(error)
+        else:
+            assert one.message.name == name and not one.left_out
+
+
+def test_no_beginning_of_a_golden_frame_of_a_link_is_decoded(link):
+    decoded = [(name, cut.hex()) for name, packet in packets(link) for cut in prefixes(packet) if names_in(link, cut)]
+    assert decoded == []
+
+
+def test_no_end_of_a_golden_frame_of_a_link_is_decoded_as_another_message(link):
+    source = random.Random(5)
+    for name, packet in packets(link):
+        for at in source.sample(range(1, len(packet)), min(12, len(packet) - 1)):
+            # SLIP, HDLC and COBS need no delimiter in front: what is complete may be read.
+            assert set(names_in(link, packet[at:])) <= {name}, packet[at:].hex()
+
+
+def test_no_golden_frame_of_a_link_that_lacks_bytes_is_decoded_as_another_message(link):
+    source = random.Random(6)
+    for name, packet in packets(link):
+        for _ in range(8):
+            at = source.randrange(1, len(packet))
+            cut = packet[:at] + packet[at + source.randint(1, 4) :]
+            assert set(names_in(link, cut)) <= {name}, cut.hex()
+
+
+def test_no_piece_of_a_framed_message_is_decoded(shipped):
+    for _name, packet in packets(shipped)[::7]:
+        for at in range(1, len(packet)):
+            assert names_in(shipped, packet[:at]) == [], packet[:at].hex()
+        for at in range(1, len(packet) - 2):
+            assert names_in(shipped, packet[at:]) == [], packet[at:].hex()
+
+
+@pytest.fixture(scope="module")
+def motor(tmp_path_factory) -> Icd:
+    return icd_of(MOTOR, tmp_path_factory.mktemp("motor"))
+
+
+@pytest.mark.parametrize(
+    ("text", "error", "says"),
+    [
+        ("A5 5A 03 02 01 86", BadLength, r"`Set Speed` \(telecommand 3\) is cut off: 6 bytes came, 7 are needed"),
+        ("A5 5A 02", BadLength, r"`Power` \(telemetry 2\) is cut off: 3 bytes came, its header has 4"),
+        ("A5", BadLength, "a packet of motor is cut off: 1 byte came"),
+        (POWER[:-2] + "0f", BadLength, r"`Power` \(telemetry 2\) has a wrong checksum: it is 0F, expected 0E"),
+        ("A5 5A 09 00 09", NotFound, "a packet of motor with the id 9 and 0 bytes of data is no message"),
+        ("A5 5A 03 01 07 0B", BadLength, r"`Set Speed` \(telecommand 3\) has 1 byte of data, the ICD says 2"),
+        ("A5 5A 03 FF", BadLength, "says that it has 260 bytes; packets have up to 11"),
+        ("5A 03 02 01 86 8C", Ambiguous, "6 bytes are no packet of motor, which begin with A5 5A; .* can be `Power`"),
+        ("00 01 02", NotFound, "3 bytes are no packet of motor, which begin with A5 5A"),
+    ],
+)
+def test_bytes_that_are_no_complete_packet_are_an_error_that_says_what_is_wrong(motor, text, error, says):
+    with pytest.raises(error, match=says):
+        recognize(motor, text)
+
+
+def test_a_packet_cut_to_the_length_of_the_named_message_is_no_data_of_it(motor):
+    with pytest.raises(BadLength, match="is cut off: 6 bytes came, 11 are needed"):
+        recognize(motor, POWER[:12], "motor", "Power")
+
+
+def test_data_alone_are_read_where_the_message_is_named_and_what_looks_like_a_packet_is_noted(motor):
+    (one,) = recognize(motor, "A5 5A 00 02 00 03", "motor", "Power")
+    assert one.data.hex() == "a55a00020003" and "the data begin like a packet" in one.remarks[0]
+    (one,) = recognize(motor, "01 86", "motor", "Set Speed")
+    assert one.data.hex() == "0186" and not one.remarks
+
+
+def test_packets_of_both_directions_are_read_in_their_order(motor):
+    found = recognize(motor, SPEED + POWER + SPEED)
+    assert [(one.message.name, one.what) for one in found] == [
+        ("Set Speed", "telecommand"),
+        ("Power", "telemetry"),
+        ("Set Speed", "telecommand"),
+    ]
+    assert not any(one.left_out for one in found)
+
+
+def test_each_packet_that_cannot_be_decoded_is_reported(motor):
+    (one,) = recognize(motor, SPEED + "a55a090009" + POWER[:-2] + "ff" + "a55a03")
+    assert [text.partition(" is ")[0].partition(" has ")[0] for text in one.left_out] == [
+        "a packet of motor with the id 9 and 0 bytes of data",
+        "a packet of motor, `Power` (telemetry 2)",
+        "a packet of motor, `Set Speed` (telecommand 3)",
+    ]
+    assert "motor has no message with this id" in one.left_out[0]
+
+
+def test_a_request_that_the_icd_has_no_message_for_is_a_packet_and_no_text(tmp_path):
+    battery = icd_of(BATTERY, tmp_path)
+    for words in ((), ("battery",)):
+        with pytest.raises(NotFound, match="a packet of battery with the id 165 and 0 bytes of data is no message"):
+            recognize(battery, "DD A5 03 00 FF FD 77", *words)
+    (reply,) = recognize(battery, "DD 03 00 02 0E 10 FF E0 77")
+    assert reply.message.name == "Basic" and reply.data.hex() == "0e10"
