@@ -29,8 +29,10 @@ const icdgenValues = ((codec, frames) => {
   /** The physical value of a field that has one. */
   function physicalText(field, value) {
     if (field.text) return codec.text(value);
-    if (field.curve) return numberText(codec.physical(field, value));
-    return field.type === "float" ? floatText(field, value) : decimal(...codec.exact(field, value));
+    if (field.curve) return rounded(field, codec.physical(field, value));
+    if (field.type === "float") return field.digits === undefined ? floatText(field, value) : rounded(field, codec.floatValue(field, value));
+    const exact = codec.exact(field, value);
+    return field.decimals === undefined ? decimal(...exact) : rounded(field, codec.nearestDouble(...exact));
   }
 
   /** What people want to see of a value: its name, its physical value with unit, or the raw one. */
@@ -50,6 +52,16 @@ const icdgenValues = ((codec, frames) => {
     const digits = String(scaled < 0n ? -scaled : scaled).padStart(places + 1, "0");
     const text = places ? `${digits.slice(0, -places)}.${digits.slice(-places)}` : digits;
     return scaled < 0n ? `-${text}` : text;
+  }
+
+  /** A number with as many decimals or significant digits as the plan says. */
+  function rounded(field, number) {
+    if (!Number.isFinite(number)) return String(number);
+    if (field.digits !== undefined) return numberText(Number(number.toPrecision(field.digits)));
+    if (Math.abs(number) >= 1e15) return numberText(number); // a double has no further digits
+    const text = number.toFixed(field.decimals);
+    const short = text.includes(".") ? text.replace(/\.?0+$/, "") : text;
+    return short === "-0" ? "0" : short;
   }
 
   function numberText(number) {

@@ -9,6 +9,7 @@ from fractions import Fraction
 
 from icdgen import codec, layout
 from icdgen.describe.bounds import bounds
+from icdgen.describe.display import number_text
 from icdgen.describe.numbers import bit_range, exact_text, value_text
 from icdgen.icd import floats
 from icdgen.icd.model import Field, Icd, Message, Node
@@ -65,12 +66,12 @@ class Row:
             return self.member if self.member is not None else f"unknown {self.raw}"
         if kind == "bool":
             return "true" if self.raw else "false"
-        if self.field.curve is not None and self.number is not None:
-            return floats.text_of(self.number, 64)
+        if self.number is not None and (self.field.curve is not None or self.field.derived is not None):
+            return number_text(self.field, self.number)
         if kind == "float":
             return floats.text_of(codec.float_value(self.field, self.raw), self.field.bits)
         physical = self.physical
-        return self.raw_text if physical is None else exact_text(physical)
+        return self.raw_text if physical is None else number_text(self.field, physical)
 
     def to_json(self) -> dict[str, object]:
         """``{"name", "type", "raw", "value", ...}``; ``value`` is the one to show or plot."""

@@ -1,0 +1,106 @@
+"""Digits of physical values for people: as many as the resolution of a field warrants, decided here for all outputs.
+
+A value whose decimal ends soon is shown in full. Others, such as values of polynomials, are rounded: their further digits
+come from the arithmetic in doubles. JSON and logs have the full precision.
+"""
+
+from __future__ import annotations
+
+import math
+from decimal import ROUND_HALF_UP, Decimal, localcontext
+from fractions import Fraction
+from functools import lru_cache
+from typing import NamedTuple
+
+from icdgen.describe.numbers import exact_text
+from icdgen.icd.curve import Curve
+from icdgen.icd.formula import Scale
+from icdgen.icd.model import Field
+
+_MOST_EXACT = 6  # decimals of a factor that are shown in full, however fine the resolution is
+_MOST_DECIMALS = 20
+_DIGITS = {32: 8, 64: 15}  # significant digits of a number computed from a float
+_SAMPLES = 64  # places of a polynomial where its slope is looked at
+_STEEP = 100  # how much finer than the mean one the resolution of a place may count
+_LARGE = 1e15
+_PRECISION = 800  # digits of the exact decimal of any double
+
+
+class Digits(NamedTuple):
+    """How a number is rounded: to ``decimals`` after the point, or to ``significant`` digits."""
+
+    decimals: int | None = None
+    significant: int | None = None
+
+
+def digits_of(field: Field) -> Digits | None:
+    """How the physical values of a field are rounded; None where they are shown in full."""
+    if field.type == "float":
+        computed = field.curve is not None or field.derived is not None
+        return Digits(significant=_DIGITS[field.bits]) if computed else None
+    if field.curve is not None:
+        return _by_resolution(_resolution(field.curve, field.raw_min, field.raw_max))
+    return None if field.scale is None else _of_scale(field.scale)
+
+
+@lru_cache(maxsize=1024)
+def _of_scale(scale: Scale) -> Digits | None:
+    rounded = _by_resolution(abs(scale.factor))
+    exact = max(_decimals(scale.factor), _decimals(scale.offset))
+    return None if exact <= max(_MOST_EXACT, (rounded.decimals or 0) + 1) else rounded
+
+
+def number_text(field: Field, value: float | Fraction) -> str:
+    """The physical value of a field: ``21.35``."""
+    digits = digits_of(field)
+    if digits is None:
+        return exact_text(value) if isinstance(value, Fraction) else _plain(repr(value))
+    number = float(value)
+    if not math.isfinite(number):
+        return repr(number)
+    with localcontext() as context:
+        # Rounding half up of the exact binary value is what `toFixed` and `toPrecision` of JavaScript do.
+        context.prec, context.rounding = _PRECISION, ROUND_HALF_UP
+        exact = Decimal(number)
+        if digits.decimals is not None and abs(number) >= _LARGE:  # a double has no further digits
+            return _plain(repr(number))
+        if digits.decimals is not None:
+            text = f"{exact.quantize(Decimal(1).scaleb(-digits.decimals)):f}"
+            text = text.rstrip("0").rstrip(".") if "." in text else text
+            return "0" if text == "-0" else text
+        context.prec = digits.significant or 1
+        return _plain(repr(float(+exact)))
+
+
+def _plain(text: str) -> str:
+    return text.removesuffix(".0")
+
+
+def _by_resolution(step: float | Fraction) -> Digits:
+    """Decimals by which neighbouring values differ, and from which the raw value is found again: half a step is enough."""
+    decimals = 0
+    while decimals < _MOST_DECIMALS and Fraction(1, 10**decimals) * 2 > Fraction(step):
+        decimals += 1
+    return Digits(decimals)
+
+
+def _decimals(value: Fraction) -> int:
+    """Decimals of a fraction; more than can be shown where they do not end."""
+    return next((n for n in range(_MOST_DECIMALS + 1) if 10**n % value.denominator == 0), _MOST_DECIMALS + 1)
+
+
+@lru_cache(maxsize=1024)
+def _resolution(curve: Curve, low: int, high: int) -> float:
+    """The physical value of one step of the raw value of an integer with a curve, where that is smallest.
+
+    Near the extremum of a polynomial it may be as small as can be; it does not count there.
+    """
+    if curve.points:
+        low, high = max(low, math.ceil(curve.points[0][0])), min(high, math.floor(curve.points[-1][0]))
+    every = max(1, (high - low) // _SAMPLES)
+    starts = range(low, max(high, low + 1), every)
+    steps = [abs(curve.double(raw + 1) - curve.double(raw)) for raw in starts]
+    real = [step for step in steps if 0 < step < math.inf]
+    if not real:
+        return 1.0
+    return max(min(real), math.fsum(real) / len(real) / _STEEP)
