@@ -12,6 +12,11 @@ from icdgen.diagnostics import Findings
 from tests.definitions.test_can import FILES, field, message
 
 
+def troubles(found):
+    """Findings but for what is not used (IMP085)."""
+    return [one for one in found.troubles if one.code != "IMP085"]
+
+
 @pytest.fixture(scope="module")
 def probe():
     return imported("probe.ksy")
@@ -56,7 +61,7 @@ def test_lines_over_a_field_are_its_formula_and_other_values_are_said(probe, fra
     assert (said["formula"], said["unit"]) == ("raw*0.5 - 40", "C")
     assert field(frame, "frame unnumbered", "current")["formula"] == "raw/1000.0 + 0.5"
     assert "formula" not in field(frame, "frame unnumbered", "uptime")  # whole numbers are divided without the rest
-    assert [(one.code, one.message) for one in (*probe.definitions.troubles, *frame.definitions.troubles)] == [
+    assert [(one.code, one.message) for one in (*troubles(probe.definitions), *troubles(frame.definitions))] == [
         ("IMP078", "`body total`: `cells[0] + cells[1]` is no line over one field"),
         ("IMP081", "`header callsign` is not held: its bytes are processed by `ror(1)` before they are read"),
         ("IMP078", "`header ssid`: `(ssid_raw & 0x0f) >> 1` is no line over one field"),
@@ -64,7 +69,7 @@ def test_lines_over_a_field_are_its_formula_and_other_values_are_said(probe, fra
         ("IMP081", "`payload elsewhere` is not held: it stands where an expression says"),
         ("IMP081", "`payload data` is not held: its size is `size * 2`"),
     ]
-    assert [one.spot.line for one in frame.definitions.troubles] == [18, 28, 46, 47, 58]
+    assert [one.spot.line for one in troubles(frame.definitions)] == [18, 28, 46, 47, 58]
 
 
 def test_types_that_are_repeated_are_structs_and_others_part_of_the_message(probe):
@@ -130,7 +135,7 @@ def test_what_goes_on_as_long_as_a_field_says_is_an_open_end(attribute, held, tm
     (tmp_path / "bad.ksy").write_text(ksy(attribute, "{id: z, type: u1}", more=more))
     read = run.read(tmp_path / "bad.ksy", kinds.get("ksy"))
     assert field(read, "bad", "b") == {"at": 8, "name": "b", **held} and "formula" not in field(read, "bad", "a")
-    assert [one.message for one in read.definitions.troubles] == [
+    assert [one.message for one in troubles(read.definitions)] == [
         "`z` is not held: it stands behind a part whose size is not fixed",
         "`d`: `a * 0.5` is no line over one field",
     ]
@@ -186,7 +191,7 @@ BROAD = "types:\n" + "".join(
 def test_what_cannot_be_held_is_said_with_the_reason_and_what_is_before_it_is_held(attribute, more, says, tmp_path):
     (tmp_path / "bad.ksy").write_text(ksy(attribute, more=more))
     read = run.read(tmp_path / "bad.ksy", kinds.get("ksy"))
-    assert read.failed and [one.code for one in read.definitions.troubles] == ["IMP081"]
+    assert read.failed and [one.code for one in troubles(read.definitions)] == ["IMP081"]
     assert says in read.definitions.troubles[0].message and read.definitions.troubles[0].spot.line
     for one in read.trees["bad"]["messages"]:
         assert one["fields"][0]["name"] == "a" and one["fields"][-1]["type"] == "bytes"
@@ -235,7 +240,7 @@ def test_a_small_file_that_says_much_is_bounded(more, tmp_path, monkeypatch):
     flags += [f"{{id: x{n}, type: u1, if: f{n} == 1}}" for n in range(40)]
     text = ksy("{id: b, type: t0}", more=more) if more else ksy(*flags)
     found = kaitai.Kaitai().read("bad.ksy", text.encode())
-    assert found.troubles[-1].message == "message `bad` is not held: with it the file says more than 2,000 things"
+    assert troubles(found)[-1].message == "message `bad` is not held: with it the file says more than 2,000 things"
 
 
 def test_ways_to_go_on_are_bounded(tmp_path):

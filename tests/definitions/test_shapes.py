@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from icdgen.definitions import kinds, run
+from icdgen.definitions import kinds, packets, run
 from icdgen.diagnostics import Findings
 from tests.definitions.test_can import FILES, field, message
 from tests.importer.test_command import icdgen
@@ -265,3 +265,66 @@ def test_what_cannot_be_imported_together_is_misuse(tmp_path):
 def test_help_names_all_kinds(tmp_path):
     text = icdgen("import", "--help", cwd=tmp_path).stdout
     assert [name for name in kinds.names() if not re.search(rf"\b{name}\b", text)] == []
+
+
+def unused(read):
+    return [(one.message, one.spot.line) for one in read.definitions.troubles if one.code == "IMP085"]
+
+
+def test_xtce_what_is_not_used_is_a_note_with_its_line(tmp_path):
+    alarm = '<DefaultAlarm><StaticAlarmRanges><CriticalRange maxInclusive="9"/></StaticAlarmRanges></DefaultAlarm>'
+    type_ = '<IntegerParameterType name="u32_t" signed="false">'
+    read = edited(
+        tmp_path,
+        (type_, type_ + alarm),
+        ('<EntryList><ParameterRefEntry parameterRef="Sail"/>', "<RateInStream/><EntryList>"),
+    )
+    assert unused(read) == [
+        ("`DefaultAlarm` of `IntegerParameterType` is not used (`u32_t`)", 49),
+        ("`parameterTypeRef` of `Parameter` is not used (`Sail`)", 62),
+        ("`RateInStream` of `SequenceContainer` is not used (`Sails`)", 111),
+    ]
+
+
+def test_xtce_what_is_not_used_of_a_set_names_its_file(tmp_path):
+    folder = shutil.copytree(SHAPES / "pus", tmp_path / "pus")
+    text = (folder / "types.xml").read_text()
+    (folder / "types.xml").write_text(
+        text.replace('<IntegerParameterType name="uint8"', '<IntegerParameterType name="uint8" initialValue="3"')
+    )
+    (read,) = imported_set(folder).values()
+    (one,) = read.definitions.troubles
+    assert (one.code, one.spot.line, Path(one.spot.file).name) == ("IMP085", 5, "types.xml")
+    assert one.message == "`initialValue` of `IntegerParameterType` is not used (`uint8`)"
+
+
+def test_eds_what_is_not_used_is_a_note_in_the_file_where_it_stands(tmp_path):
+    folder = shutil.copytree(SHAPES / "cfs", tmp_path / "cfs")
+    pump = folder / "pump" / "eds" / "pump.xml"
+    pump.write_text(
+        pump.read_text().replace(
+            '<Entry name="State" type="State"/>', '<Entry name="State" type="State" priority="3"/>'
+        )
+    )
+    reads = imported_set(folder)
+    assert unused(reads["pump.xml"]) == [("`priority` of `Entry` is not used (`State`)", 17)]
+    assert unused(reads["base_types.xml"]) == [("`IntegerDataEncoding` of `IntegerDataType` is not used (`uint8`)", 5)]
+    assert unused(reads["lamp.xml"]) == []
+
+
+def test_kaitai_what_is_not_used_is_a_note_with_its_line(tmp_path):
+    text = (SHAPES / "places.ksy").read_text()
+    (tmp_path / "a.ksy").write_text(text.replace("tail: {pos: 6, type: u2}", "tail: {pos: 6, type: u2, -orig-id: TL}"))
+    assert unused(imported(tmp_path / "a.ksy")) == [("`-orig-id` of `instances` is not used (instances.tail)", 4)]
+
+
+def test_a_header_that_no_icd_can_have_costs_itself_and_not_the_messages(monkeypatch):
+    def fill(network, found, to, fill=packets.fill):
+        fill(network, found, to)
+        network.protocol["stream"]["header"][-1]["plus"] = -40
+
+    monkeypatch.setattr(packets, "fill", fill)
+    read = imported(SHAPES / "aggregate.xml")
+    (lost,) = errors(read)
+    assert lost.code == "IMP070" and lost.message.startswith("the header is not held: the length of")
+    assert read.held == 5 and "protocol" not in read.trees["aggregate"]

@@ -98,7 +98,7 @@ def test_without_such_a_header_the_id_is_what_tells_all_messages(lander):
     (tree,) = lander.trees.values()
     assert "protocol" not in tree
     assert [(one["name"], one["id"], one["kind"]) for one in tree["messages"]] == [
-        ("Power", 7, "telemetry"), ("Places", 9, "telemetry"), ("Arm Power", 10, "telemetry"),
+        ("Power", 7, "telemetry"), ("Clock", 8, "telemetry"), ("Places", 9, "telemetry"), ("Arm Power", 10, "telemetry"),
         ("Stretch", 3, "telecommand"), ("Stop", 4, "telecommand"),
     ]  # fmt: skip
 
@@ -126,9 +126,9 @@ def test_commands_have_the_arguments_of_their_base_with_the_values_that_they_giv
     }  # fmt: skip
 
 
-def test_what_is_not_held_is_said_with_the_reason(lander):
-    assert [one.message for one in lander.definitions.troubles if one.severity == "error"] == [
-        "message `Clock` is not held: an integer is encoded as `BCD`"
+def test_what_is_held_raw_is_said_with_the_reason(lander):
+    assert [one.message for one in lander.definitions.troubles if one.code == "IMP078"] == [
+        "`Digits`: an integer is encoded as `BCD`"
     ]
 
 
@@ -204,11 +204,9 @@ def test_containers_that_cannot_be_held_are_left_out_and_end(text, says, tmp_pat
 @pytest.mark.parametrize(
     ("types", "says"),
     [
-        (FLOAT16, "a float has 16 bits"),
         (BYTE.replace('name="byte"', 'name="byte" baseType="byte"'), "the type `byte` is based on itself"),
         (BYTE.replace("Encoding", 'Encoding sizeInBits="1e9"'), "a size is `1e9`"),
         (BYTE.replace("Encoding", 'Encoding sizeInBits="999"'), "an integer has 999 bits"),
-        (BYTE.replace("Encoding", 'Encoding bitOrder="leastSignificantBitFirst"'), "its least significant bit is sent first"),
         ('<ArrayParameterType name="byte" arrayTypeRef="byte"/>', "an array of no dimensions"),
         (type_("Aggregate", ITSELF), "has members of members without end"),
         (type_("Enumerated", LABELS), "has a label for the values 0 to 99999999999"),
@@ -218,6 +216,29 @@ def test_containers_that_cannot_be_held_are_left_out_and_end(text, says, tmp_pat
 )  # fmt: skip
 def test_types_that_cannot_be_held_are_said_and_end(types, says, tmp_path):
     assert says in refused(system(container("A"), types), tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("types", "bits", "says"),
+    [
+        (FLOAT16, 16, "a float has 16 bits"),
+        (BYTE.replace("Encoding", 'Encoding bitOrder="leastSignificantBitFirst"'), 8, "its least significant bit is sent first"),
+        (BYTE.replace("Encoding", 'Encoding sizeInBits="24" encoding="BCD"'), 24, "an integer is encoded as `BCD`"),
+    ],
+)  # fmt: skip
+def test_a_number_of_known_size_and_unknown_encoding_costs_its_meaning_alone(types, bits, says, tmp_path):
+    (tmp_path / "a.xml").write_text(system(container("A"), types))
+    read = run.read(tmp_path / "a.xml", xtce.Xtce())
+    (trouble,) = read.definitions.troubles
+    assert (trouble.code, trouble.message) == ("IMP078", f"`P`: {says}") and "raw bits" in trouble.help
+    assert message(read, "A")["fields"] == [{"at": 0, "bits": bits, "name": "P", "type": "uint"}]
+
+
+def test_a_number_of_unknown_encoding_tells_no_message_apart(tmp_path):
+    of = '<RestrictionCriteria><Comparison parameterRef="P" value="12"/></RestrictionCriteria>'
+    containers = container("A") + container("B", "", "A", of)
+    why = refused(system(containers, BYTE.replace("Encoding", 'Encoding encoding="BCD"')), tmp_path)
+    assert "message `B` is not held: it is told by `P`, of which only the raw bits are held" in why
 
 
 BOMB = "<!DOCTYPE x [" + "".join(f'<!ENTITY e{n} "{f"&e{n - 1};" * 10}">' for n in range(1, 10)) + '<!ENTITY e0 "ha">]>'

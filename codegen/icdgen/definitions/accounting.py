@@ -105,10 +105,10 @@ class Account:
             to.warn(UNUSED, what, "the ICD does not contain it: add it by hand if you need it", "note", entry.line)
 
 
-def settle(element: Element) -> None:
-    """Mark an element with all within as read, if its reads are recorded, because a finding names it already."""
-    if isinstance(element, AccountedElement):
-        element.settle()
+def settle(part: object) -> None:
+    """Mark an element or mapping with all within as read, if reads are recorded, because a finding names it already."""
+    if isinstance(part, (AccountedElement, AccountedMap)):
+        part.settle()
 
 
 class AccountedElement(Element):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 
+from icdgen.definitions.accounting import Account, accounted
 from icdgen.definitions.frames import ORDERS, usual
 from icdgen.definitions.kaitai_layout import Layout
 from icdgen.definitions.kaitai_parts import File, Key, Part, Undecided
@@ -18,6 +19,11 @@ from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS, REST
 MOST_MESSAGES = 256
 _META = re.compile(r"^meta:[ \t]*(?:#.*)?\r?\n(?:[ \t]*(?:#.*)?\r?\n)*[ \t]+\w", re.MULTILINE)
 _BODY = re.compile(r"^(?:seq|types|instances|enums|doc):", re.MULTILINE)
+_NAMED = frozenset({"types", "instances", "enums"})  # below which keys are names of the author
+_WITHOUT_EFFECT = frozenset(  # about the file, for collections of formats and for the compiler
+    f"meta.{key}"
+    for key in ("license", "xref", "tags", "application", "file-extension", "ks-version", "ks-debug", "ks-opaque-types")
+)
 _LONGEST_NAME = 40  # beyond that identifiers of it may be too long
 _ID, _ID_BITS = 1, 8  # no frame of Kaitai has an id but in its data
 
@@ -34,7 +40,7 @@ class Kaitai:
 
     def read(self, file: str, data: bytes) -> Definitions:
         """Raises `Findings` for what is no YAML, or no .ksy."""
-        body = parse(file, data)
+        body = accounted(parse(file, data), _NAMED)
         to = Definitions(file)
         shared = File(to)
         meta = mapping(body, "meta")
@@ -55,6 +61,9 @@ class Kaitai:
             network.messages.append({**made, "fields": _fields(layout, order)})
         network.declare(shared.enums.declared())
         to.networks.append(network)
+        account = Account(_WITHOUT_EFFECT)
+        account.mappings(body)
+        account.report(to)
         return to
 
 

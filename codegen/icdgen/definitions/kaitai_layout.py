@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import Any
 
+from icdgen.definitions.accounting import settle
 from icdgen.definitions.kaitai_expressions import Masked, counted, equalities, line_of, masked, number
 from icdgen.definitions.kaitai_parts import Counter, Ended, File, Key, Label, Part, Scope, Undecided
 from icdgen.definitions.kaitai_types import Piece, Type, built_in, contents, named, sized
@@ -276,6 +277,7 @@ class Layout:
         else:
             held = "the bytes up to the end of the frame are held"
             self._bytes(where, 0)
+        settle(one)
         self.file.note(AS_BYTES, f"`{' '.join(where)}` is not held: {why}", held, "error", one.place.line)
         if is_end:
             raise Ended
@@ -353,10 +355,12 @@ class Layout:
                 continue
             where = " ".join((*path, name))
             if "value" not in one:
+                settle(one)
                 text = f"`{where}` is not held: it stands where an expression says"
                 self.file.note(AS_BYTES, text, "what the sequence has is held", "error", one.place.line)
                 continue
             if not self._formula(one, scope):
+                settle(one)
                 said = line(str(one["value"]), 80)
                 text = f"`{where}`: `{said}` is no line over one field"
                 self.file.note(

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from icdgen import naming
-from icdgen.definitions.model import Definitions, Item, Network, unreadable
+from icdgen.definitions.model import NOT_HELD, Definitions, Item, Network, unreadable
 from icdgen.diagnostics import Finding
 from icdgen.loading import load
 
@@ -46,6 +46,11 @@ def settle(network: Network, to: Definitions) -> list[str]:
             renamed = False
             for finding in findings:
                 line = lines.get(finding.place.line)
+                if line is None and network.protocol is not None:
+                    to.warn(NOT_HELD, f"the header is not held: {finding.message}", finding.help, "error")
+                    network.protocol, renamed = None, True
+                    network.seeds.clear()
+                    break
                 if line is None:
                     raise unreadable(to.file, f"what it defines makes no ICD: {finding.message}", finding.help)
                 tried = tries.get(id(line.item), 0)

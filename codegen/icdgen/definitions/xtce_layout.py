@@ -267,6 +267,8 @@ class Layout:
     def _raw(self, part: Part, told: Told) -> int:
         """The raw value that a comparison is about."""
         item, text, name = part.item, told.value.strip(), told.reference.name
+        if part.piece.is_raw:
+            raise NotHeld(f"it is told by `{name}`, of which only the raw bits are held")
         if "count" in item or item["type"] not in ("uint", "int", "enum", "bool"):
             raise NotHeld(f"it is told by `{name}`, which is of the type {item['type']}")
         if item.keys() & {"formula", "points"} and not told.is_raw:

@@ -22,6 +22,7 @@ from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS
 RAW_ONLY = "IMP078"
 _MOST_NAMED = 1024  # values of a range of labels
 _DEEPEST = 20  # types that say what another says
+_WORD = 64  # bits of the largest number
 _ENCODINGS = ("IntegerDataEncoding", "FloatDataEncoding", "StringDataEncoding", "BinaryDataEncoding")
 _LINE = (("slope", "1"), ("intercept", "0"))
 _RANGES = ("ValidRange", "ValidRangeSet/ValidRange")
@@ -39,6 +40,7 @@ class Piece:
     plus: int | None = None  # so much more than it says; None where it does not count bytes or elements
     values: dict[str, int] = field(default_factory=dict)  # by label
     members: list[tuple[str, Element]] = field(default_factory=list)  # of an aggregate instead: names and types
+    is_raw: bool = False  # whether only the bits are held, not what they mean
 
 
 @dataclass
@@ -61,7 +63,10 @@ class Types(Reading):
         if kind == "Array":
             return self.array(element, element.find("DimensionList"), where)
         encoding = next((one for one in _below(chain) if one.tag in _ENCODINGS), None)
-        made = self._encoded(chain, kind, encoding)
+        try:
+            made = self._encoded(chain, kind, encoding)
+        except NotHeld as why:
+            return self._raw(chain, encoding, where, why)
         if kind == "Enumerated":
             self._labels(made, chain, element, where)
         elif kind == "Boolean":
@@ -132,6 +137,21 @@ class Types(Reading):
             return _numbers("float", number(encoding.get("sizeInBits", "32"), "a size"), _order(encoding))
         return _bytes(encoding, "text" if encoding.tag == "StringDataEncoding" else "bytes")
 
+    def _raw(self, chain: list[Element], encoding: Element | None, where: str, why: NotHeld) -> Piece:
+        """Bits whose number is written down, but not their meaning. Raises ``why`` where it is not."""
+        if encoding is None:
+            raise why
+        default = {"IntegerDataEncoding": "8", "FloatDataEncoding": "32"}.get(encoding.tag)
+        size = encoding.find("SizeInBits/Fixed")
+        size = encoding.find("SizeInBits") if size is None else size
+        bits = fixed(size) if default is None else number(encoding.get("sizeInBits", default), "a size")
+        if bits is None or not (1 <= bits <= _WORD or (bits % 8 == 0 and 0 < bits <= 8 * MOST_BYTES)):
+            raise why
+        self._raw_only(where, str(why), "its raw bits are held, without their meaning")
+        for type_ in chain:
+            settle(type_)
+        return Piece({"type": "uint" if bits <= _WORD else "bytes"}, bits, is_raw=True)
+
     def _labels(self, made: Piece, chain: list[Element], element: Element, where: str) -> None:
         if made.item["type"] not in ("uint", "int"):
             raise NotHeld(f"{where} has labels, and is encoded as {made.item['type']}")
@@ -179,9 +199,9 @@ class Types(Reading):
         made.item |= said
         return True
 
-    def _raw_only(self, where: str, why: str) -> None:
+    def _raw_only(self, where: str, why: str, help: str = "its raw values are held, without the unit") -> None:
         if self.is_new(where):
-            self.to.warn(RAW_ONLY, f"{where}: {why}", "its raw values are held, without the unit")
+            self.to.warn(RAW_ONLY, f"{where}: {why}", help)
 
     def _limits(self, item: Item, chain: list[Element]) -> Item:
         """The keys of the range that is valid, if there is one and it is that of the value that is held."""
