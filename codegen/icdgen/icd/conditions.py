@@ -10,9 +10,9 @@ from icdgen.icd.model import Condition, Enum, Field
 from icdgen.icd.trees import mappings
 from icdgen.suggest import close_to
 
-_LEAST = "`when` names a field that is always there: an unsigned number without a formula, a value of an enumeration, or a flag"
-_PLAIN = ("uint", "enum", "bool")
-_TYPES = (*_PLAIN, "int", "float", "bytes", "text")
+_LEAST = "`when` names a field that is always there: an integer without a formula, a value of an enumeration, or a flag"
+_PLAIN = ("uint", "int", "enum", "bool")
+_TYPES = (*_PLAIN, "float", "bytes", "text")
 _ODD = {"when": "is not always there itself", "count": "is an array", "size": "is open", "bitfields": "is divided",
     "formula": "is scaled", "points": "is scaled",
 }  # fmt: skip
@@ -97,11 +97,17 @@ def _value(field: Map, said: object, enums: Mapping[str, Enum]) -> int | None:
             return next((one.value for one in members if one.name == said and one.to is None), None)
         if type(said) is not int:
             return None
-        low, high = (-(1 << bits - 1), (1 << bits - 1) - 1) if enum and enum.signed else (0, (1 << bits) - 1)
+        low, high = _range(bits, enum is not None and enum.signed)
         return said if low <= said <= high else None
     if kind == "bool":
         return int(said) if said in (0, 1) and isinstance(said, int) else None
-    return said if type(said) is int and 0 <= said < 1 << bits else None
+    low, high = _range(bits, kind == "int")
+    return said if type(said) is int and low <= said <= high else None
+
+
+def _range(bits: int, is_signed: bool) -> tuple[int, int]:
+    """The least and the largest raw value."""
+    return (-(1 << bits - 1), (1 << bits - 1) - 1) if is_signed else (0, (1 << bits) - 1)
 
 
 def _is_range(field: Map, said: object, enums: Mapping[str, Enum]) -> bool:
@@ -116,7 +122,8 @@ def _allowed(field: Map, enums: Mapping[str, Enum]) -> str:
         enum = enums.get(field.get("enum", ""))
         names = ", ".join(f"`{one.name}`" for one in enum.members[:5]) if enum else "nothing"
         return f"has a value of `{field.get('enum')}`: {names}{' ...' if enum and len(enum.members) > 5 else ''}"
-    return f"is 0 to {(1 << field['bits']) - 1:,}"
+    low, high = _range(field["bits"], field["type"] == "int")
+    return f"is {low:,} to {high:,}"
 
 
 def _odd(field: Map) -> str:
