@@ -115,7 +115,7 @@ const icdgenGiven = ((frames, packets, pasted, stream, envelopes) => {
 
   /** The data of the first packet whose identifier is the id. Throws an Error if there is none. */
   function identified(wire, given) {
-    const own = given.find((one) => wire.ids.includes(one.id));
+    const own = given.find((one) => wire.ids.includes(packets.idOf(one.id, one.extended, wire.id_bits)));
     const { id, extended } = own ?? given[0];
     const others = given.filter((one) => one !== own).length;
     const left = others ? [`${others} other CAN packet${others === 1 ? "" : "s"} left out`] : [];

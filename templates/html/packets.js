@@ -65,8 +65,14 @@ const icdgenPackets = (() => {
   }
 
   /** An identifier with as many digits as tools print. */
+  /** The id of a CAN frame in a node whose ids have so many bits, as `wire_ids.of_can`; null if it has no such frames. */
+  function idOf(id, extended, bits) {
+    if (bits === 32) return extended ? id + 2 ** 31 : id;
+    return bits === 11 && extended ? null : id;
+  }
+
   const idText = (id, extended) => `0x${id.toString(16).toUpperCase().padStart(extended ? 8 : 3, "0")}`;
 
-  return { join, split, partOf, idText };
+  return { join, split, partOf, idOf, idText };
 })();
 if (typeof module !== "undefined") module.exports = icdgenPackets;

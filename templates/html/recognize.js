@@ -304,8 +304,11 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
 
   function ofIdentifier(index, talking, { id, data, extended, time }) {
     const identifier = packets.idText(id, extended);
-    const found = eachOnce(talking.flatMap((speaker) => [...withId(index, speaker, id, data)]));
-    if (!found.length) throw whyNot(index, talking.map((speaker) => [speaker, [id, data]]), `no message has the CAN identifier ${identifier}`);
+    const known = talking
+      .map((speaker) => [speaker, packets.idOf(id, extended, speaker.id_bits)])
+      .filter(([, own]) => own !== null);
+    const found = eachOnce(known.flatMap(([speaker, own]) => [...withId(index, speaker, own, data)]));
+    if (!found.length) throw whyNot(index, known.map(([speaker, own]) => [speaker, [own, data]]), `no message has the CAN identifier ${identifier}`);
     return noted({ ...decided(found, `a packet with the CAN identifier ${identifier}`), time }, `CAN identifier ${identifier} removed`);
   }
 

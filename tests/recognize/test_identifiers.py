@@ -116,3 +116,20 @@ def test_a_message_of_several_packets_has_the_time_of_the_last(shipped):
     ]
     (found,) = recognize(shipped, "\n".join(lines))
     assert (found.message.name, found.time) == (message.name, f"10.{len(pieces) - 1}")
+
+
+@pytest.mark.parametrize(
+    ("packet", "name"), [("100#2a", "Brake"), ("00000100#2a", "Cells"), ("00000101#2a", None), ("101#2a", None)]
+)
+def test_standard_and_extended_frames_of_one_number_are_two_messages(packet, name, tmp_path):
+    messages = [
+        f"  - {{name: {name}, id: {id}, kind: telemetry, length: 1, fields: [{{at: 0, bits: 8, name: Level, type: uint}}]}}\n"
+        for name, id in (("Brake", "0x100"), ("Cells", "0x80000100"))
+    ]
+    node = "icdgen: 1\nnode: {name: both, title: Both, byte_order: little, bit_order: lsb0, id_bits: 32}\nmessages:\n"
+    icd = icd_of(node + "".join(messages), tmp_path)
+    if name is None:
+        with pytest.raises(NotFound):
+            recognize(icd, packet)
+    else:
+        assert [one.message.name for one in recognize(icd, packet)] == [name]

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 from icdgen_runtime.wire.can import CanEvent, CanJoiner, CanMessage, CanPacket
 
+from icdgen.icd import wire_ids
 from icdgen.protocol.sections import CAN_WITH_DATA
 from icdgen.recognize import match
 from icdgen.recognize.asked import Asked
@@ -49,11 +50,16 @@ def by_identifier(speakers: Sequence[Speaker], packets: Sequence[Printed], asked
 
 
 def _by_identifier(speakers: Sequence[Speaker], packet: Printed, asked: Asked) -> Reading:
-    found = match.of_id(speakers, packet.id, packet.data)
+    known = [
+        (speaker, id)
+        for speaker in speakers
+        if (id := wire_ids.of_can(packet.id, packet.extended, speaker.node.id_bits)) is not None
+    ]
+    found = match.of_ids(known, packet.data)
     if not found:
         text = f"no message of {match.nodes_of(speakers)} has the CAN identifier {packet.identifier}"
         help = "`icdgen show NODE` lists what there is; name the message to have the bytes read all the same"
-        raise match.why_not([(one, (packet.id, packet.data)) for one in speakers], NotFound(text, help))
+        raise match.why_not([(speaker, (id, packet.data)) for speaker, id in known], NotFound(text, help))
     one = match.decided(found, f"a packet with the CAN identifier {packet.identifier}", asked)
     return replace(one, time=packet.time).noted(f"CAN identifier {packet.identifier} removed")
 

@@ -50,9 +50,9 @@ def by_id(speakers: Sequence[Speaker], body: bytes) -> list[Reading]:
     return _each_once(found for speaker in speakers for found in _of_speaker(speaker, body))
 
 
-def of_id(speakers: Sequence[Speaker], id: int, data: bytes) -> list[Reading]:
-    """What data can be that came with an id, but not behind it."""
-    return _each_once(found for speaker in speakers for found in _with_id(speaker, id, data))
+def of_ids(known: Sequence[tuple[Speaker, int]], data: bytes) -> list[Reading]:
+    """What data can be that came with an id, but not behind it; of each speaker the id as it would be there."""
+    return _each_once(found for speaker, id in known for found in _with_id(speaker, id, data))
 
 
 def by_length(speakers: Sequence[Speaker], data: bytes) -> list[Reading]:

@@ -60,6 +60,7 @@ def _speaker(relations: Relations, node: Node, numbers: dict[tuple[str, str], in
         "telecommands": numbers_of(ids.telecommand, numbers),
         "telemetry": numbers_of(ids.telemetry, numbers),
         "id_bytes": wire_ids.size(node.id_bits),
+        "id_bits": node.id_bits,
         "errors": {str(code): key.replace("_", " ") for key, code in known.errors.items()},
     }
     found |= wire.framing_facts(known)

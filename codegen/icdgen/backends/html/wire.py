@@ -73,6 +73,7 @@ def page_facts(message: Message, wire: Wire) -> dict[str, object]:
     """What the decoder of a page needs to know: framing, ids and checksums."""
     facts: dict[str, object] = {
         "ids": list(message.ids),
+        "id_bits": wire.facts.node.id_bits,
         "id": message.telecommand_id if message.telecommand_id is not None else message.telemetry_id,
         "command": message.telecommand_id is not None,
         "telemetry": message.telemetry_id,
