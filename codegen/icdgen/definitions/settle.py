@@ -1,27 +1,32 @@
-"""Until `icdgen check` is content: identifiers for names that are none, and messages that the format refuses left out."""
+"""Make a network an ICD that `icdgen check` accepts: identifiers for names that are none, and as little left out as possible.
+
+What a rule refuses degrades step by step: a field loses formula, limits and names (its raw value stays), then the field is
+left out, then its message. A unit that is refused is left out, an enumeration leaves numbers behind.
+"""
 
 from __future__ import annotations
 
 import json
 import tempfile
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
 from icdgen import naming
-from icdgen.definitions.model import NOT_HELD, Definitions, Item, Network, unreadable
+from icdgen.definitions.model import NOT_HELD, RAW_ONLY, Definitions, Item, Network, unreadable
 from icdgen.diagnostics import Finding
 from icdgen.loading import load
 
-ROUNDS = 30  # a rule may speak only after another is satisfied
-_NONE, _RESERVED, _CLASH, _LONG = "ICD072", "ICD070", "ICD071", "ICD073"
-_OF_NAMES = frozenset({_NONE, _RESERVED, _CLASH, _LONG})
-_SHORT = {"message": 24}  # characters that are left of a name that is too long
-_SHORTER = 16  # of all others
-_TRIES = 2  # identifiers for one name
+ROUNDS = 60  # a rule may speak only after another is satisfied
+_NONE, _RESERVED, _CLASH = "ICD072", "ICD070", "ICD071"
+_OF_NAMES = frozenset({_NONE, _RESERVED, _CLASH})
+_TRIES = 6  # identifiers for one name
+_MEANING = ("formula", "points", "outside", "unit", "special", "min", "max", "above", "below", "enum")
+_FIELD, _MEMBER, _UNIT = "field", "value", "unit"
 
 
 class _Line(NamedTuple):
-    """What stands in a line: a thing with a name, the whole that goes if it cannot be held, and what tells it from others."""
+    """What stands in a line: a thing with a name, the whole that it is part of, and what distinguishes it from others."""
 
     item: Item
     whole: Item
@@ -30,7 +35,7 @@ class _Line(NamedTuple):
 
 
 def settle(network: Network, to: Definitions) -> list[str]:
-    """Changes the network until nothing is found; what had to go is noted in ``to``. Names with the identifiers that they got.
+    """Change the network until nothing is found; what had to go is noted in ``to``. Names with the identifiers that they got.
 
     Raises `Findings` if it is too large.
     """
@@ -42,60 +47,175 @@ def settle(network: Network, to: Definitions) -> list[str]:
             findings = [one for one in load([file]).findings if one.severity == "error" or one.code in _OF_NAMES]
             if not findings:
                 break
-            gone: dict[int, tuple[_Line, Finding]] = {}
-            renamed = False
+            refused: dict[int, tuple[_Line, Finding]] = {}
+            taken = _Taken(lines.values())
+            has_changed = False
             for finding in findings:
                 line = lines.get(finding.place.line)
                 if line is None and network.protocol is not None:
                     to.warn(NOT_HELD, f"the header is not held: {finding.message}", finding.help, "error")
-                    network.protocol, renamed = None, True
+                    network.protocol, has_changed = None, True
                     network.seeds.clear()
                     break
                 if line is None:
                     raise unreadable(to.file, f"what it defines makes no ICD: {finding.message}", finding.help)
                 tried = tries.get(id(line.item), 0)
-                if finding.code in _OF_NAMES and tried < (1 if finding.code == _LONG else _TRIES):
+                if finding.code in _OF_NAMES and tried < _TRIES:
                     tries[id(line.item)] = tried + 1
-                    line.item["identifier"] = _identifier(line, finding.code, tried)
-                    renamed = True
+                    line.item["identifier"] = taken.add(line, _identifier(line, finding.code, tried))
+                    has_changed = True
                 elif finding.severity == "error":
-                    gone.setdefault(id(line.whole), (line, finding))
-            for line, finding in gone.values():
-                _take_out(network, line, finding, to)
-            if not gone and not renamed:
+                    refused.setdefault(id(line.item), (line, finding))
+            for line, finding in refused.values():
+                _degrade(network, line, finding, to)
+            if not refused and not has_changed:
                 break
-    named = {id(line.item): line for line in lines.values() if id(line.item) in tries}
+    _declare_structs(network)
+    named = {id(one.item): one for one in lines.values() if id(one.item) in tries and "identifier" in one.item}
     return [f"{one.what} `{one.item['name']}`: `{one.item['identifier']}`" for one in named.values()]
+
+
+class _Taken:
+    """Words of the names among which an identifier must be the only one."""
+
+    def __init__(self, lines: Iterable[_Line]) -> None:
+        self.words: dict[object, set[tuple[str, ...]]] = {}
+        for line in lines:
+            if line.what != _UNIT:
+                self._among(line).add(naming.words(line.item.get("identifier", line.item["name"])))
+
+    def _among(self, line: _Line) -> set[tuple[str, ...]]:
+        is_part = line.what in (_FIELD, _MEMBER)
+        return self.words.setdefault((line.what, id(line.whole) if is_part else None), set())
+
+    def add(self, line: _Line, wanted: str) -> str:
+        """The wanted identifier, with a number behind it if another one has the same words."""
+        among, number, text = self._among(line), 1, wanted
+        while naming.words(text) in among:
+            number += 1
+            text = f"{wanted} {number}"
+        among.add(naming.words(text))
+        return text
 
 
 def _identifier(line: _Line, code: str, attempt: int) -> str:
     """Words for a name, by the rule of docs/guides/import-definitions.md."""
     name, number = line.item["name"], str(line.number).replace("-", "minus ")
-    if not naming.words(name) or attempt:
+    if not naming.words(name) or attempt == 1:
         return f"{line.what} {number}"
     plain = name if name.isascii() else " ".join(naming.words(name))
+    if attempt > 1:
+        return f"{plain} {line.what} {number} {attempt}"
     if code == _CLASH:
         return f"{plain} values" if line.what == "enumeration" else f"{plain} {number}"
-    if code == _LONG:
-        kept = ""
-        for word in naming.words(name):
-            if kept and len(kept) + len(word) >= _SHORT.get(line.what, _SHORTER):
-                break
-            kept += f"{word} "
-        return f"{kept}{number}"
     return f"{line.what} {plain}" if code == _NONE else f"{plain} {line.what}"
 
 
-def _take_out(network: Network, line: _Line, finding: Finding, to: Definitions) -> None:
+def _degrade(network: Network, line: _Line, finding: Finding, to: Definitions) -> None:
+    """Take as little as possible of what a finding refuses out of the network."""
     reason = f"{finding.message} ({finding.code})"
-    for items in (network.messages, network.enums, network.structs):
-        for index, item in enumerate(items):
-            if item is line.whole:
-                del items[index]
-                if items is network.messages:
-                    network.seeds.pop(item["name"], None)
-                    to.left_out(item["name"], reason)
-                return
+    if line.what == _UNIT:
+        for field in network.fields:
+            if field.get("unit") == line.item["symbol"]:
+                del field["unit"]
+        to.warn(RAW_ONLY, f"unit `{line.item['symbol']}` is left out: {reason}", "its fields have no unit", "error")
+    elif line.what in (_FIELD, _MEMBER) and line.item is not line.whole:
+        _degrade_part(network, line, reason, to)
+    elif any(line.whole is one for one in network.enums):
+        _drop_enumeration(network, line.whole, reason, to)
+    else:
+        _take_out(network, line.whole, reason, to)
+
+
+def _degrade_part(network: Network, line: _Line, reason: str, to: Definitions) -> None:
+    """A field becomes raw, then goes; a member of an enumeration goes."""
+    owner, item = line.whole["name"], line.item
+    if line.what == _MEMBER:
+        _remove(line.whole["members"], item)
+        text = f"enumeration `{owner}`: the name `{item['name']}` of {item['value']} is left out: {reason}"
+        to.warn(RAW_ONLY, text, "its value stays a number", "error")
+        if not line.whole["members"]:
+            _drop_enumeration(network, line.whole, "no name of it can be held", to)
+        return
+    whole = "message" if any(line.whole is one for one in network.messages) else "struct"
+    if item.keys() & set(_MEANING) and "count" not in item:
+        _make_raw(network, item)
+        text = f"{whole} `{owner}`, `{item['name']}`: {reason}"
+        to.warn(RAW_ONLY, text, "its raw value is held, without formula, unit, limits and names", "error")
+        return
+    fields = line.whole["fields"]
+    _remove(fields, item)
+    if fields and not _is_open(fields) and "length" in line.whole:
+        to.without_field(owner, item["name"], reason)
+        if whole == "message":
+            _reserve(network, line.whole)
+    else:
+        _take_out(network, line.whole, reason, to)
+
+
+def _make_raw(network: Network, item: Item) -> None:
+    if (enum := item.get("enum")) is not None:
+        members: list[Item] = next((one["members"] for one in network.enums if one["name"] == enum), [])
+        item["type"] = "int" if any(one["value"] < 0 for one in members) else "uint"
+    for key in _MEANING:
+        item.pop(key, None)
+
+
+def _drop_enumeration(network: Network, enum: Item, reason: str, to: Definitions) -> None:
+    to.warn(RAW_ONLY, f"enumeration `{enum['name']}` is left out: {reason}", "its fields are numbers", "error")
+    for field in network.fields:
+        if field.get("enum") == enum["name"]:
+            _make_raw(network, field)
+    _remove(network.enums, enum)
+
+
+def _is_open(fields: list[Item]) -> bool:
+    return any("up_to" in one or "after" in one for one in fields)
+
+
+def _reserve(network: Network, message: Item) -> None:
+    """Bytes at the end of a message that no field has any longer become reserved."""
+    lengths = {one["name"]: 8 * one["length"] for one in network.structs if "length" in one}
+    end = 0
+    for field in message["fields"]:
+        bits = lengths.get(field.get("struct"), field.get("bits", 0))
+        end = max(end, -(-(field["at"] + bits * field.get("count", 1)) // 8))
+    message.pop("reserved", None)
+    if message["length"] > end:
+        message["reserved"] = message["length"] - end
+
+
+def _take_out(network: Network, whole: Item, reason: str, to: Definitions) -> None:
+    """Leave out a message; of a struct the fields that have it follow, for it is unknown then."""
+    if any(whole is one for one in network.messages):
+        network.seeds.pop(whole["name"], None)
+        to.left_out(whole["name"], reason)
+        _remove(network.messages, whole)
+    else:
+        to.warn(RAW_ONLY, f"struct `{whole['name']}` is left out: {reason}", "so are the fields that have it", "error")
+        _remove(network.structs, whole)
+
+
+def _remove(items: list[Item], item: Item) -> None:
+    items[:] = [one for one in items if one is not item]
+
+
+def _declare_structs(network: Network) -> None:
+    """Drop structs that no message has any longer, directly or within others."""
+    by_name = {one["name"]: one for one in network.structs}
+    needed: set[str] = set()
+    waiting = list(_structs_in(network.messages))
+    while waiting:
+        name = waiting.pop()
+        if name in by_name and name not in needed:
+            needed.add(name)
+            waiting += _structs_in([by_name[name]])
+    network.structs = [one for one in network.structs if one["name"] in needed]
+    network.declare(network.enums)
+
+
+def _structs_in(owners: Iterable[Item]) -> Iterator[str]:
+    return (field["struct"] for owner in owners for field in owner.get("fields", ()) if "struct" in field)
 
 
 def _write(file: Path, network: Network) -> dict[int, _Line]:
@@ -108,12 +228,16 @@ def _write(file: Path, network: Network) -> dict[int, _Line]:
         if line is not None:
             found[len(lines)] = line
 
-    for key in [key for key in tree if key not in ("enums", "structs", "messages")]:
+    for key in [key for key in tree if key not in ("units", "enums", "structs", "messages")]:
         add(f"{json.dumps(key)}: {json.dumps(tree[key])},")
+    add('"units": [')
+    for one in tree.get("units", ()):
+        add(json.dumps(one) + ",", _Line(one, one, _UNIT, one["symbol"]))
+    add("],")
     for section, inner, what, part in (
-        ("enums", "members", "enumeration", "value"),
-        ("structs", "fields", "struct", "field"),
-        ("messages", "fields", "message", "field"),
+        ("enums", "members", "enumeration", _MEMBER),
+        ("structs", "fields", "struct", _FIELD),
+        ("messages", "fields", "message", _FIELD),
     ):
         add(f'"{section}": [')
         for number, item in enumerate(tree.get(section, ())):
