@@ -6,6 +6,7 @@ import pytest
 
 from icdgen.definitions import can, kinds, run
 from icdgen.diagnostics import Findings
+from icdgen.icd import wire_ids
 from tests.conftest import ROOT
 
 FILES = ROOT / "tests" / "definitions" / "files"
@@ -40,10 +41,16 @@ def test_names_ids_lengths_senders_and_comments_arrive(train):
     }  # fmt: skip
 
 
-def test_an_id_of_29_bits_is_without_the_bit_that_marks_it(train):
+def test_an_id_of_29_bits_is_marked_only_among_those_of_11_bits(train, tmp_path):
     (tree,) = train.trees.values()
+    assert tree["node"]["id_bits"] == 32
+    assert message(train, "BrakeDetails")["id"] == 2566844926 and message(train, "DriveStatus")["id"] == 256
+    only = 'BU_: Drive\nBO_ 2566844926 BrakeDetails: 1 Drive\n SG_ Page : 0|8@1+ (1,0) [0|0] "" Drive\n'
+    (tmp_path / "only.dbc").write_text(only)
+    read = run.read(tmp_path / "only.dbc", can.Dbc())
+    (tree,) = read.trees.values()
     assert tree["node"]["id_bits"] == 29
-    assert message(train, "BrakeDetails")["id"] == 2566844926 - (1 << 31)
+    assert message(read, "BrakeDetails")["id"] == 2566844926 - (1 << 31)
 
 
 def test_units_formulas_and_limits_arrive_where_they_say_more_than_the_width(train):
@@ -70,7 +77,7 @@ def test_values_with_names_are_enumerations_and_of_scaled_fields_special_values(
         (0, None, "Off 0", None), (1, None, "2nd gear", "value 2nd gear"), (2, 3, "Spare", None), (5, None, "Off 5", None),
     ]  # fmt: skip
     assert field(train, "DriveStatus", "Torque")["special"] == [{"value": 2047, "meaning": "not known"}]
-    assert [one.code for one in train.definitions.troubles] == ["IMP074", "IMP073", "IMP071"]
+    assert [one.code for one in train.definitions.troubles] == ["IMP074", "IMP073", "IMP071", "IMP085"]
 
 
 def test_the_smaller_of_overlapping_fields_is_a_view(train):
@@ -95,8 +102,8 @@ def test_names_that_no_language_takes_get_identifiers_and_are_listed(train):
 
 def test_a_fault_takes_with_it_only_what_it_spoils(faulty):
     (tree,) = faulty.trees.values()
-    assert [one["name"] for one in tree["messages"]] == ["Wide", "Short", "Fine"]
-    assert message(faulty, "Wide")["id"] == 13274
+    assert [one["name"] for one in tree["messages"]] == ["Wide", "Short", "Nested", "Fine"]
+    assert message(faulty, "Wide")["id"] == wire_ids.CAN_EXTENDED_FLAG + 13274
     assert [one["name"] for one in message(faulty, "Short")["fields"]] == ["Inside"]
     found = [(one.code, one.spot.line, one.message) for one in faulty.definitions.troubles]
     assert found == [
@@ -106,9 +113,14 @@ def test_a_fault_takes_with_it_only_what_it_spoils(faulty):
         ("IMP075", 21, '`CM_ "no end"` is not understood'),
         ("IMP076", 27, "`VAL_` names `Missing` of message 515, which has no such signal"),
         ("IMP072", None, "message `Short`: `Outside` ends behind its 2 bytes"),
-        ("IMP070", None, "message `Nested` is not held: `Value` depends on `Inner`, which is not always there itself"),
+        (
+            "IMP091",
+            None,
+            "message `Nested`, `Value` is left out: it depends on `Inner`, which is not always there itself",
+        ),
+        ("IMP085", None, "`receivers` of `signal` is not used (5 times, first: message `Wide`, `Speed`)"),
     ]
-    assert faulty.failed and (faulty.held, faulty.definitions.total) == (3, 4)
+    assert faulty.failed and (faulty.held, faulty.definitions.total) == (4, 4)
 
 
 def test_a_signal_that_begins_before_its_message_is_left_out(tmp_path):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 
 import pytest
@@ -45,8 +46,8 @@ def test_what_is_missing_is_told_to_programs_and_by_the_status(folder):
     result = icdgen("import", "faulty.dbc", "--format", "json", "--kind", "dbc", "--dry-run", cwd=folder)
     assert result.returncode == 1
     said = json.loads(result.stdout)
-    assert (said["messages"], said["held"]) == (4, 3) and not (folder / "icd").exists()
-    assert {"IMP070", "IMP075"} <= {one["code"] for one in said["findings"]}
+    assert (said["messages"], said["held"]) == (4, 4) and not (folder / "icd").exists()
+    assert {"IMP091", "IMP075"} <= {one["code"] for one in said["findings"]}
 
 
 def test_a_kind_that_there_is_not_and_a_broken_file_are_no_tracebacks(folder):
@@ -64,3 +65,10 @@ def test_what_the_library_notes_by_the_way_is_not_printed(tmp_path):
     result = icdgen("import", "twice.dbc", "--dry-run", cwd=tmp_path)
     assert "Overwriting" not in result.stderr + result.stdout
     assert "error[IMP070]: message `Twice` is not held: " in result.stdout + result.stderr
+
+
+def test_the_help_lists_all_kinds_of_definitions(folder):
+    from icdgen.definitions import kinds
+
+    words = re.findall(r"[a-z0-9]+", icdgen("import", "--help", cwd=folder).stdout)
+    assert set(kinds._BUILT_IN) <= set(words)

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from icdgen.definitions import frames, wording
-from icdgen.definitions.enumerations import members
-from icdgen.definitions.model import Definitions
+from icdgen.definitions.enumerations import Enumerations, members
+from icdgen.definitions.model import Definitions, raws
 from icdgen.icd.formula import parse
 
 PLACES = st.builds(frames.Place, st.integers(0, 480), st.integers(1, 32), st.sampled_from([frames.LITTLE, frames.BIG]))
@@ -26,9 +26,37 @@ def test_bits_are_the_same_however_they_are_counted(place):
 def test_each_value_with_a_name_has_one_member_and_each_member_a_name_of_its_own(choices):
     found = members(choices, 0, 31, "here", Definitions(""))
     values = [value for one in found for value in range(one["value"], one.get("to", one["value"]) + 1)]
-    assert values == sorted(value for value in choices if 0 <= value <= 31)
+    assert values == sorted(value for value, name in choices.items() if 0 <= value <= 31 and name)
     names = [one["name"] for one in found]
     assert len(set(names)) == len(names) and all(names)
+
+
+@given(
+    st.integers(1, 6), st.booleans(), st.dictionaries(st.integers(-32, 63), st.sampled_from(["Off", "On", "SNA"])),
+    st.sampled_from([{}, {"unit": "km/h"}]), st.sampled_from([{}, {"formula": "raw*0.1"}]),
+    st.dictionaries(st.sampled_from(["min", "max"]), st.integers(-8, 8)),
+)  # fmt: skip
+def test_values_with_names_keep_their_sign_and_a_quantity_its_unit_limits_and_formula(
+    bits, is_signed, choices, unit, formula, limits
+):
+    kind = "int" if is_signed else "uint"
+    field, enums, notes = {"type": kind, **unit, **formula, **limits}, Enumerations(), Definitions("")
+    enums.hold(field, bits, choices, "Gear", "Status", "message `Status`, `Gear`", notes)
+    declared = {one["name"]: one["members"] for one in enums.declared()}
+    first, last = raws(bits, is_signed)
+    possible = {value for value in choices if first <= value <= last}
+    if field["type"] == "enum":
+        named = [value for one in declared["Gear"] for value in range(one["value"], one.get("to", one["value"]) + 1)]
+        assert is_signed == any(value < 0 for value in named), "the sign of an enumeration is that of its values"
+        low, high = max(first, limits.get("min", first)), min(last, limits.get("max", last))
+        assert not formula and (not (unit or limits) or set(range(low, high + 1)) <= set(named))
+    else:
+        assert field["type"] == kind and field.items() >= (unit | formula | limits).items() and not declared
+        named = [one["value"] for one in field.get("special", ())]
+        is_covered = possible and not formula and not unit and not limits and is_signed == any(v < 0 for v in possible)
+        assert not is_covered, "names without a unit are an enumeration"
+    assert sorted(named) == sorted(possible), "each value that the field can have keeps its name"
+    assert len(choices) == len(possible) or any(one.code == "IMP074" for one in notes.troubles)
 
 
 NUMBERS = st.floats(-1e9, 1e9).filter(lambda number: abs(number) > 1e-12)

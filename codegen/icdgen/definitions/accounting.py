@@ -93,6 +93,15 @@ class Account:
                         line = value.key_at(key).line if key in value.spots else None
                         self.add(value.owner, str(key), value.path, line)
 
+    def attributes(self, of: AccountedObject, owner: str, place: str) -> None:
+        """Count the public attributes of an object of a library that have a value and were not read."""
+        for key in () if of.is_settled else dir(of.object):
+            if key.startswith("_") or key in of.read_keys:
+                continue
+            value = getattr(of.object, key)
+            if not callable(value) and value is not None and value is not False and value not in ("", [], {}, ()):
+                self.add(owner, key, place)
+
     def report(self, to: Definitions) -> None:
         """Add a finding for each kind of unused key, in the order of the source."""
         listed = sorted(self.entries.items(), key=lambda item: (item[1].line or 0, item[0]))
@@ -189,6 +198,23 @@ class _Attributes(Mapping[str, str]):
 
     def __len__(self) -> int:
         return len(Element.keys(self.element))
+
+
+class AccountedObject:
+    """Object of a library that records which of its attributes were read."""
+
+    def __init__(self, object: Any) -> None:
+        self.object = object
+        self.read_keys: set[str] = set()
+        self.is_settled = False
+
+    def settle(self) -> None:
+        """Mark the object as read, because a finding names it already."""
+        self.is_settled = True
+
+    def __getattr__(self, name: str) -> Any:
+        self.read_keys.add(name)
+        return getattr(self.object, name)
 
 
 class AccountedMap(Map):

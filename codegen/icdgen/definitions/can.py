@@ -9,14 +9,23 @@ from pathlib import PurePath
 from typing import Any
 
 from icdgen.definitions import dbc, frames, safe_xml
-from icdgen.definitions.enumerations import Enumerations, members, special
+from icdgen.definitions.accounting import Account, AccountedObject
+from icdgen.definitions.enumerations import Enumerations
 from icdgen.definitions.model import Definitions, Item, Network, NotHeld, raws, unreadable
 from icdgen.definitions.wording import formula, limits, line, node_name, printed, summary, unit
 from icdgen.icd.fmt.emit import Spelled
+from icdgen.icd.wire_ids import CAN_BOTH, CAN_EXTENDED, CAN_EXTENDED_FLAG, CAN_STANDARD
 
 BEYOND_FRAME = "IMP072"
 _UNHEARD = logging.NullHandler()
-_STANDARD, _EXTENDED = 11, 29  # bits of an id
+# What an ICD has no use for: how cantools sees a signal or message, and what is used under another name.
+_WITHOUT_MEANING = frozenset(
+    {
+        "conversion", "is_multiplexer", "minimum", "maximum", "initial", "invalid", "comments", "signal_tree", "codecs",
+        "signals", "unused_bit_pattern", "header_byte_order", "autosar", "dbc", "receivers_of_signals", "is_fd", "frame_id",
+        "is_extended_frame", "bus_name", "message.receivers", "contained_messages",
+    }
+)  # fmt: skip
 _NOBODY = ("", "Vector__XXX")  # as a DBC names a sender that is not known
 
 
@@ -32,10 +41,16 @@ class _Database:
     def read(self, file: str, data: bytes) -> Definitions:
         """Raises `Findings` for a file that cantools cannot read."""
         to = Definitions(file)
+        account = Account(_WITHOUT_MEANING)
         for bus, messages in _buses(self.database(file, data, to)).items():
             stem = PurePath(file).stem
-            to.networks.append(_network(f"{stem} {bus}".strip(), messages, to))
+            to.networks.append(_network(f"{stem} {bus}".strip(), messages, account, to))
+        self.account_for(_text(data), account, {one.spot.line for one in to.troubles})
+        account.report(to)
         return to
+
+    def account_for(self, text: str, account: Account, reported: set[int | None]) -> None:
+        """Count what the file says beside its messages and signals, and nobody used, but for lines that a finding names."""
 
     def database(self, file: str, data: bytes, to: Definitions) -> Any:
         """cantools' own reading."""
@@ -63,7 +78,13 @@ class Dbc(_Database):
     begins = r"(?m)^(?:BO_ \d+ |BU_\s*:)"
 
     def load(self, text: str, to: Definitions) -> Any:
-        return dbc.mended(text.replace("\r\n", "\n"), lambda mended: super(Dbc, self).load(mended, to), to)
+        plain = dbc.with_short_names(text.replace("\r\n", "\n"))
+        database = dbc.mended(plain, lambda mended: super(Dbc, self).load(mended, to), to)
+        dbc.give_long_names(database.messages)
+        return database
+
+    def account_for(self, text: str, account: Account, reported: set[int | None]) -> None:
+        dbc.account_for(text.replace("\r\n", "\n"), account, reported)
 
 
 class Sym(_Database):
@@ -116,45 +137,76 @@ def _buses(database: Any) -> dict[str, list[Any]]:
     return found if len(found) > 1 else {"": [one for messages in found.values() for one in messages]}
 
 
-def _network(title: str, messages: list[Any], to: Definitions) -> Network:
-    is_extended = any(message.is_extended_frame for message in messages)
+def _network(title: str, messages: list[Any], account: Account, to: Definitions) -> Network:
+    formats = {bool(message.is_extended_frame) for message in messages}
+    id_bits = CAN_BOTH if len(formats) > 1 else CAN_EXTENDED if True in formats else CAN_STANDARD
     order = frames.usual(signal_place(signal) for message in messages for signal in message.signals)
-    head = {**frames.ORDERS[order], "id_bits": _EXTENDED if is_extended else _STANDARD}
+    head = {**frames.ORDERS[order], "id_bits": id_bits}
     network, enums = Network(node_name(title + ".can"), title, head), Enumerations()
     for message in messages:
         to.total += 1
+        id = message.frame_id | (CAN_EXTENDED_FLAG if id_bits == CAN_BOTH and message.is_extended_frame else 0)
+        of, signals = AccountedObject(message), [AccountedObject(signal) for signal in message.signals]
         try:
-            network.messages.append(_message(message, order, enums, to))
+            network.messages.append(_message(of, signals, id, order, enums, to))
         except NotHeld as why:
             to.left_out(message.name, why)
-    network.enums = enums.declared()
+            continue
+        account.attributes(of, "message", f"`{message.name}`")
+        for signal in signals:
+            account.attributes(signal, "signal", f"message `{message.name}`, `{signal.name}`")
+    network.declare(enums.declared())
     return network
 
 
-def _message(message: Any, order: str, enums: Enumerations, to: Definitions) -> Item:
+def _message(message: Any, signals: list[Any], id: int, order: str, enums: Enumerations, to: Definitions) -> Item:
     if message.is_container:
         raise NotHeld("it holds other messages in an order that each frame tells")
-    made: Item = {"name": message.name, "id": Spelled(f"{message.frame_id:#05X}".replace("X", "x"))}
+    made: Item = {"name": message.name, "id": Spelled(f"{id:#05X}".replace("X", "x"))}
     made |= {"kind": "telemetry", "length": message.length}
-    if senders := [one for one in message.senders if one not in _NOBODY]:
+    senders = [sender for sender in message.senders if sender not in _NOBODY]
+    if senders:
         made["group"] = senders[0]
-    made |= summary(message.comment)
+    cycle = message.cycle_time
+    made |= summary(
+        _sentences(
+            message.comment,
+            f"Sent every {printed(cycle)} ms." if cycle else "",
+            f"Also sent by {', '.join(senders[1:])}." if len(senders) > 1 else "",
+        )
+    )
     placed: list[tuple[Item, frames.Place]] = []
-    for signal in message.signals:
+    for signal in signals:
         place = signal_place(signal)
         if not 0 <= place.at <= place.at + place.bits <= 8 * message.length:
             where = "begins before" if place.at < 0 else "ends behind"
             what = f"message `{message.name}`: `{signal.name}` {where} its {message.length} bytes"
             to.warn(BEYOND_FRAME, what, "the signal is left out", "error")
+            signal.settle()
             continue
-        field = _field(message, signal, enums, to)
+        try:
+            field = _field(message, signal, signals, enums, to)
+        except NotHeld as why:
+            to.without_field(message.name, signal.name, why)
+            signal.settle()
+            continue
         same = next((one for one, other in placed if other == place and _is_alternative(one, field)), None)
         if same is None:
             placed.append((field, place))
         else:
             (by,) = field["when"]
             same["when"] = {by: [*frames.listed(same["when"][by]), *frames.listed(field["when"][by])]}
-    return frames.laid_out(made, placed, order, to)
+    missing = {name for field, _ in placed for name in field.get("when", ())} - {field["name"] for field, _ in placed}
+    for field, _ in placed:
+        if missing & set(field.get("when", ())):
+            to.without_field(message.name, field["name"], "the multiplexer that it depends on is left out")
+    return frames.laid_out(made, [one for one in placed if not missing & set(one[0].get("when", ()))], order, to)
+
+
+def _sentences(*texts: str | None) -> str:
+    """Texts one after the other, each ended like a sentence."""
+    plain = [text for each in texts if (text := line(each))]
+    return " ".join(text if text.endswith((".", "!", "?")) or len(plain) == 1 else f"{text}." for text in plain)
 
 
 def _is_alternative(one: Item, other: Item) -> bool:
@@ -170,31 +222,33 @@ def signal_place(signal: Any) -> frames.Place:
     return frames.Place(signal.start // 8 * 8 + 7 - signal.start % 8, signal.length, frames.BIG)
 
 
-def _field(message: Any, signal: Any, enums: Enumerations, to: Definitions) -> Item:
+def _field(message: Any, signal: Any, signals: list[Any], enums: Enumerations, to: Definitions) -> Item:
     kind = "float" if signal.is_float else "int" if signal.is_signed else "uint"
-    one: Item = {"name": signal.name, "type": kind, **unit(signal.unit), **summary(signal.comment)}
+    start = "" if signal.raw_initial is None else f"Start value: {printed(signal.raw_initial)} (raw)."
+    one: Item = {"name": signal.name, "type": kind, **unit(signal.unit), **summary(_sentences(signal.comment, start))}
     factor, offset = printed(signal.scale), printed(signal.offset)
-    scale = formula(factor, offset)
     first, last = _range(signal)
-    choices = {int(value): str(name) for value, name in (signal.choices or {}).items()}
+    ends = sorted(Fraction(factor) * value + Fraction(offset) for value in (first, last))
+    low, high = (None if end is None else Fraction(printed(end)) for end in (signal.minimum, signal.maximum))
+    one |= formula(factor, offset) | limits(low, high, ends[0], ends[1])
     where = f"message `{message.name}`, `{signal.name}`"
-    named = members(choices, first, last, where, to) if choices and not signal.is_float else []
-    if named and scale:
-        one |= special(named)
-    elif named:
-        one["type"] = "enum"
-        enums.give(one, signal.name, message.name, named)
-    elif signal.length == 1 and kind == "uint" and not scale:
+    if choices := {int(value): str(name) for value, name in (signal.choices or {}).items()}:
+        enums.hold(one, signal.length, choices, signal.name, message.name, where, to)
+    elif _is_flag(signal):
         one["type"] = "bool"
-    if one["type"] in ("enum", "bool"):
         one.pop("unit", None)
-    else:
-        ends = sorted(Fraction(factor) * value + Fraction(offset) for value in (first, last))
-        low, high = (None if end is None else Fraction(printed(end)) for end in (signal.minimum, signal.maximum))
-        one |= scale | limits(low, high, ends[0], ends[1])
-    if when := _condition(message, signal):
+    if (invalid := signal.raw_invalid) is not None and one["type"] in ("uint", "int"):
+        if first <= invalid <= last and invalid not in choices:
+            one["special"] = [*one.get("special", ()), {"value": int(invalid), "meaning": "invalid"}]
+    if when := _condition(signal, signals):
         one["when"] = when
     return one
+
+
+def _is_flag(signal: Any) -> bool:
+    """Whether a signal is a bit without further meaning."""
+    is_plain = not (signal.choices or signal.is_signed or signal.is_float)
+    return is_plain and signal.length == 1 and (signal.scale, signal.offset) == (1, 0)
 
 
 def _range(signal: Any) -> tuple[int, int]:
@@ -204,21 +258,22 @@ def _range(signal: Any) -> tuple[int, int]:
     return raws(signal.length, signal.is_signed)
 
 
-def _condition(message: Any, signal: Any) -> Item:
+def _condition(signal: Any, signals: list[Any]) -> Item:
     """The multiplexer and its values with which a signal is there."""
     if signal.multiplexer_ids is None:
         return {}
     told = signal.multiplexer_signal
-    by = next((one for one in message.signals if one.name == told), None)
+    by = next((one for one in signals if one.name == told), None)
     if by is None:
-        raise NotHeld(f"`{signal.name}` depends on `{told}`, which it does not have")
+        raise NotHeld(f"it depends on `{told}`, which is no signal of the message")
     if by.multiplexer_ids is not None:
-        raise NotHeld(f"`{signal.name}` depends on `{told}`, which is not always there itself")
-    if by.is_signed or by.is_float or (by.scale, by.offset) != (1, 0):
-        raise NotHeld(f"`{signal.name}` depends on `{told}`, which is no plain unsigned number")
+        raise NotHeld(f"it depends on `{told}`, which is not always there itself")
+    if by.is_float or (by.scale, by.offset) != (1, 0):
+        raise NotHeld(f"it depends on `{told}`, which is no plain number")
+    first, last = raws(by.length, by.is_signed)
     values = sorted(set(signal.multiplexer_ids))
-    within = [value for value in values if value < 1 << by.length]
+    within = [value for value in values if first <= value <= last]
     if not within:
-        raise NotHeld(f"`{signal.name}` depends on values of `{told}` that it cannot have")
-    said: list[Any] = [bool(one) for one in within] if by.length == 1 and not by.choices else within
+        raise NotHeld(f"it depends on values of `{told}` that it cannot have")
+    said: list[Any] = [bool(one) for one in within] if _is_flag(by) else within
     return {told: said[0] if len(said) == 1 else said}

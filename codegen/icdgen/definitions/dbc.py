@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
-from typing import Any
+from collections import defaultdict
+from collections.abc import Callable, Container, Iterator
+from types import SimpleNamespace
+from typing import Any, NamedTuple
 
+from icdgen.definitions.accounting import Account
 from icdgen.definitions.model import Definitions
+from icdgen.definitions.wording import line as one_line
 
 NOT_UNDERSTOOD = "IMP075"
 REPAIRED = "IMP076"
 MOST = 50  # faults of one file
+_LONGEST_NAME = 400
 
 _EXTENDED = 0x80000000
 _WITH_ID = re.compile(
@@ -24,19 +29,159 @@ _UNUSED = re.compile(r'^\s*(VAL_|SIG_VALTYPE_) (\d+) (\w+)"?$', re.MULTILINE)
 _STATEMENT = re.compile(r"\s*[A-Z][A-Z_]*_\b")
 
 
+_STRING_OR_KEYWORD = re.compile(r'"(?:\\"|[^"])*"|^[ \t]*([A-Z][A-Z_]*)(?=[ \t]*[:"\w])', re.MULTILINE)
+_OF_MESSAGE = re.compile(r'[A-Z_]+\s+(?:"[^"]*"\s+)?(?:(?:BO_|SG_)\s+)?(\d+)\b')
+_ATTRIBUTE = re.compile(r'BA_\s+"([^"]*)"\s*((?:BO_|SG_|BU_|EV_)[^"]*?)?\s*(?:"[^"]*"|[-+.\w]+)\s*;')
+_COMMENT = re.compile(r"CM_\s+(\w*)")
+# Statements that cantools and `can` use, or that only declare what others use.
+_USED = frozenset(
+    {
+        "BO_", "SG_", "VAL_", "SIG_VALTYPE_", "SG_MUL_VAL_", "BO_TX_BU_", "BU_", "NS_", "BA_DEF_", "BA_DEF_DEF_",
+        "BA_DEF_REL_", "BA_DEF_DEF_REL_", "BA_DEF_SGTYPE_", "BS_",
+    }
+)  # fmt: skip
+_LONG_SIGNAL, _LONG_MESSAGE = "SystemSignalLongSymbol", "SystemMessageLongSymbol"
+# The frame format follows from id and length; of the send type `can` accounts.
+_USED_ATTRIBUTES = frozenset(
+    {"GenMsgCycleTime", "GenSigStartValue", "GenMsgSendType", "SPN", "VFrameFormat", "SystemNodeLongSymbol"}
+    | {_LONG_SIGNAL, _LONG_MESSAGE}
+)
+_HELD_BACK = " of a DBC"  # behind the name of an attribute that cantools shall not interpret
+
+
+class _Statement(NamedTuple):
+    """A statement with its first line, counted from 1; signals are statements of their own."""
+
+    keyword: str
+    text: str
+    line: int
+
+
+def account_for(text: str, account: Account, reported: Container[int | None]) -> None:
+    """Count statements and attributes of a DBC that nobody uses, but for those in lines that a finding names already."""
+    for one in _statements(text):
+        if one.line in reported:
+            continue
+        if one.keyword == "BA_":
+            found = _ATTRIBUTE.match(one.text)
+            if found is not None and found[1] not in _USED_ATTRIBUTES:
+                account.add("BA_", found[1], f"`{' '.join(found[2].split())}`" if found[2] else "", one.line)
+        elif one.keyword == "CM_":
+            target = _COMMENT.match(one.text)
+            if target is not None and target[1] not in ("BO_", "SG_"):
+                account.add("CM_", target[1] or "text of the network", "", one.line)
+        elif one.keyword == "VERSION":
+            if not re.match(r'VERSION\s*""', one.text):
+                account.add("", one.keyword, "", one.line)
+        elif one.keyword not in _USED:
+            account.add("", one.keyword, "", one.line)
+
+
+def _statements(text: str) -> Iterator[_Statement]:
+    """The statements of a DBC; a keyword within quotes begins none."""
+    begun: tuple[str, int] | None = None
+    line, counted = 1, 0
+    for found in _STRING_OR_KEYWORD.finditer(text):
+        if found[1] is None:
+            continue
+        if begun is not None:
+            yield _Statement(begun[0], text[begun[1] : found.start()], line)
+        start = found.start(1)
+        line += text.count("\n", counted, start)
+        counted, begun = start, (found[1], start)
+    if begun is not None:
+        yield _Statement(begun[0], text[begun[1] :], line)
+
+
+def with_short_names(text: str) -> str:
+    """The text with attributes for long names that cantools does not interpret: it would name signals by their long names and
+    their multiplexers by the short ones."""
+    for name in (_LONG_SIGNAL, _LONG_MESSAGE):
+        text = text.replace(f'"{name}"', f'"{name}{_HELD_BACK}"')
+    return text
+
+
+def give_long_names(messages: list[Any]) -> None:
+    """Name messages and signals of cantools by the attributes for long names, unless these are empty or there twice."""
+    names = {message.name for message in messages}
+    for message in messages:
+        taken = {signal.name for signal in message.signals}
+        long = {signal.name: _long_name(signal, _LONG_SIGNAL, taken) for signal in message.signals}
+        for signal in message.signals:
+            signal.name = long[signal.name]
+            if signal.multiplexer_signal is not None:
+                signal.multiplexer_signal = long.get(signal.multiplexer_signal, signal.multiplexer_signal)
+        message.name = _long_name(message, _LONG_MESSAGE, names)
+        message.refresh(strict=False)
+
+
+def _long_name(of: Any, attribute: str, taken: set[str]) -> str:
+    """The long name; the short one if there is none, or if another has it, too."""
+    found = of.dbc.attributes.get(attribute + _HELD_BACK) if of.dbc is not None and of.dbc.attributes else None
+    name = one_line(str(found.value), _LONGEST_NAME) if found is not None else ""
+    if not name or name in taken:
+        return str(of.name)
+    taken.add(name)
+    return name
+
+
 def mended(text: str, load: Callable[[str], Any], to: Definitions) -> Any:
+    """Return what ``load`` makes of the text without its faults. Reports a last line that may have been cut off."""
+    database = _mended(text, load, to)
+    last = text.count("\n") + 1
+    if text.rstrip(" \t")[-1:] not in ("\n", ";", "") and all(one.spot.line != last for one in to.troubles):
+        what = f"the file ends within line {last}: `{one_line(text[text.rfind(chr(10)) + 1 :], 60)}`"
+        to.warn(NOT_UNDERSTOOD, what, "check whether the file is complete: the rest may be cut off", "warning", last)
+    return database
+
+
+def _mended(text: str, load: Callable[[str], Any], to: Definitions) -> Any:
     """What ``load`` makes of the text without its faults. Raises what it raises for one that is none of those known."""
     text = _without_impossible(_widened(text, to), to)
-    for _ in range(MOST):
+    try:
+        for _ in range(MOST):
+            try:
+                return load(text)
+            except Exception as error:  # of its own for some, of its parser for others
+                reason = str(error)
+                repaired = _without_line(text, reason, to) or _without_unused(text, reason, to)
+                if repaired is None:
+                    raise
+                text = repaired
+        return load(text)
+    except Exception as error:
+        database = _message_by_message(text, load, to)
+        if not database.messages:
+            raise error from None
+        return database
+
+
+def _message_by_message(text: str, load: Callable[[str], Any], to: Definitions) -> Any:
+    """The messages that can be read if each is read alone, with what the file says of it."""
+    shared, blocks = "", []
+    of_message: defaultdict[str, str] = defaultdict(str)
+    block: list[_Statement] = []
+    for one in _statements(text):
+        if one.keyword == "BO_":
+            block = [one]
+            blocks.append(block)
+        elif one.keyword == "SG_" and blocks:
+            block.append(one)
+        elif (found := _OF_MESSAGE.match(one.text)) is not None:
+            of_message[found[1]] += one.text
+        elif one.keyword != "NS_":
+            shared += one.text
+    messages: list[Any] = []
+    for block in blocks:
+        head = _MESSAGE.match(block[0].text)
+        if head is None or int(head[1]) == _NO_MESSAGE:
+            continue
         try:
-            return load(text)
-        except Exception as error:  # of its own for some, of its parser for others
-            said = str(error)
-            repaired = _without_line(text, said, to) or _without_unused(text, said, to)
-            if repaired is None:
-                raise
-            text = repaired
-    return load(text)
+            messages += load(shared + "".join(one.text for one in block) + of_message[head[1]]).messages
+        except Exception as error:
+            to.total += 1
+            to.left_out(head[2], one_line(str(error), 200) or type(error).__name__, block[0].line)
+    return SimpleNamespace(messages=messages)
 
 
 def _widened(text: str, to: Definitions) -> str:
@@ -86,8 +231,8 @@ def _without_line(text: str, said: str, to: Definitions) -> str | None:
         return None
     lines = text.split("\n")
     number, column = int(found[1]) - 1, int(found[2])
-    if number >= len(lines):
-        return None
+    if number >= len(lines) or not "".join(lines[number:]).strip():  # it ends where more should follow
+        number, column = max((at for at, one in enumerate(lines) if one.strip()), default=0), 0
     if column == 1 + len(lines[number]) - len(lines[number].lstrip()) and _STATEMENT.match(lines[number]):
         before = next((at for at in range(number - 1, -1, -1) if lines[at].strip()), None)
         if before is None:

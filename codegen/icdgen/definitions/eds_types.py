@@ -10,7 +10,6 @@ from icdgen.definitions import eds_ranges
 from icdgen.definitions.eds_ranges import ALL, Range
 from icdgen.definitions.eds_sheets import Sheets
 from icdgen.definitions.eds_values import CODES, TWOS, UNSIGNED, coded, whole
-from icdgen.definitions.enumerations import MOST_SPECIAL, special
 from icdgen.definitions.frames import BIG, LITTLE
 from icdgen.definitions.model import Item, NotHeld
 from icdgen.definitions.reading import Reading
@@ -192,9 +191,8 @@ class Types(Reading):
         if not choices:
             return
         notes = self.heard(f"labels of {id(type_)}")  # it is said once of a type
-        left = self.enums.hold(made.item, made.bits, choices, _called(type_), self._owner(type_), notes)
-        if len(left) <= MOST_SPECIAL:
-            made.item |= special(left)
+        called = _called(type_)
+        self.enums.hold(made.item, made.bits, choices, called, self._owner(type_), f"`{called}`", notes)
 
     def _owner(self, type_: Element) -> str:
         return self.sheets.package(type_).rsplit("/", 1)[-1]

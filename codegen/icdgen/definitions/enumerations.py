@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -11,8 +12,11 @@ from icdgen.definitions.wording import line
 
 SAME_NAME = "IMP073"
 BEYOND = "IMP074"
-MOST_SPECIAL = 16  # names that a field may have as special values
+LEFT_OUT = "IMP090"
+MOST_SPECIAL = 1024  # special values of a field; each becomes a constant in code
 _LONGEST = 400
+_LIMITS = ("min", "max", "above", "below")
+_OF_NUMBERS = ("unit", *_LIMITS)  # keys that an enumeration does not have
 
 
 def members(choices: Mapping[int, str], first: int, last: int, where: str, to: Definitions) -> list[Item]:
@@ -23,8 +27,8 @@ def members(choices: Mapping[int, str], first: int, last: int, where: str, to: D
         to.warn(BEYOND, f"{where}: it never has the value {shown}, which has a name", "the name is left out")
     found: list[Item] = []
     for value, text in sorted(choices.items()):
-        name = line(text, _LONGEST) or f"{value}"
-        if value in beyond:
+        name = line(text, _LONGEST)
+        if value in beyond or not name:  # an empty name says nothing
             continue
         if found and found[-1]["name"] == name and found[-1].get("to", found[-1]["value"]) == value - 1:
             found[-1]["to"] = value
@@ -43,12 +47,57 @@ def members(choices: Mapping[int, str], first: int, last: int, where: str, to: D
     return [{key: one[key] for key in ("value", "to", "name") if key in one} for one in found]
 
 
-def special(named: list[Item]) -> Item:
-    """The key of special values with these names; of ranges each value."""
-    found = []
+def is_enumeration(item: Item, bits: int, named: list[Item]) -> bool:
+    """Return whether a number whose values have names is an enumeration, or a quantity with special values.
+
+    It is an enumeration if the names cover all its values, or if it has neither unit nor limits. A formula makes it a
+    quantity. A signed number remains one unless a name is negative, for only these enumerations are signed in an ICD.
+    """
+    if item["type"] not in ("uint", "int") or not named or item.keys() & {"formula", "points"}:
+        return False
+    is_signed = item["type"] == "int"
+    if is_signed != any(one["value"] < 0 for one in named):
+        return False
+    return not item.keys() & set(_OF_NUMBERS) or _covers(named, *_possible(item, bits))
+
+
+def _possible(item: Item, bits: int) -> tuple[int, int]:
+    """The first and last value of a number without a formula, within its limits."""
+    first, last = raws(bits, item["type"] == "int")
+    low, high = item.get("min", first), item.get("max", last)
+    if "above" in item:
+        low = max(low, math.floor(item["above"]) + 1)
+    if "below" in item:
+        high = min(high, math.ceil(item["below"]) - 1)
+    return max(first, math.ceil(low)), min(last, math.floor(high))
+
+
+def _covers(named: list[Item], first: int, last: int) -> bool:
+    """Return whether each value from ``first`` to ``last`` has a name; ``named`` is in ascending order."""
+    following = first
     for one in named:
-        last = one.get("to", one["value"])
-        for value in range(one["value"], min(last, one["value"] + 63) + 1):
+        if one["value"] > following:
+            break
+        following = max(following, _last(one) + 1)
+    return following > last
+
+
+def _last(member: Item) -> int:
+    """The last value of a member, which may be a range."""
+    return int(member["to"] if "to" in member else member["value"])
+
+
+def special(named: list[Item], where: str, to: Definitions) -> Item:
+    """The key of special values with these names; of ranges each value. Reports the names for which there is no room."""
+    found: list[Item] = []
+    for number, one in enumerate(named):
+        last = _last(one)
+        if len(found) + last - one["value"] >= MOST_SPECIAL:
+            text = f"{where}: {len(named) - number} of {len(named)} names are left out, from `{one['name']}` on"
+            help = f"a number has at most {MOST_SPECIAL:,} special values: put the names into its `summary`"
+            to.warn(LEFT_OUT, text, help)
+            break
+        for value in range(one["value"], last + 1):
             found.append({"value": value, "meaning": one["name"] if last == one["value"] else f"{one['name']} {value}"})
     return {"special": found} if found else {}
 
@@ -65,16 +114,23 @@ class Enumerations:
         self.uses.append((to, name, owner, values))
 
     def hold(
-        self, to: Item, bits: int, choices: Mapping[int, str], name: str, owner: str, notes: Definitions
-    ) -> list[Item]:
-        """Makes an integer one of an enumeration if a value has a sign as it has. Else it stays a number; its named values."""
-        is_signed = to["type"] == "int"
-        named = members(choices, *raws(bits, is_signed), f"`{name}`", notes)
-        if not named or is_signed != (min(choices) < 0):
-            return named
-        to["type"] = "enum"
-        self.give(to, name, owner, named)
-        return []
+        self, to: Item, bits: int, choices: Mapping[int, str], name: str, owner: str, where: str, notes: Definitions
+    ) -> None:
+        """Give the values of a number their names: as an enumeration, or as special values (see `is_enumeration`).
+
+        ``to`` has its formula, unit and limits already. ``name`` is what an enumeration would be called, ``owner``
+        distinguishes it from others of the name. ``where`` names the field in what is noted.
+        """
+        if to["type"] not in ("uint", "int"):
+            return
+        named = members(choices, *raws(bits, to["type"] == "int"), where, notes)
+        if is_enumeration(to, bits, named):
+            for key in _OF_NUMBERS:
+                to.pop(key, None)
+            to["type"] = "enum"
+            self.give(to, name, owner, named)
+        else:
+            to |= special(named, where, notes)
 
     def declared(self) -> list[Item]:
         """The enumerations; their fields say `enum` from now on."""

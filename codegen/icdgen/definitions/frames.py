@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from icdgen.definitions.model import Definitions, Item, NotHeld
+from icdgen.definitions.model import Definitions, Item
 
 OVERLAPPING = "IMP071"
 LITTLE, BIG = "little", "big"
@@ -50,15 +50,15 @@ def laid_out(message: Item, placed: list[tuple[Item, Place]], order: str, to: De
     if len(own) == 1 and own != {order}:
         order = own.pop()
         message |= ORDERS[order]
-    fields = []
+    fields, covered = [], 0
     for field, place in _owned(message["name"], placed, order, to):
         place = place if "count" in field else place.counted(order)  # which would turn the order of elements round
         said = dict(field)
         field.clear()  # the same mapping goes on: an enumeration is named in it later
         field |= {"at": place.at, "bits": place.bits, **said, **(ORDERS[place.order] if place.order != order else {})}
         fields.append(field)
+        covered = max(covered, place.mask.bit_length())
     fields.sort(key=lambda field: (field["at"] // 8, field["at"]))
-    covered = max((place.mask.bit_length() for _, place in placed), default=0)
     if (rest := message["length"] - -(-covered // 8)) > 0:
         message["reserved"] = rest
     return {**message, "fields": fields} if fields else message
@@ -68,6 +68,7 @@ def _owned(name: str, placed: list[tuple[Item, Place]], order: str, to: Definiti
     """The fields, those that overlap larger ones as views; bits of these that nothing has by itself become fields."""
     owners: list[tuple[Item, int]] = []
     left, pairs = 0, []
+    left_out: list[Item] = []
     for field, place in sorted(placed, key=lambda one: -one[1].bits):
         mask = place.mask
         if "view" in field:  # it is said to be one
@@ -78,7 +79,9 @@ def _owned(name: str, placed: list[tuple[Item, Place]], order: str, to: Definiti
             owners.append((field, mask))
             continue
         if "when" in field:
-            raise NotHeld(f"`{field['name']}`, which is not always there, overlaps `{over['name']}`")
+            to.without_field(name, field["name"], f"it is not always there, and overlaps `{over['name']}`")
+            left_out.append(field)
+            continue
         pairs.append(f"`{field['name']}` and `{over['name']}`")
         field["view"] = True
         left |= mask
@@ -86,7 +89,7 @@ def _owned(name: str, placed: list[tuple[Item, Place]], order: str, to: Definiti
         shown = ", ".join(pairs[:3]) + (f" and {len(pairs) - 3} more" if len(pairs) > 3 else "")
         help = "the smaller ones are held as views: they are read, not set"
         to.warn(OVERLAPPING, f"message `{name}`: {shown} overlap", help)
-    yield from placed
+    yield from ((field, place) for field, place in placed if not any(field is one for one in left_out))
     owned = 0
     for _, mask in owners:
         owned |= mask

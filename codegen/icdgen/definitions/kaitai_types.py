@@ -6,10 +6,10 @@ import re
 from dataclasses import dataclass, field
 from typing import Any
 
-from icdgen.definitions.enumerations import Enumerations, members
+from icdgen.definitions.enumerations import Enumerations
 from icdgen.definitions.frames import BIG, LITTLE
 from icdgen.definitions.kaitai_yaml import integer
-from icdgen.definitions.model import Definitions, Item, NotHeld, raws
+from icdgen.definitions.model import Definitions, Item, NotHeld
 from icdgen.definitions.wording import line
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.tails import MOST_BYTES
@@ -170,15 +170,11 @@ def contents(attribute: Map) -> bytes | None:
 
 
 def named(item: Item, bits: int, reference: str, within: Type, enums: Enumerations, to: Definitions) -> None:
-    """Makes a number one of an enumeration. Raises `NotHeld`."""
+    """Gives the values of a number their names. Raises `NotHeld`."""
     choices = within.members(reference)
     if item["type"] not in ("uint", "int"):
         raise NotHeld(f"it has names for values, and is of the type {item['type']}")
-    is_signed = item["type"] == "int"
-    found = members(choices, *raws(bits, is_signed), f"`{reference}`", to)
-    if found and is_signed == (min(choices) < 0):
-        item["type"] = "enum"
-        enums.give(item, reference.rsplit("::", 1)[-1], within.name, found)
+    enums.hold(item, bits, choices, reference.rsplit("::", 1)[-1], within.name, f"`{reference}`", to)
 
 
 def _encoding(within: Type) -> object:

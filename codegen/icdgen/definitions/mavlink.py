@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from xml.etree.ElementTree import Element
 
 from icdgen.definitions import kinds, safe_xml
-from icdgen.definitions.enumerations import BEYOND, MOST_SPECIAL, members
+from icdgen.definitions.enumerations import BEYOND, is_enumeration, members, special
 from icdgen.definitions.model import Definitions, Item, Network, NotHeld, raws, unreadable
 from icdgen.definitions.wording import line, node_name, summary, unit
 from icdgen.icd.fmt.emit import Spelled
@@ -221,23 +221,23 @@ def _held(owner: str, field: _Field, enums: dict[str, Item], version: int, to: D
     bits = _BITS[field.type]
     one: Item = {"bits": bits, "name": field.name, "type": kind}
     one |= {"count": field.elements} if field.elements else {}
-    special = _invalid(of.get("invalid", ""), kind, bits)
-    enum = enums.get(of.get("enum", ""))
-    if enum and kind != "float":
-        one |= _named(f"message `{owner}`, `{field.name}`", enum, kind, bits, to)
     if of.get("type") == _VERSION_FIELD:
         one["const"] = version
-    if one["type"] != "enum":
-        symbol = of.get("units", "")
-        as_it_is = (_SPELLED.get(symbol, symbol), "1")
-        held, factor = as_it_is if kind == "float" else _SCALED.get(symbol, as_it_is)
-        one |= unit(held)
-        if kind != "float" and "special" not in one and (formula := _formula(factor, of.get("multiplier", ""))):
-            one["formula"] = formula
-    if special and "const" not in one:
-        known = {member["value"] for member in enum["members"]} if enum and one["type"] == "enum" else set()
-        if special["value"] not in known:
-            one["special"] = [*one.get("special", ()), special]
+    symbol = of.get("units", "")
+    as_it_is = (_SPELLED.get(symbol, symbol), "1")
+    held, factor = as_it_is if kind == "float" else _SCALED.get(symbol, as_it_is)
+    one |= unit(held)
+    if kind != "float" and (formula := _formula(factor, of.get("multiplier", ""))):
+        one["formula"] = formula
+    enum = enums.get(of.get("enum", ""))
+    if enum and kind != "float":
+        _name_values(one, enum, bits, f"message `{owner}`, `{field.name}`", to)
+    invalid = _invalid(of.get("invalid", ""), kind, bits)
+    if invalid and "const" not in one:
+        named = {member["value"] for member in enum["members"]} if enum and one["type"] == "enum" else set()
+        named |= {each["value"] for each in one.get("special", ())}
+        if invalid["value"] not in named:
+            one["special"] = [*one.get("special", ()), invalid]
     return {**one, **summary(_text(of))}
 
 
@@ -253,21 +253,22 @@ def _formula(factor: str, multiplier: str) -> str:
     return f"raw{text}" + (f"/{found[2]}" if found and found[2] else "") if text else ""
 
 
-def _named(where: str, enum: Item, kind: str, bits: int, to: Definitions) -> Item:
-    """What makes values of a field those of an enumeration. Its type has a sign if a value has, whatever the field's."""
-    values = [member["value"] for member in enum["members"]] + [member.get("to", 0) for member in enum["members"]]
-    is_signed = min(values) < 0
-    room = bits - is_signed
-    if max(values) >> room or min(values) < -(1 << room):
-        beyond = next(value for value in values if value >> room not in (0, -1 if is_signed else 0))
-        to.warn(BEYOND, f"{where}: it never has the value {beyond} of `{enum['name']}`", "it is held without the names")
-        return {}
-    if is_signed == (kind == "int"):
-        return {"type": "enum", "enum": enum["name"]}
-    named = [member for member in enum["members"] if not member["value"] >> (bits - (kind == "int"))]
-    if len(named) > MOST_SPECIAL:
-        return {}
-    return {"special": [{"value": member["value"], "meaning": member["name"]} for member in named]}
+def _name_values(one: Item, enum: Item, bits: int, where: str, to: Definitions) -> None:
+    """Give the values of an integer the names of an enumeration, which other fields may share."""
+    low, high = raws(bits, one["type"] == "int")
+    named = [each for each in enum["members"] if low <= each["value"] and each.get("to", each["value"]) <= high]
+    if len(named) < len(enum["members"]):
+        beyond = next(each["value"] for each in enum["members"] if each not in named)
+        text = f"{where}: it never has the value {beyond} of `{enum['name']}`"
+        to.warn(BEYOND, text, "the names of values that it can have are special values")
+    elif is_enumeration(one, bits, named):
+        one.pop("unit", None)
+        one |= {"type": "enum", "enum": enum["name"]}
+        return
+    if "const" not in one:
+        one |= special(
+            [{key: each[key] for key in ("value", "to", "name") if key in each} for each in named], where, to
+        )
 
 
 def _invalid(text: str, kind: str, bits: int) -> Item:

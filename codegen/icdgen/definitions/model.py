@@ -14,6 +14,8 @@ from icdgen.importer.document import Spot, Trouble
 
 UNREADABLE = "IMP005"
 NOT_HELD = "IMP070"
+WITHOUT_FIELD = "IMP091"
+RAW_ONLY = "IMP078"
 
 Item = dict[str, Any]  # a message, field, enumeration, member or struct as it stands in an ICD
 
@@ -95,6 +97,12 @@ class Definitions:
         spot = Spot(line=line, file=file if file != self.file else "")
         help = why.help if isinstance(why, NotHeld) else ""
         self.troubles.append(Trouble(NOT_HELD, f"message `{name}` is not held: {why}", spot, help, "error"))
+
+    def without_field(self, message: str, field: str, why: object, line: int | None = None) -> None:
+        """Report that a field is left out of a message, which is held without it."""
+        text = f"message `{message}`, `{field}` is left out: {why}"
+        help = "the message is held without it: its bits are reserved"
+        self.troubles.append(Trouble(WITHOUT_FIELD, text, Spot(line=line), help, severity="error"))
 
     def warn(
         self,

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from decimal import Decimal
 from typing import Any, NamedTuple
 
-from icdgen.definitions.enumerations import Enumerations, members
+from icdgen.definitions.enumerations import Enumerations
 from icdgen.definitions.frames import BIG, ORDERS
 from icdgen.definitions.model import Definitions, Item, Network, NotHeld, unreadable
 from icdgen.definitions.wording import formula, line, node_name, printed, summary, unit
@@ -187,11 +187,11 @@ class _Model:
         if type(point.get("value")) is int and kind.type in ("int", "uint") and not symbols:
             one |= {"const": point["value"], **_said(point)}
             return one
-        if symbols and kind.type == "uint":
-            self.enums.give(one, name, self.name, members(symbols, 0, (1 << one["bits"]) - 1, f"`{name}`", self.to))
-            one["type"] = "enum"
-            none = none if none and none["special"][0]["value"] not in symbols else {}
-        one |= {**none, **(self.scale(point, name, kind) if one["type"] != "enum" else _said(point))}
+        one |= self.scale(point, name, kind)
+        if symbols:
+            self.enums.hold(one, one["bits"], symbols, name, self.name, f"model `{self.name}`, `{name}`", self.to)
+        if none and none["special"][0]["value"] not in symbols:
+            one["special"] = [*one.pop("special", ()), *none["special"]]
         return one  # the same mapping: an enumeration is named in it later
 
     def scale(self, point: dict[str, Any], name: str, kind: _Kind) -> Item:

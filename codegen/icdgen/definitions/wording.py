@@ -13,7 +13,10 @@ from icdgen.naming import DEVICES, latin
 
 LONGEST = 4000  # characters of a summary
 _LONGEST_UNIT = 60
-_NO_UNIT = frozenset({"", "-", "--", "none", "n/a", "unitless", "no unit", "[]"})
+_NO_UNIT = frozenset({"", "-", "--", "none", "n/a", "na", "unitless", "no unit", "no_unit", "unit_none", "[]", "[-]"}) | {
+    # What databases write where a signal has states or flags and no unit; SED and SES mean "state encoded".
+    "sed", "ses", "state", "states", "enum", "discrete", "binary", "bool", "boolean", "flag", "yes/no", "on/off", "code",
+}  # fmt: skip
 _UNPRINTABLE = re.compile("[^ -~\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]+")
 
 

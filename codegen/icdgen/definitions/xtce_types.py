@@ -10,7 +10,6 @@ from typing import Any
 from xml.etree.ElementTree import Element
 
 from icdgen.definitions.accounting import settle
-from icdgen.definitions.enumerations import MOST_SPECIAL, special
 from icdgen.definitions.frames import BIG, LITTLE
 from icdgen.definitions.model import Item, NotHeld
 from icdgen.definitions.reading import Reading
@@ -166,9 +165,8 @@ class Types(Reading):
                 choices.setdefault(value, one.get("label", ""))
         made.values = {label: value for value, label in reversed(choices.items())}
         notes = self.heard(f"labels of {id(element)}")  # it is said once of a type
-        left = self.enums.hold(made.item, made.bits, choices, _called(element), self._owner(element), notes)
-        if len(left) <= MOST_SPECIAL:
-            made.item |= special(left)
+        called = _called(element)
+        self.enums.hold(made.item, made.bits, choices, called, self._owner(element), f"`{called}`", notes)
 
     def _owner(self, element: Element) -> str:
         return self.names.system(element).rsplit("/", 1)[-1]
@@ -178,11 +176,11 @@ class Types(Reading):
             raise NotHeld(f"a flag is encoded as {made.item['type']}")
         zero, one = _attribute(chain, "zeroStringValue", "False"), _attribute(chain, "oneStringValue", "True")
         made.values = {zero: 0, one: 1, "false": 0, "true": 1}
-        made.item["type"] = "bool" if made.bits == 1 else "uint"
-        if made.bits > 1:
-            named = [{"value": 0, "name": line(zero, 60)}, {"value": 1, "name": line(one, 60)}]
-            made.item["type"] = "enum"
-            self.enums.give(made.item, _called(element), self._owner(element), named)
+        if made.bits == 1:
+            made.item["type"] = "bool"
+            return
+        choices, called = {0: line(zero, 60), 1: line(one, 60)}, _called(element)
+        self.enums.hold(made.item, made.bits, choices, called, self._owner(element), f"`{called}`", self.to)
 
     def _calibrated(self, made: Piece, chain: list[Element], encoding: Element | None, kind: str, where: str) -> bool:
         """Adds the formula. False if there is a calibration that cannot be said, so that the raw value is all that is held."""
