@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from icdgen import backends, reports
+from icdgen.backends.packages import of_project
 from icdgen.commands.common import chosen, format_option, icd_arguments, print_findings
 
 
@@ -19,6 +20,7 @@ def check(icds: tuple[Path, ...], form: str) -> None:
     from icdgen.loading import load
 
     paths, config = chosen(icds)
+    of_project(config)  # raises an error for names that cannot be used
     loaded = load(paths, plug_ins=backends.not_ours(config.lang))
     print_findings(loaded.findings, loaded.texts, form)
     sys.exit(1 if loaded.findings else 0)

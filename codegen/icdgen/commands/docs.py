@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from icdgen.backends.packages import of_project
 from icdgen.commands.common import PATH, chosen, icd_arguments, print_findings, say
 
 
@@ -26,12 +27,13 @@ def docs(icds: tuple[Path, ...], out: Path, previous: str | None, serve: bool, p
     from icdgen import site
 
     paths, config = chosen(icds)
+    packages = of_project(config)
     if serve:
         if out is not None or check:
             raise click.UsageError("--serve writes nothing: leave --out and --check out")
-        site.serve(paths, previous, config.templates, port, say)
+        site.serve(paths, previous, config.templates, packages, port, say)
         return
-    made = site.make(paths, previous, config.templates)
+    made = site.make(paths, previous, config.templates, packages)
     if made.findings:
         print_findings(made.findings, made.texts, "text", err=True)
     if not made.ok:

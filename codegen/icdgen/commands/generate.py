@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from icdgen.backends.packages import of_project
 from icdgen.commands.common import PATH, chosen, icd_arguments, known_languages, print_findings, say
 from icdgen.errors import UserError
 from icdgen.generation.generate import Job, Outcome, remember, run
@@ -43,13 +44,14 @@ def generate(
 ) -> None:
     """Generate code from ICDs: files or folders; without any, those of icdgen.toml, else those shipped."""
     paths, config = chosen(icds)
+    packages = of_project(config)
     asked = list(languages) or config.lang
     if not asked:
         raise UserError("say what to generate", "for instance `icdgen --lang c`; or set `lang` in icdgen.toml")
     if out is None:
         base = config.out or Path("generated")
         out = base / asked[0] if len(set(asked)) == 1 else base
-    job = Job(asked, out, paths, templates or config.templates, depfile, check, measured, config.looked_at)
+    job = Job(asked, out, paths, templates or config.templates, depfile, check, measured, packages, config.looked_at)
     outcome = run(job)
     if outcome.loaded.findings:
         print_findings(outcome.loaded.findings, outcome.loaded.texts, "text", err=True)

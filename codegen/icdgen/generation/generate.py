@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from icdgen import backends, cache
+from icdgen.backends.packages import Packages
 from icdgen.errors import UserError
 from icdgen.generation import manifest, write
 from icdgen.icd.loaded import Loaded
@@ -25,6 +26,7 @@ class Job:
     depfile: Path | None = None
     check: bool = False
     measured: Path | None = None  # folder of measurements, for the papers that have them
+    packages: Packages = field(default_factory=Packages)
     configs: dict[Path, str] = field(default_factory=dict)  # configuration files that were read or looked for
 
 
@@ -60,6 +62,8 @@ def run(job: Job) -> Outcome:
         render = Renderer.of(backend, job.templates)
         if hasattr(backend, "measured"):
             backend.measured = job.measured
+        if hasattr(backend, "packages"):
+            backend.packages = job.packages
         out = job.out / backend.name if len(chosen) > 1 else job.out
         outcome.plans.append(write.plan(out, backend.name, backend.files(outcome.loaded.icd, render)))
         outcome.inputs |= render.looked_at

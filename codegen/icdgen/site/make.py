@@ -7,6 +7,7 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from icdgen.backends.html import HtmlBackend
+from icdgen.backends.packages import Packages
 from icdgen.diagnostics import Finding
 from icdgen.generation.write import Plan, apply, plan
 from icdgen.model_cache import load_checked
@@ -27,7 +28,9 @@ class Site:
     inputs: dict[Path, str] = field(default_factory=dict)  # what decides the site -> its fingerprint when read
 
 
-def make(icds: list[Path], previous: str | None = None, templates: Path | None = None) -> Site:
+def make(
+    icds: list[Path], previous: str | None = None, templates: Path | None = None, packages: Packages | None = None
+) -> Site:
     """Loads, checks and renders. ``previous`` is an older release, as `icdgen.diff.inputs` takes it.
 
     Raises `UserError` where a file can't be read or a template is bad.
@@ -38,6 +41,7 @@ def make(icds: list[Path], previous: str | None = None, templates: Path | None =
     if made.ok:
         render = Renderer(HtmlBackend.name, templates)
         backend = HtmlBackend(older)
+        backend.packages = packages or Packages()
         made.files = {str(path): text for path, text in backend.files(loaded.icd, render)}
         made.inputs |= render.looked_at
     return made

@@ -13,6 +13,7 @@ from threading import Lock
 from urllib.parse import unquote, urlsplit
 
 from icdgen import fingerprints, reports
+from icdgen.backends.packages import Packages
 from icdgen.errors import UserError
 from icdgen.site.make import Site, make
 
@@ -27,8 +28,14 @@ _TYPES = {
 class Source:
     """Keeps the site current: what is asked for is made of the files as they are then."""
 
-    def __init__(self, icds: list[Path], previous: str | None = None, templates: Path | None = None) -> None:
-        self._arguments = (icds, previous, templates)
+    def __init__(
+        self,
+        icds: list[Path],
+        previous: str | None = None,
+        templates: Path | None = None,
+        packages: Packages | None = None,
+    ) -> None:
+        self._arguments = (icds, previous, templates, packages)
         self._lock = Lock()
         self._site: Site | None = None
 
@@ -109,10 +116,15 @@ def _complaint(text: str) -> str:
 
 
 def serve(
-    icds: list[Path], previous: str | None, templates: Path | None, port: int, say: Callable[[str], None]
+    icds: list[Path],
+    previous: str | None,
+    templates: Path | None,
+    packages: Packages,
+    port: int,
+    say: Callable[[str], None],
 ) -> None:
     """Serves until interrupted. Raises `UserError` if the port is taken."""
-    source = Source(icds, previous, templates)
+    source = Source(icds, previous, templates, packages)
     try:
         server = ThreadingHTTPServer((HOST, port), handler(source))
     except OSError as error:

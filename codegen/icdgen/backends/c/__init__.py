@@ -14,12 +14,14 @@ from icdgen.backends.c.runtime import whole
 from icdgen.backends.c.statement import call, head, like
 from icdgen.backends.c.text import FILE, comment, described, literal, noted, prose
 from icdgen.backends.origin import origin
+from icdgen.backends.packages import Packages
 from icdgen.describe import MessageDescription, NodeDescription, describe
 from icdgen.describe.arrays import Repeated, all_repeated, repeated_in
 from icdgen.describe.comments import sentence, text_comment, words
 from icdgen.describe.description import Composite, TailDescription
 from icdgen.describe.numbers import byte_count, length_text
 from icdgen.icd.model import Icd
+from icdgen.icd.prefixed import with_prefix
 
 if TYPE_CHECKING:
     from icdgen.describe.links import LinkDescription
@@ -40,13 +42,16 @@ class CBackend:
     reserved = names.RESERVED
     significant = 63  # characters of a name that C99 warrants to tell it from others
 
+    def __init__(self) -> None:
+        self.packages = Packages()
+
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """Every file, the support header first, then node by node."""
         from icdgen.describe.links import links_of  # the rules about names need none of it
 
         first = f"/* {origin()} */\n"
         yield PurePosixPath("icdgen.h"), first + whole("icdgen.h", render)
-        description = describe(icd)
+        description = describe(with_prefix(icd, self.packages.c_prefix))
         if any(one.has_wide_steps for node in description.nodes for one in node.composites):
             yield PurePosixPath("icdgen_wide.h"), first + whole("icdgen_wide.h", render)
         links = links_of(description)

@@ -7,7 +7,9 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from icdgen.backends import Identifier
+from icdgen.backends.packages import Packages
 from icdgen.icd.model import Icd
+from icdgen.icd.prefixed import with_prefix
 
 if TYPE_CHECKING:
     from icdgen.render import Renderer
@@ -19,11 +21,14 @@ class CSelftestBackend:
     name = "c-selftest"
     reserved: frozenset[str] = frozenset()
 
+    def __init__(self) -> None:
+        self.packages = Packages()
+
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """The engine, the list of nodes, and one file of vectors a node."""
         from icdgen.backends.c_selftest import rows
 
-        return rows.files(icd, render)
+        return rows.files(with_prefix(icd, self.packages.c_prefix), render)
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """None of its own: all are made from those of the ``c`` backend."""

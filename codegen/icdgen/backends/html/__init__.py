@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from icdgen import shipped
 from icdgen.backends import Identifier
+from icdgen.backends.packages import Packages
 from icdgen.icd.model import Icd
 
 if TYPE_CHECKING:
@@ -28,12 +29,13 @@ class HtmlBackend:
 
     def __init__(self, previous: Side | None = None) -> None:
         self.previous = previous
+        self.packages = Packages()
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """Every page, and what the pages load."""
         from icdgen.backends.html.site import files
 
-        return files(icd, render, self.previous)
+        return files(icd, render, self.packages, self.previous)
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """None: file names and anchors are made unique as they are given out."""

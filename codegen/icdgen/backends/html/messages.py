@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 def values(relations: Relations, node: Node, message: Message, render: Renderer) -> dict[str, Any]:
     """Values of the page of a message that ``node`` declares."""
+    described, in_c = describe(relations.icd).message(message), relations.in_c(message)
     repeats = relations.links.repeats(message)
     parts = sections.bands(relations, message)
     shares = parts or sections.shares(message)
@@ -41,7 +42,7 @@ def values(relations: Relations, node: Node, message: Message, render: Renderer)
         "node": node,
         "url": relations.links.message(message),
         "ids": texts.ids(message),
-        "names": names(describe(relations.icd).message(message)),
+        "names": names(described, in_c),
         "facts": _facts(relations, node, message),
         "drawings": drawings,
         "keyed": any(picture.keyed for picture in drawings),
@@ -53,7 +54,7 @@ def values(relations: Relations, node: Node, message: Message, render: Renderer)
         "example_data": is_received and bool(data),
         "examples": shown,
         "frames": frames(message, node),
-        "snippets": snippets(describe(relations.icd).message(message), render),
+        "snippets": snippets(described, in_c, relations.packages, render),
         "contains": relations.contains[message.node, message.name],
         "contained_in": relations.contained_in[message.node, message.name],
         "errata": errata_of_message(message),

@@ -8,10 +8,13 @@ from typing import NamedTuple
 from icdgen.backends.html import texts
 from icdgen.backends.html.links import Links
 from icdgen.backends.html.wire import Speaker, Wire
+from icdgen.backends.packages import Packages
 from icdgen.backends.python.objects.links import link_of
+from icdgen.describe import MessageDescription, describe
 from icdgen.icd.annex import Loggable
 from icdgen.icd.erratum import Erratum
 from icdgen.icd.model import Field, Icd, Message, Node
+from icdgen.icd.prefixed import with_prefix
 from icdgen.icd.units import Unit
 from icdgen.protocol import facts
 
@@ -34,8 +37,10 @@ class Contained(NamedTuple):
 class Relations:
     """Everything is worked out once."""
 
-    def __init__(self, icd: Icd) -> None:
+    def __init__(self, icd: Icd, packages: Packages | None = None) -> None:
         self.icd, self.links = icd, Links(icd)
+        self.packages = packages or Packages()
+        self._in_c = with_prefix(icd, self.packages.c_prefix)
         self.speakers: dict[str, list[Node]] = {
             one.name: [node for node in icd.nodes if node is one or one in icd.included(node)] for one in icd.nodes
         }
@@ -48,6 +53,12 @@ class Relations:
         self._spoken: dict[str, Speaker] = {}
         for node in icd.nodes:
             self._node(node)
+
+    def in_c(self, message: Message) -> MessageDescription:
+        """The message with the prefix that its node has in C."""
+        name = self.packages.c_prefix + message.node
+        found = next(one for one in self._in_c.node(name).messages if one.name == message.name)
+        return describe(self._in_c).message(found)
 
     def _node(self, node: Node) -> None:
         spoken = {message.name: message for message in self.icd.messages_of(node)}

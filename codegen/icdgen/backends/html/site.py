@@ -24,6 +24,7 @@ from icdgen.backends.html import (
 )
 from icdgen.backends.html.links import CHANGES, ERRATA, HOME, UNITS
 from icdgen.backends.html.relations import Relations
+from icdgen.backends.packages import Packages
 from icdgen.icd.model import Icd
 from icdgen.show.machine import to_json
 
@@ -51,9 +52,11 @@ _LOADED = (
 )
 
 
-def files(icd: Icd, render: Renderer, previous: Side | None = None) -> Iterator[tuple[PurePosixPath, str]]:
+def files(
+    icd: Icd, render: Renderer, packages: Packages, previous: Side | None = None
+) -> Iterator[tuple[PurePosixPath, str]]:
     """Path and text of each file; ``previous`` is an older release that ``changes.html`` compares with."""
-    relations = Relations(icd)
+    relations = Relations(icd, packages)
     compared = previous is not None
     common = {
         "version": __version__,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from icdgen.backends.c.names import enumerator, stem
-from icdgen.backends.rust import CRATE
+from icdgen.backends.packages import Packages
 from icdgen.backends.rust.names import field_name
 from icdgen.describe import MessageDescription
 from icdgen.describe.examples import worth_showing
@@ -14,7 +14,6 @@ from icdgen.naming import camel
 if TYPE_CHECKING:
     from icdgen.render import Renderer
 
-_PACKAGE = "icdgen_messages"
 _ZEROS = {"bool": "false", "float": "0.0"}
 _LANGUAGES = (("C", "c", "usage.c.j2"), ("Python", "python", "usage.py.j2"), ("Rust", "rust", "usage.rs.j2"))
 
@@ -27,19 +26,30 @@ class Snippet(NamedTuple):
     text: str
 
 
-def snippets(message: MessageDescription, render: Renderer) -> list[Snippet]:
-    """One for each language: receiving, sending, or both."""
+def snippets(
+    message: MessageDescription, in_c: MessageDescription, packages: Packages, render: Renderer
+) -> list[Snippet]:
+    """One for each language: receiving, sending, or both. ``in_c``: the message under the name that its node has in C."""
+    of_c = _values(in_c, packages)
+    of_others = _values(message, packages)
+    return [
+        Snippet(name, key, render(template, **(of_c if key == "c" else of_others)).rstrip("\n"))
+        for name, key, template in _LANGUAGES
+    ]
+
+
+def _values(message: MessageDescription, packages: Packages) -> dict[str, object]:
     field = worth_showing(message)
     enum = field.enum if field else None
     member = enum.members[-1] if enum and enum.members else None
-    shown = {
+    return {
         "m": message,
         "is_sent": message.model.telecommand_id is not None,
         "is_received": message.model.telemetry_id is not None,
         "stem": stem(message),
         "type": camel(message.words),
-        "package": _PACKAGE,
-        "crate": CRATE,
+        "package": packages.python,
+        "crate": packages.rust,
         "field": field,
         "rust_field": field_name(field) if field else "",
         "zero": _ZEROS.get(field.model.type, "0") if field else "",
@@ -48,9 +58,8 @@ def snippets(message: MessageDescription, render: Renderer) -> list[Snippet]:
         "enum_type": camel(enum.words) if enum else "",
         "member_type": camel(member.words) if member else "",
     }
-    return [Snippet(name, key, render(template, **shown).rstrip("\n")) for name, key, template in _LANGUAGES]
 
 
-def names(message: MessageDescription) -> list[tuple[str, str]]:
+def names(message: MessageDescription, in_c: MessageDescription) -> list[tuple[str, str]]:
     """Language and the name of the message's type in it."""
-    return [("C", f"{stem(message)}_t"), ("Python", camel(message.words)), ("Rust", camel(message.words))]
+    return [("C", f"{stem(in_c)}_t"), ("Python", camel(message.words)), ("Rust", camel(message.words))]

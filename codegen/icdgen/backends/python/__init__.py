@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from icdgen import __version__
 from icdgen.backends import Identifier
 from icdgen.backends.origin import origin
+from icdgen.backends.packages import Packages
 from icdgen.backends.python import names
 from icdgen.describe import describe
 from icdgen.icd.model import Icd
@@ -20,13 +21,18 @@ _RUNTIME = PurePosixPath("icdgen_runtime")  # the package that what all nodes sh
 
 
 class PythonBackend:
-    """``icdgen --lang python``. ``package`` is the import name of what is generated."""
+    """``icdgen --lang python``. The name of ``packages`` for Python is the import name of what is generated."""
 
     name = "python"
     reserved = names.RESERVED
 
-    def __init__(self, package: str = "icdgen_messages") -> None:
-        self.package = package
+    def __init__(self, package: str = Packages.python) -> None:
+        self.packages = Packages(python=package)
+
+    @property
+    def package(self) -> str:
+        """The import name."""
+        return self.packages.python
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """The project's files, then the package's, then those of each node."""

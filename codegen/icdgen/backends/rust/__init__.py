@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from icdgen import __version__
 from icdgen.backends import Identifier
 from icdgen.backends.origin import origin
+from icdgen.backends.packages import Packages
 from icdgen.backends.rust import names
 from icdgen.backends.rust.declared_names import declared_names
 from icdgen.describe import describe
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from icdgen.describe.links import LinkDescription
     from icdgen.render import Renderer
 
-CRATE = "icd"
+CRATE = Packages.rust
 RUNTIME = "icdgen_runtime"
 LINKS = "src/wire/links"
 
@@ -29,8 +30,13 @@ class RustBackend:
     name = "rust"
     reserved = names.RESERVED
 
-    def __init__(self, crate: str = CRATE) -> None:
-        self.crate = crate
+    def __init__(self, crate: str = Packages.rust) -> None:
+        self.packages = Packages(rust=crate)
+
+    @property
+    def crate(self) -> str:
+        """The name of the crate."""
+        return self.packages.rust
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """The crate."""
