@@ -20,7 +20,7 @@ from icdgen.suggest import close_words
 # Each is a module in ``icdgen.commands`` with a click command of the same name; `import` cannot be one in Python.
 _COMMANDS = (
     "generate", "init", "check", "fmt", "rule", "show", "units", "docs", "decode", "encode", "diff", "import", "sim", "log",
-    "monitor", "send",
+    "monitor", "send", "schema",
 )  # fmt: skip
 _DEFAULT = "generate"
 _FOLDERS = ("--cmake-dir", "--examples-dir")

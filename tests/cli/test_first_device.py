@@ -7,8 +7,11 @@ import os
 import re
 import subprocess
 import sys
+import tomllib
 
+import jsonschema
 import pytest
+import yaml
 
 from icdgen.loading import load
 from icdgen.recognize import recognize
@@ -214,3 +217,32 @@ def test_a_device_in_the_style_of_one_with_an_envelope_has_that(icdgen, tmp_path
     pump = load([tmp_path / "icd" / "pump.yaml"]).icd.nodes[0]
     assert pump.protocol["stream"].keys() == origin.protocol["stream"].keys() - {"replies"}
     assert pump.protocol["stream"]["header"] == origin.protocol["stream"]["header"]
+
+
+def test_editors_find_the_schema_that_is_written_beside_the_first_device(icdgen, tmp_path):
+    icdgen("init", "battery")
+    schema = icdgen("schema").out
+    for name in ("icd/battery.yaml", "icd/errata/battery.yaml"):
+        path = tmp_path / name
+        named = re.match(r"# yaml-language-server: \$schema=(\S+)\n", path.read_text())[1]
+        assert (path.parent / named).read_text() == schema
+        jsonschema.validate(yaml.safe_load(path.read_text()), json.loads(schema))
+    wrong = yaml.safe_load((tmp_path / "icd" / "battery.yaml").read_text()) | {"mesages": []}
+    assert not jsonschema.Draft202012Validator(json.loads(schema)).is_valid(wrong)
+
+
+def test_the_copy_of_the_schema_is_kept_by_init_and_renewed_by_schema(icdgen, tmp_path):
+    icdgen("init", "battery")
+    copy = tmp_path / "icd" / "icdgen.schema.json"
+    copy.write_text("{}")
+    assert "icdgen.schema.json" not in icdgen("init", "pump").out and copy.read_text() == "{}"
+    assert icdgen("schema", "--out", "icd/icdgen.schema.json").out == "icd/icdgen.schema.json written\n"
+    assert copy.read_text() == icdgen("schema").out
+
+
+@pytest.mark.parametrize(("name", "package"), [("battery", "battery"), ("match", "match_icd"), ("json", "json_icd")])
+def test_the_packages_of_a_first_device_are_called_like_it(icdgen, tmp_path, name, package):
+    icdgen("init", name)
+    assert icdgen("check").err == "" or name == "match"  # no Rust module can have that name
+    config = tomllib.loads((tmp_path / "icdgen.toml").read_text())
+    assert (config["name"], config["python"]["package"], config["rust"]["crate"]) == (name, package, package)

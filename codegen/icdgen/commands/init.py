@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 )
 @icd_option
 def init(name: str, origin: str | None, icds: tuple[Path, ...]) -> None:
-    """Write a commented first ICD of a device NAME: icd/NAME.yaml, its errata file, and icdgen.toml.
+    """Write a commented first ICD of a device NAME: icd/NAME.yaml, its errata file, icdgen.toml.
 
     It has UART framing, a checksum, acknowledges, telemetry, telecommands and a configuration message, and is ready for
     icdgen check, icdgen --lang c, icdgen docs and icdgen sim. With --from the protocol is that of a node of your ICDs, or of
-    those shipped. Nothing that is there already is touched.
+    those shipped. The schema beside the ICD lets editors complete and check it. Nothing that is there already is touched.
     """
     from icdgen import starter
 

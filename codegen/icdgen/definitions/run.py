@@ -11,7 +11,7 @@ from icdgen.definitions import kinds
 from icdgen.definitions.model import Definitions, Item, Network, Reader, unreadable
 from icdgen.definitions.settle import settle
 
-TOLD = frozenset({"special", "min", "max"})  # what people add to manuals, and definitions say themselves
+TOLD = frozenset({"special", "min", "max", "shares_id"})  # what people add to manuals, and definitions say themselves
 
 
 @dataclass

@@ -12,6 +12,8 @@ from icdgen.icd.located import Map, Seq
 from icdgen.suggest import close_to
 
 PATH = Path(__file__).with_name("schema.json")
+COPY = "icdgen.schema.json"  # the file beside ICDs, for editors
+LINE = f"# yaml-language-server: $schema={COPY}"  # at the top of an ICD, by which editors find it
 CODE = "ICD010"
 
 _ABOUT_KEYS = ("required", "additionalProperties", "minProperties")

@@ -9,6 +9,7 @@ from typing import Any
 
 from icdgen.diagnostics import Finding
 from icdgen.errors import UserError, unreadable
+from icdgen.icd import schema
 from icdgen.icd.fmt import emit
 from icdgen.importer import update
 
@@ -62,14 +63,15 @@ def check(targets: list[Target]) -> list[Finding]:
 
 
 def write(targets: list[Target]) -> None:
-    """Writes the files, each as a whole. Raises `UserError` if one can't be written."""
+    """Writes the files, each as a whole, and beside them the schema that they name. Raises `UserError` if one can't be written."""
     from icdgen.generation.write import replace
 
-    for target in targets:
-        if target.same:
-            continue
+    files = {target.path: target.text.encode("utf-8") for target in targets if not target.same}
+    for path in [path.with_name(schema.COPY) for path, data in files.items() if schema.LINE.encode() in data]:
+        if not os.path.lexists(path):
+            files[path] = schema.PATH.read_bytes()
+    for path, data in files.items():
         try:
-            replace(Path(os.path.realpath(target.path)), target.text.encode("utf-8"))
+            replace(Path(os.path.realpath(path)), data)
         except OSError as error:
-            text = f"cannot write {target.path}: {error.strerror}"
-            raise UserError(text, "choose another folder with --out") from None
+            raise UserError(f"cannot write {path}: {error.strerror}", "choose another folder with --out") from None

@@ -13,7 +13,7 @@ from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
 
 # What people add to the manual's facts.
 _OURS = {
-    "message": ("identifier", "summary", "acknowledge", "hazard", "contains", "assumptions"),
+    "message": ("identifier", "summary", "acknowledge", "hazard", "contains", "assumptions", "shares_id"),
     "field": ("identifier", "summary", "special", "min", "max", "above", "below", "bitfields"),
     "struct": ("identifier", "summary"),
     "enumeration": ("identifier", "summary"),

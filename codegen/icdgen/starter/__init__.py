@@ -8,19 +8,34 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from icdgen import config, shipped
+from icdgen.backends import packages
 from icdgen.errors import UserError
 from icdgen.generation.write import replace
+from icdgen.icd import schema
 from icdgen.naming import latin
 
 if TYPE_CHECKING:
     from icdgen.starter.style import Style
 
 _NAME = re.compile(r"[a-z][a-z0-9_]{0,63}")
-_CONFIG = 'icds = ["icd"]\nout = "generated"\n'
+_CONFIG = """\
+name = "{name}"  # of the project, and of what is installed: the Python package, the Rust crate
+icds = ["icd"]
+out = "generated"
+
+[python]
+package = "{package}"  # the name in `import {package}.{name}`
+
+[rust]
+crate = "{package}"  # the name in `use {package}::{name}`
+
+[c]
+# prefix = "{package}"  # before the name of the node, where programs of several projects are linked together
+"""
 
 
 def write(folder: Path, name: str, style: Style | None = None, origin: str = "") -> list[Path]:
-    """Writes ``icd/NAME.yaml``, its errata file and, unless there is one, ``icdgen.toml``; what is there already stays.
+    """Writes ``icd/NAME.yaml``, its errata file and, unless they are there, the schema and ``icdgen.toml``.
 
     ``style`` is that of the node ``origin``, if it is to be taken over.
     Raises `UserError`, before anything is written, if the name cannot be a node's or a file of that name is there.
@@ -42,10 +57,21 @@ def write(folder: Path, name: str, style: Style | None = None, origin: str = "")
         if os.path.lexists(path):
             raise UserError(f"{path.relative_to(folder)} is there already", "take another name, or move the file away")
     if not os.path.lexists(folder / config.NAME):
-        files[folder / config.NAME] = _CONFIG
+        files[folder / config.NAME] = _CONFIG.format(name=name, package=_package(name))
+    if not os.path.lexists(folder / "icd" / schema.COPY):
+        files[folder / "icd" / schema.COPY] = schema.PATH.read_text(encoding="utf-8")
     for path, text in files.items():
         replace(path, text.encode())
     return [path.relative_to(folder) for path in files]
+
+
+def _package(name: str) -> str:
+    """The project's name, or where no language takes it the name with `_icd`."""
+    try:
+        packages.of_project(config.Config(name=name))
+    except UserError:
+        return f"{name[:36]}_icd"
+    return name
 
 
 def _filled(template: str, name: str) -> str:

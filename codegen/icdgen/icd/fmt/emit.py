@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from icdgen.icd import schema
 from icdgen.icd.fmt import format_text, kinds, write
 from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
-
-SCHEMA_LINE = "# yaml-language-server: $schema=https://raw.githubusercontent.com/icdgen/icdgen/main/codegen/icdgen/icd/schema.json"
 
 
 class Spelled(int):
@@ -24,7 +23,7 @@ class Spelled(int):
 def text(tree: dict[str, Any]) -> str:
     """The canonical YAML of a tree."""
     root = branch(tree)
-    root.header = [SCHEMA_LINE]
+    root.header = [schema.LINE]
     return of(root)
 
 
