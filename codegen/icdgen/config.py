@@ -1,4 +1,4 @@
-"""``icdgen.toml``: what a project generates, so that its build step is just ``icdgen``. See docs/reference/icdgen-toml.md.
+"""``icdgen.toml``: what a project generates, so that its build step is just ``icdgen``. See docs/reference/configuration.md.
 
 name = "thruster"                # of the project, and of its Python package and Rust crate
 icds = ["icd/thruster.yaml"]     # files or folders, relative to this file

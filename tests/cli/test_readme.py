@@ -125,7 +125,7 @@ def test_the_python_shown_reads_the_message(battery, tmp_path):
     package = packages.write(packages.read(battery), tmp_path, "readme_messages")
     values = {"frame": FRAME}
     package.module()
-    exec(snippet("python").replace("icdgen_messages", "readme_messages"), values)
+    exec(snippet("python").replace("from battery.", "from readme_messages."), values)
     assert values["temperature"] == 21.5
 
 
@@ -133,6 +133,6 @@ def test_the_rust_shown_reads_the_message(battery, tmp_path):
     library = rust.generate(rust.read(battery), tmp_path)
     toolchain = Toolchain("default")
     source = tmp_path / "program.rs"
-    source.write_text(RUST % snippet("rust"))
+    source.write_text(RUST % snippet("rust").replace("use battery::", "use icd::"))
     program = toolchain.program(source, toolchain.library(library, "0", *STD), tmp_path / "program")
     assert subprocess.run([program], capture_output=True, text=True).stdout == "21.5\n"
