@@ -121,3 +121,27 @@ def test_version_1_has_ids_of_a_byte_and_no_extensions(tmp_path):
     (tree,) = read.trees.values()
     assert [one["name"] for one in tree["messages"]] == ["HEARTBEAT"] and "may_end_early" not in tree["messages"][0]
     assert tree["protocol"]["stream"]["header"][0]["value"] == 0xFE and tree["node"]["id_bits"] == 8
+
+
+def dialect(folder, *fields):
+    """A dialect with a message of these fields."""
+    (folder / "one.xml").write_text(
+        f'<mavlink><messages><message id="1" name="STATE">{"".join(fields)}</message></messages></mavlink>'
+    )
+    return run.read(folder / "one.xml", READERS["v20"])
+
+
+@pytest.mark.parametrize("length", [1, 2])
+def test_of_a_message_of_one_byte_nothing_can_be_cut_off(length, tmp_path):
+    fields = (f'<field type="uint8_t" name="part{number}">A part.</field>' for number in range(length))
+    state = message(dialect(tmp_path, *fields), "STATE")
+    assert (state["length"], state.get("may_end_early")) == (length, None if length == 1 else "zeros")
+
+
+def test_what_a_dialect_says_beyond_an_icd_is_reported(tmp_path):
+    field = '<field type="uint8_t" name="mode" increment="2" units="m">Text.</field>'
+    read = dialect(tmp_path, field, "<extensions/>", '<field type="uint8_t" name="more">More.</field>', "<wip/>")
+    assert [(one.code, one.message) for one in read.definitions.troubles] == [
+        ("IMP085", "`increment` of `field` is not used (`mode`)"),
+        ("IMP085", "`wip` of `message` is not used (`STATE`)"),
+    ]

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 from xml.etree.ElementTree import Element
 
 from icdgen.definitions import kinds, safe_xml
+from icdgen.definitions.accounting import Account, settle
 from icdgen.definitions.enumerations import BEYOND, is_enumeration, members, special
 from icdgen.definitions.model import Definitions, Item, Network, NotHeld, raws, unreadable
 from icdgen.definitions.wording import line, node_name, summary, unit
@@ -19,6 +20,8 @@ from icdgen.icd.fmt.emit import Spelled
 
 TWICE = "IMP077"
 MOST_FILES = 100
+# How a ground station shows a value, and the number by which dialects are told apart.
+_WITHOUT_MEANING = frozenset({"dialect", "print_format", "display", "schemaLocation", "noNamespaceSchemaLocation"})
 _BITS = {"int8_t": 8, "uint8_t": 8, "char": 8, "int16_t": 16, "uint16_t": 16, "int32_t": 32, "uint32_t": 32,
          "int64_t": 64, "uint64_t": 64, "float": 32, "double": 64}  # fmt: skip
 _VERSION_FIELD = "uint8_t_mavlink_version"
@@ -64,8 +67,8 @@ class MavLink2:
 
     def read(self, file: str, data: bytes) -> Definitions:
         """Raises `Findings` for an XML, or one that it includes, that cannot be read."""
-        to = Definitions(file)
-        roots = dict(_with_included(file, data))
+        to, account = Definitions(file), Account(_WITHOUT_MEANING)
+        roots = dict(_with_included(file, data, account))
         enums = _enumerations(roots, to)
         stem = Path(file).stem
         network = Network(
@@ -79,6 +82,7 @@ class MavLink2:
             for element in root.iterfind("messages/message"):
                 name, id = element.get("name", ""), _number(element.get("id", ""))
                 if id is not None and id >> self.id_bits and not self.has_extensions:
+                    settle(element)
                     continue  # of version 2 alone
                 to.total += 1
                 try:
@@ -87,6 +91,7 @@ class MavLink2:
                     seeds[name], made = self._message(element, name, id, enums, version, to)
                 except NotHeld as why:
                     to.left_out(name, why)
+                    settle(element)
                     continue
                 network.messages.append(made if len(roots) == 1 else {**made, "group": Path(path).stem})
         network.messages.sort(key=lambda one: int(one["id"]))
@@ -95,6 +100,9 @@ class MavLink2:
         seeds |= in_order
         network.declare(one for _, one in sorted(enums.items()))
         to.networks.append(network)
+        for root in roots.values():
+            account.elements(root)
+        account.report(to)
         return to
 
     def _message(
@@ -106,7 +114,9 @@ class MavLink2:
         is_more = False
         for one in element:
             tag = safe_xml.local(one.tag)
-            is_more |= tag == "extensions"
+            if tag == "extensions":
+                is_more = True
+                settle(one)
             if tag == "field":
                 (more if is_more else base).append(_field(one))
         base.sort(key=lambda one: -_BITS[one.type])  # as they are sent; those of one width stay in their order
@@ -161,12 +171,12 @@ class MavLink1(MavLink2):
         return False  # the XML is the same: `--kind mavlink1` asks for it
 
 
-def _with_included(file: str, data: bytes) -> Iterator[tuple[str, Element]]:
+def _with_included(file: str, data: bytes, account: Account) -> Iterator[tuple[str, Element]]:
     """The XML and what it includes, each once. Raises `Findings` for circles, for what is not there and for what lies elsewhere."""
     found: dict[str, Element] = {}
 
     def read(path: str, content: bytes, stack: tuple[str, ...]) -> None:
-        root = found[path] = safe_xml.parse(path, content)
+        root = found[path] = safe_xml.parse(path, content, account=account)
         for one in root.iterfind("include"):
             name = (one.text or "").strip()
             target = os.path.join(os.path.dirname(path), name)

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from decimal import Decimal
 from typing import Any, NamedTuple
 
+from icdgen.definitions.accounting import Account, AccountedMap, accounted
 from icdgen.definitions.enumerations import Enumerations
 from icdgen.definitions.frames import BIG, ORDERS
 from icdgen.definitions.model import Definitions, Item, Network, NotHeld, unreadable
@@ -64,7 +65,7 @@ class SunSpec:
     def read(self, file: str, data: bytes) -> Definitions:
         """Raises `Findings` for what is no JSON, or no model."""
         models = _parse(file, data)
-        to = Definitions(file)
+        to, account = Definitions(file), Account()
         title = _text(models[0]["group"], "label") if len(models) == 1 else ""
         network = Network(node_name(file), title or node_name(file), {**ORDERS[BIG], "id_bits": _REGISTER})
         to.networks.append(network)
@@ -77,16 +78,19 @@ class SunSpec:
                 network.messages.append(model.message())
             except NotHeld as why:
                 to.left_out(model.name, why)
+                tree.settle()
             else:
                 network.structs += model.structs
         network.declare(enums.declared())
+        account.mappings(models)
+        account.report(to)
         return to
 
 
-def _parse(file: str, data: bytes) -> list[dict[str, Any]]:
+def _parse(file: str, data: bytes) -> list[AccountedMap]:
     """The models. Raises `Findings`."""
     try:
-        tree = json.loads(data.decode("utf-8-sig"))
+        tree = accounted(json.loads(data.decode("utf-8-sig")))
     except json.JSONDecodeError as error:
         raise unreadable(file, f"not JSON: {error.msg}", "correct the file", error.lineno) from None
     except (UnicodeDecodeError, RecursionError, ValueError):
