@@ -1,6 +1,6 @@
 """Prints the commands of Markdown pages as one shell script, in the order of the pages.
 
-    python3 scripts/page_commands.py README.md | bash
+    bash <(python3 scripts/page_commands.py README.md)
 
 Needs only Python's standard library, so that it runs on a bare machine. The script stops at the first command that fails.
 Before each command it prints a line with MARK and the number of the command.
