@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from icdgen.diagnostics import Place
 from icdgen.importer.words import table_name
 
 CERTAIN, LIKELY, DOUBTFUL = "certain", "likely", "doubtful"
@@ -45,6 +46,25 @@ class Spot(NamedTuple):
 
 
 @dataclass(slots=True)
+class PrintedRow:
+    """A row exactly as the page shows it, before cells are moved below headings or their lines are joined.
+
+    ``texts``: one text per cell, lines separated by line breaks; ``edges``: the x coordinates between which the cells
+    stand, one more than cells, or none where nothing on the page separates them; ``continues``: whether a cell has no rule
+    above it, so that it belongs to the cell above.
+    """
+
+    texts: list[str]
+    edges: tuple[float, ...] = ()
+    continues: tuple[bool, ...] = ()
+
+    def slice(self, start: int, width: int) -> PrintedRow:
+        """Return the cells of some columns."""
+        end = start + width
+        return PrintedRow(self.texts[start:end], self.edges[start : end + 1], self.continues[start:end])
+
+
+@dataclass(slots=True)
 class Row:
     """A row of a table. ``cells`` may be fewer or more than the columns where the page has them so (spans, torn rows)."""
 
@@ -53,6 +73,7 @@ class Row:
     line: int | None = None
     mended: str = ""  # what the reader had to do to it, in words
     edges: tuple[float, ...] = ()  # of its cells, where rules on the page part them
+    printed: PrintedRow | None = None
 
     @classmethod
     def of(cls, text: str, width: int, page: int | None, line: int | None = None) -> Row:
@@ -77,6 +98,7 @@ class Header:
     kind: str  # "fields" | "enumeration" | "list" | "loggable"
     roles: list[str]
     titles: list[str]
+    printed: list[PrintedRow] = field(default_factory=list, compare=False)
 
     @property
     def known(self) -> int:
@@ -142,6 +164,17 @@ class Heading:
     line: int | None = None
     size: float = 0.0  # of its type; larger headings hold smaller ones that have no number
 
+    def contains(self, other: Heading) -> bool:
+        """Whether the section goes on when another heading begins: section numbers decide, else the type size."""
+        if self.number and other.number:
+            return self.number.count(".") < other.number.count(".")
+        return bool(self.number) or (not other.number and self.size > other.size + 0.4)
+
+    @property
+    def title(self) -> str:
+        """Number and text, ``4.2 Motor State``."""
+        return f"{self.number} {self.text}".strip()
+
 
 @dataclass(slots=True)
 class Text:
@@ -164,6 +197,7 @@ class Trouble(NamedTuple):
     help: str = ""
     severity: str = "warning"  # "error" | "warning" | "note"
     sure: str = LIKELY
+    place: Place | None = None  # of the rule that gave it
 
 
 @dataclass(slots=True)

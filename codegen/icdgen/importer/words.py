@@ -102,6 +102,18 @@ def table_name(number: int | None) -> str:
 _SOFT = "\u00ad"
 
 
+def unbroken(lines: list[str], full: list[bool], known: frozenset[str]) -> list[str]:
+    """The lines of a wrapped cell, those put together between which a word was broken because it fills its line."""
+    made: list[str] = []
+    for index, line in enumerate(lines):
+        before = made[-1].rsplit(" ", 1)[-1] if made else ""
+        if made and full[index - 1] and _is(before + line.split(" ", 1)[0], known):
+            made[-1] += line
+        else:
+            made.append(line)
+    return made
+
+
 def join(lines: list[str], known: frozenset[str] = frozenset(), full: list[bool] | None = None) -> str:
     """The lines of a wrapped cell as one text.
 

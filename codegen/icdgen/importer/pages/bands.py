@@ -7,11 +7,11 @@ import math
 import re
 from dataclasses import dataclass
 
-from icdgen.importer.document import Header, Row
+from icdgen.importer.document import Header, PrintedRow, Row
 from icdgen.importer.pages.columns import index_of
 from icdgen.importer.pages.extract import Word
 from icdgen.importer.pages.lines import Line, lines, words_of
-from icdgen.importer.words import join
+from icdgen.importer.words import join, unbroken
 
 _UNIT = r"(?:(?:[Bb]its?|[Bb]ytes?|[Oo]ctets?)\s*)?"
 _KEY = re.compile(
@@ -32,6 +32,7 @@ class Band:
     page: int
     edges: list[float]
     words: list[Word]
+    continues: tuple[bool, ...] = ()  # whether a cell has no rule above it
 
     def of(self, found: list[Line]) -> Band:
         """What these lines of it are."""
@@ -41,6 +42,16 @@ class Band:
         """The texts of its cells."""
         return [_cell(part, edge, known) for part, edge in zip(self.parts(), self.edges[1:], strict=True)]
 
+    def row(self, known: frozenset[str]) -> Row:
+        """The row that the band is."""
+        return Row(self.texts(known), self.page, printed=self.printed(known))
+
+    def printed(self, known: frozenset[str]) -> PrintedRow:
+        """The row as the page shows it."""
+        cells = zip(self.parts(), self.edges[1:], strict=True)
+        texts = ["\n".join(unbroken(*_lines_of_cell(part, edge), known)) for part, edge in cells]
+        return PrintedRow(texts, tuple(self.edges), self.continues)
+
     def parts(self) -> list[list[Word]]:
         made: list[list[Word]] = [[] for _ in self.edges[1:]]
         for word in self.words:
@@ -49,11 +60,14 @@ class Band:
 
 
 def _cell(words: list[Word], right: float, known: frozenset[str]) -> str:
-    if not words:
-        return ""
+    texts, full = _lines_of_cell(words, right)
+    return join(texts, known, full)
+
+
+def _lines_of_cell(words: list[Word], right: float) -> tuple[list[str], list[bool]]:
+    """The lines of a cell, and whether each is a single word that fills its line."""
     found = lines(words)
-    full = [len(line.words) == 1 and line.x1 > right - 1.6 * line.size for line in found]
-    return join([line.text for line in found], known, full)
+    return [line.text for line in found], [len(n.words) == 1 and n.x1 > right - 1.6 * n.size for n in found]
 
 
 def is_key(text: str) -> bool:
@@ -89,10 +103,10 @@ def rows(band: Band, header: Header, known: frozenset[str], torn: bool = False) 
         return _around(band, found, groups, header, known)
     keyed = [i for i, line in enumerate(found) if is_key(_text_in(line, band.edges, key))]
     if len(keyed) <= (0 if torn else 1):
-        return [Row(band.texts(known), band.page)] if band.words else []
+        return [band.row(known)] if band.words else []
     made = []
     for first, last in _stretches(found, keyed, _leading(band), torn):
-        made.append(Row(band.of(found[first:last]).texts(known), band.page))
+        made.append(band.of(found[first:last]).row(known))
     return made
 
 

@@ -72,6 +72,8 @@ def _parts(table: Table, profile: Profile) -> list[Table]:
         header = headings.match(table.head[0].cells[start : start + width], profile, loose=True)
         if header is None:
             return []
+        if table.head[0].printed:
+            header.printed = [table.head[0].printed.slice(start, width)]
         rows = [_cut(row, start, width) for row in table.head[1:]]
         rows = [row for row in rows if any(row.cells)]
         made.append(Table(header=header, rows=rows, boxes=list(table.boxes), page=table.page))
@@ -79,7 +81,8 @@ def _parts(table: Table, profile: Profile) -> list[Table]:
 
 
 def _cut(row: Row, start: int, width: int) -> Row:
-    return Row(row.cells[start : start + width], row.page, edges=row.edges[start : start + width + 1])
+    printed = row.printed.slice(start, width) if row.printed else None
+    return Row(row.cells[start : start + width], row.page, edges=row.edges[start : start + width + 1], printed=printed)
 
 
 def _lines(mark: Mark, count: int, profile: Profile) -> list[Mark]:

@@ -130,7 +130,8 @@ class _Flow:
             if bottom - top < 3:
                 continue
             words = [w for w in inside if top <= w.middle < bottom]
-            bands.append(Band(page.number, region.separators(top, bottom), words))
+            edges = region.separators(top, bottom)
+            bands.append(Band(page.number, edges, words, region.open_above(top, edges)))
         return Piece(Box(page.number, region.x0, region.top, region.x1, region.bottom), bands, ruled=True)
 
     def next(self, page: Page, rest: list[Line], first: bool) -> tuple[int, Item | None]:

@@ -6,6 +6,7 @@ from bisect import bisect_left, bisect_right
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 from icdgen.importer.pages.extract import Page, Rule, Word
 
@@ -49,6 +50,16 @@ class Region:
             if min(rule.end, bottom) - max(rule.start, top) >= TALL * height:
                 found.append(rule.at)
         return distinct(found, 3.0)
+
+    def open_above(self, top: float, edges: list[float]) -> tuple[bool, ...]:
+        """For each cell whether no rule runs above it although rules run at this height elsewhere in the region."""
+        if top <= self.top + SNAP:
+            return (False,) * (len(edges) - 1)
+        here = [rule for rule in self.across if abs(rule.at - top) <= SNAP]
+        covered = [sum(max(0.0, min(r.end, b) - max(r.start, a)) for r in here) for a, b in pairwise(edges)]
+        return tuple(
+            bool(here) and length < 0.3 * (b - a) for length, (a, b) in zip(covered, pairwise(edges), strict=True)
+        )
 
 
 def distinct(values: list[float], snap: float = SNAP) -> list[float]:

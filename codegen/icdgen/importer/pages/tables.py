@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 from icdgen.importer import headings, labels
-from icdgen.importer.document import Block, Header, Row, Table
+from icdgen.importer.document import Block, Header, PrintedRow, Row, Table
 from icdgen.importer.pages import bands, captions, columns
 from icdgen.importer.pages.bands import Band
 from icdgen.importer.pages.flow import Item, Mark, Piece
@@ -221,11 +221,12 @@ class Builder:
         found = headings.match(band.texts(self.known), self.profile)
         if found is None and not waiting:
             found = headings.match(band.texts(self.known), self.profile, loose=True)
+        printed = [band.printed(self.known)]
         if found is None and waiting and len(lines(band.words)) < 4:
             both = _stacked(band, waiting[0], self.known)
             found = headings.match(both, self.profile) if both else None
             if found is not None:
-                waiting.pop(0)
+                printed.append(waiting.pop(0).printed(self.known))
             else:
                 found = headings.match(band.texts(self.known), self.profile, loose=True)
         if found is None:
@@ -234,14 +235,16 @@ class Builder:
                 return False
             above, found, rest = split
             draft.table.head += [Row([line.text], band.page) for line in above]
+            printed = [PrintedRow(found.titles, tuple(band.edges))]
             if rest.words:
                 waiting.insert(0, rest)
+        found.printed = printed
         draft.table.header, draft.edges = found, band.edges
         return True
 
     def head(self, band: Band, texts: list[str]) -> list[Row]:
         """A band above the headings: one row, or where that labels more, one for each line."""
-        whole = Row(texts, band.page, edges=tuple(band.edges))
+        whole = Row(texts, band.page, edges=tuple(band.edges), printed=band.printed(self.known))
         single = [Row([line.text], band.page) for line in lines(band.words)]
         return single if len(single) > 1 and self.labelled(single) > self.labelled([whole]) else [whole]
 
@@ -270,7 +273,10 @@ class Builder:
             plain = Band(band.page, draft.edges, band.words)
             if bands.has_keys(plain, header):  # rules part the headings only, the rows stand below them all the same
                 band = plain
-        draft.table.rows += bands.rows(bands.aligned(band, draft.edges), header, self.known, torn)
+        rows = bands.rows(bands.aligned(band, draft.edges), header, self.known, torn)
+        if len(rows) == 1:  # its cells as they are, not as they were moved below the headings
+            rows[0].printed = band.printed(self.known)
+        draft.table.rows += rows
 
     # --- without vertical rules ------------------------------------------------------------------------------------
 

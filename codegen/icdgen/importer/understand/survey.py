@@ -49,9 +49,9 @@ def survey(document: Document, profile: Profile) -> Survey:
     bare: list[Heading] = []  # those of the sections in which no table has come yet
     for block in document.blocks:
         if isinstance(block, Heading):
-            _without_table(made, sections, [one for one in bare if not _holds(one, block)], profile)
-            bare = [one for one in bare if _holds(one, block)] + [block]
-            sections = [s for s in sections if _holds(s, block)] + [block]
+            _without_table(made, sections, [one for one in bare if not one.contains(block)], profile)
+            bare = [one for one in bare if one.contains(block)] + [block]
+            sections = [s for s in sections if s.contains(block)] + [block]
             prose = []
         elif isinstance(block, Text):
             prose = [block.text, *prose][:NEAR]
@@ -122,13 +122,6 @@ def _is_grid(table: Table) -> bool:
     """Whether something without a caption is a table for all that: two rows or more of two cells or more."""
     rows = [row for row in table.all_rows if sum(map(bool, row.cells)) > 1]
     return len(rows) + (table.header is not None) > 1
-
-
-def _holds(outer: Heading, inner: Heading) -> bool:
-    """Whether a section goes on when another one begins: numbers tell, else the size of the type."""
-    if outer.number and inner.number:
-        return outer.number.count(".") < inner.number.count(".")
-    return bool(outer.number) or (not inner.number and outer.size > inner.size + 0.4)
 
 
 def _by_section(sections: tuple[str, ...], profile: Profile) -> str:

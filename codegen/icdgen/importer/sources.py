@@ -1,0 +1,28 @@
+"""Every source of tables -> `SourceTable`: PDF, text, and folders of table files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from icdgen.importer import reading, source_tables, table_files
+from icdgen.importer.document import Document
+from icdgen.importer.profile import Profile
+from icdgen.importer.source_tables import SourceTable
+from icdgen.importer.understand import byte_lines
+
+
+def read(
+    path: Path,
+    profile: Profile,
+    progress: reading.Progress | None = None,
+    jobs: int | None = None,
+    pages: tuple[int, int] | None = None,
+) -> tuple[Document, list[SourceTable]]:
+    """Return the document and its tables. Raises `Findings` for a file from which nothing can be read."""
+    if table_files.is_folder_of_tables(path):
+        tables = table_files.read(path)
+        return table_files.document_of(path), tables
+    document = reading.read(path, profile, progress, jobs, pages)
+    byte_lines.tables(document)
+    document.count_tables()
+    return document, source_tables.from_document(document)
