@@ -63,6 +63,16 @@ ABOUT_FILES = frozenset({"IMP002", "IMP003", "IMP005"})
 @click.option(
     "--explore", is_flag=True, help="Say what kinds of tables there are, and propose a profile; import nothing."
 )
+@click.option(
+    "--tables",
+    "folder",
+    type=PATH,
+    metavar="DIR",
+    help="Write each table as a YAML file that can be corrected and imported.",
+)
+@click.option(
+    "--explain", "table", type=int, metavar="TABLE", help="Say which rule read a table and why others did not."
+)
 @click.option("--pages", type=PAGES, help="Read these pages of a PDF only: 12 or 20-35.")
 @format_option("text", "json")
 @click.option("--jobs", type=click.IntRange(1, 64), help="Processes that read pages (default: one a core).")
@@ -76,11 +86,13 @@ def import_(
     page: Path | None,
     descriptions: bool,
     explore: bool,
+    folder: Path | None,
+    table: int | None,
     pages: tuple[int, int] | None,
     form: str,
     jobs: int | None,
 ) -> None:
-    """Read a vendor's manual (PDF, or text with tab-separated tables) or definitions into reviewable ICDs.
+    """Read a manual (PDF, text with tab-separated tables, folder of table files) or definitions into reviewable ICDs.
 
     Definitions are CAN databases (dbc, kcd, sym, arxml), MAVLink dialects (mavlink, mavlink1), XTCE (xtce), electronic
     data sheets of CCSDS SOIS (eds), Kaitai Struct (ksy) and models of SunSpec (sunspec). Files that refer to each
@@ -90,13 +102,14 @@ def import_(
       icdgen import mdb/pus.xml mdb/types.xml
       icdgen import cfs/modules
 
-    --profile, --report, --descriptions, --explore, --pages and --jobs are for manuals.
+    --profile, --report, --descriptions, --explore, --tables, --explain, --pages and --jobs are for manuals.
 
     Exit status: 0 if the ICDs contain everything that was found and `icdgen check` has no errors for them, else 1.
     """
-    from icdgen.importer import console, profile, run, targets
+    from icdgen.importer import console, profile, run, table_files, targets
 
-    definitions = _definitions(files, kind)
+    has_tables = len(files) == 1 and table_files.is_folder_of_tables(files[0])
+    definitions = [] if has_tables else _definitions(files, kind)
     if definitions:
         _define(definitions, out, update, dry_run, form)
         return
@@ -105,12 +118,23 @@ def import_(
         vocabulary = profile.load(profile.find(words))
         with _progress() as progress:
             result, trees = run.run(manual, vocabulary, progress, jobs, descriptions, pages)
-        if not explore:
+        if folder is not None:
+            paths = table_files.write(result.tables, folder, result.document)
+            say(
+                f"{folder}: {len(paths)} tables written; correct them, then `icdgen import {folder}`",
+                err=form == "json",
+            )
+        if table is not None:
+            say(_explanation(result, table))
+            sys.exit(0)
+        if not explore and (folder is None or vocabulary.has_rules):
             result.targets = targets.aim(trees, out, update, dry_run)
     except Findings as error:
         _refuse(error, manual, form)
         sys.exit(1)
     invalid = False
+    if folder is not None and not vocabulary.has_rules and not explore:
+        sys.exit(0)  # the tables were what was asked for
     if explore:
         _explore(result, vocabulary, form)
     else:
@@ -181,10 +205,30 @@ def _define(files: list[tuple[Path, Reader]], out: Path, update: bool, dry_run: 
     sys.exit(1 if not trees or any(read.failed for read in reads) or has_errors(checked) else 0)
 
 
+def _explanation(result: Result, number: int) -> str:
+    """Return what `--explain` prints. Raises `UserError` without rules, or if there is no such table."""
+    from icdgen.errors import UserError
+    from icdgen.importer.rules import explain
+
+    if result.interpretation is None:
+        raise UserError("--explain needs a profile with rules", "add --profile PROFILE; --explore proposes rules")
+    if not 1 <= number <= len(result.tables):
+        raise UserError(
+            f"there is no table {number}", f"tables are numbered from 1 to {len(result.tables)}, see --tables"
+        )
+    return explain.explain(result.interpretation, number)
+
+
 def _explore(result: Result, vocabulary: Profile, form: str) -> None:
     from icdgen.importer import explore
 
-    if form == "json":
+    if result.interpretation is not None:
+        from icdgen.importer.rules import explore as by_kind
+
+        document = result.document.file
+        report = by_kind.as_json if form == "json" else by_kind.report
+        say(report(result.tables, document).rstrip("\n"))
+    elif form == "json":
         click.echo(explore.as_json(result))
     else:
         say(explore.report(result, vocabulary).rstrip("\n"))

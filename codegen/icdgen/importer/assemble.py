@@ -60,7 +60,7 @@ def _keys(survey: Survey, profile: Profile) -> list[str]:
         told = _by_profile(one, profile)
         if told is None and isinstance(one.thing, ReadList) and one.thing.node:
             current = one.thing.node
-        if told is None and not profile.nodes and restarts:
+        if told is None and not profile.nodes and restarts and not profile.has_rules:
             told = f"part {one.table.run}"
         number = one.table.number
         key = (

@@ -43,6 +43,7 @@ def findings(troubles: Sequence[Trouble], file: str, colour: bool = False) -> li
             _paint(f"{trouble.severity}[{trouble.code}]", trouble.severity, colour) + f": {printable(trouble.message)}",
             f"  --> {printable(where(file, trouble.spot))}",
         ]
+        lines += [f"  = rule: {trouble.place}"] if trouble.place else []
         lines += [f"  = help: {printable(trouble.help)}"] if trouble.help else []
         lines.append("")
     if notes:
@@ -125,7 +126,8 @@ def as_json(result: Result, checked: Sequence[Finding]) -> str:
 
 def finding_as_json(one: Trouble) -> dict[str, Any]:
     """A finding without its place."""
-    return {"code": one.code, "severity": one.severity, "message": one.message, "help": one.help}
+    made: dict[str, Any] = {"code": one.code, "severity": one.severity, "message": one.message, "help": one.help}
+    return made | ({"rule": str(one.place)} if one.place else {})
 
 
 def checked_as_json(checked: Sequence[Finding]) -> list[dict[str, Any]]:

@@ -21,6 +21,11 @@ def tree(node: NodeParts, document: Document, profile: Profile, prose: bool, tro
         include=node.include,
         units=_units(node, troubles),
         enums=[_enum(one, prose) for one in node.enums],
+        structs=[
+            {"name": one.name, "length": one.length, "fields": [_field(field, prose) for field in one.fields]}
+            for message in node.messages
+            for one in message.structs
+        ],
         messages=messages,
         formula_for=_announced(messages),
         loggable=[{"bit": b.bit, "id": b.id} | _given(name=b.name) for log in node.logs for b in log.bits],
@@ -88,8 +93,11 @@ def _message(one: ReadMessage, prose: bool) -> dict[str, Any]:
 
 def _field(one: ReadField, prose: bool) -> dict[str, Any]:
     said = one.described
+    if "struct" in one.facts:
+        return {"at": one.at, "name": one.name, **one.facts}
+    sized = {} if "size" in one.facts else {"bits": one.bits}
     return {
-        "at": one.at, "bits": one.bits, "name": one.name, "type": one.type,
+        "at": one.at, **sized, "name": one.name, "type": one.type, **one.facts,
         **_given(
             count=one.count, enum=one.enum, unit=SIGNS.get(said.unit, said.unit), formula=said.formula,
             formula_for=said.formula_for, const=said.const and Spelled(said.const),

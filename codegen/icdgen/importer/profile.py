@@ -11,6 +11,8 @@ from typing import Any
 from icdgen.diagnostics import Findings
 from icdgen.icd import schema, source
 from icdgen.icd.located import Map, plain
+from icdgen.importer.rules.language import TypeName
+from icdgen.importer.rules.rule import Rule, read_rules
 from icdgen.importer.words import folded
 
 DEFAULT = Path(__file__).with_name("profile.yaml")
@@ -36,6 +38,8 @@ class Profile:
 
     data: dict[str, Any]
     own: dict[str, Any] = field(default_factory=dict)  # what was laid over the profile that comes with icdgen
+    rules: list[Rule] = field(default_factory=list)
+    has_rules: bool = False  # a profile may state an empty list: then nothing is read, and everything listed
 
     @cached_property
     def headings(self) -> dict[str, dict[str, list[tuple[str, ...]]]]:
@@ -123,6 +127,25 @@ class Profile:
         return {"".join(folded(name)): rule for name, rule in self.data["types"].items()}
 
     @cached_property
+    def types_of_profile(self) -> dict[str, TypeName]:
+        """The type names that the profile itself explains, without blanks and case."""
+        own = self.own.get("types", {})
+        return {"".join(name.casefold().split()): TypeName(t["type"], t.get("bits", 0)) for name, t in own.items()}
+
+    @property
+    def reads_descriptions(self) -> bool:
+        """Whether rules look into descriptions for units, formulas and constants: if the profile states phrases."""
+        return "phrases" in self.own or "variables" in self.own
+
+    def is_reserved(self, name: str) -> bool:
+        """Whether a field of this name means nothing; an entry of `reserved` that begins with ``~`` is a pattern."""
+        texts = self.data["reserved"]
+        return (bool(folded(name)) and folded(name) in self.reserved) or any(
+            name.casefold() == text.casefold() or (text.startswith("~") and re.search(text[1:], name, re.I))
+            for text in texts
+        )
+
+    @cached_property
     def phrases(self) -> dict[str, list[re.Pattern[str]]]:
         return {what: [phrase(text) for text in texts] for what, texts in self.data["phrases"].items()}
 
@@ -192,7 +215,8 @@ def load(path: Path | None = None) -> Profile:
     tree = source.read(path)
     _check(tree)
     own = plain(tree)
-    return Profile(_laid_over(_without_moved(base, own), own), own)
+    rules = read_rules(tree["rules"]) if "rules" in tree else []
+    return Profile(_laid_over(_without_moved(base, own), own), own, rules, "rules" in tree)
 
 
 def _without_moved(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:

@@ -83,9 +83,13 @@ def enums(node: NodeParts, nodes: list[NodeParts], everything: list[ReadEnum], t
     """Finds the enumeration of each enum field, and brings it within reach of the node."""
     for message in node.messages:
         for field in message.fields:
-            if field.type == "enum" and (chosen := _meant(node, everything, message, field, troubles)):
+            if (
+                field.type == "enum"
+                and not field.enum
+                and (chosen := _meant(node, everything, message, field, troubles))
+            ):
                 field.enum = _within_reach(node, nodes, chosen)
-            elif field.type == "enum":
+            elif field.type == "enum" and not field.enum:
                 field.type = "uint"
 
 
@@ -193,6 +197,10 @@ def _is_held(message: ReadMessage, most: int, troubles: list[Trouble]) -> bool:
         if message.lacks != "-":
             say("IMP037", message.lacks, "it was left out", "error")
         return False
+    if message.is_by_rule and (lacking := _lacking(message)):
+        say("IMP031", f"its rule gives no {' and no '.join(lacking)}; the message was left out",
+            "state it under `message:`, or take it with a pattern", "error")  # fmt: skip
+        return False
     by_kind = "`defaults: {kind: telemetry}`"
     if not message.kind:
         what = "nothing that says whether it is a telecommand or telemetry; it was left out"
@@ -210,10 +218,10 @@ def _is_held(message: ReadMessage, most: int, troubles: list[Trouble]) -> bool:
         number = message.table.number
         message.name = f"Table {table_name(number)}" if number else f"Message {message.id}"
         say("IMP025", "nothing names the message", "name it in the ICD", "error")
-    needed = max(((field.end + 7) // 8 for field in message.fields), default=0)
+    needed = max(((end + 7) // 8 for _, end in message.extents()), default=0)
     if message.length is None:
         message.length = needed
-        severity = "error" if messages.gaps(message) else "warning"
+        severity = "note" if message.is_by_rule else "error" if messages.gaps(message) else "warning"
         what = f"it does not say its length; the fields need {needed} byte{'s' if needed != 1 else ''}"
         say("IMP032", what, "look at the page", severity)
     elif needed > message.length:
@@ -223,5 +231,12 @@ def _is_held(message: ReadMessage, most: int, troubles: list[Trouble]) -> bool:
         say("IMP034", f"it has {message.length} bytes and no field", "look at the page", sure=DOUBTFUL)
     elif free := messages.gaps(message):
         bits = ", ".join(f"{a}" if a == b else f"{a} to {b}" for a, b in free)
-        say("IMP035", f"no field covers bit {bits}", "such bits are reserved; make sure that no row was lost", "note")
+        severity = "warning" if message.is_by_rule else "note"
+        say("IMP035", f"no field covers bit {bits}", "such bits are reserved; make sure that no row was lost", severity)
     return True
+
+
+def _lacking(message: ReadMessage) -> list[str]:
+    """What a message needs and its rule does not give."""
+    given = {"name": message.name, "kind": message.kind, "id": any(one is not None for one in message.ids)}
+    return [key for key, value in given.items() if not value]

@@ -7,10 +7,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from icdgen.importer import assemble, profile, reading, repairs
+from icdgen.importer import assemble, profile, reading, repairs, sources
 from icdgen.importer.document import CERTAIN, DOUBTFUL, LIKELY, Document, Table, Trouble
+from icdgen.importer.rules import interpret
+from icdgen.importer.rules.interpret import Interpretation
+from icdgen.importer.source_tables import SourceTable
 from icdgen.importer.targets import Target
-from icdgen.importer.understand import byte_lines, survey
+from icdgen.importer.understand import survey
 from icdgen.importer.understand.survey import Survey
 
 NOTHING = "IMP004"
@@ -23,6 +26,8 @@ class Result:
     document: Document
     survey: Survey
     targets: list[Target] = field(default_factory=list)
+    tables: list[SourceTable] = field(default_factory=list)
+    interpretation: Interpretation | None = None  # where the profile has rules
 
     @property
     def troubles(self) -> list[Trouble]:
@@ -55,15 +60,25 @@ def run(
 ) -> tuple[Result, dict[str, dict[str, Any]]]:  # fmt: skip
     """Reads a manual. Raises `Findings` for a file that cannot be read; one that holds nothing to import gives no tree
     and the finding IMP004. ``pages``: the first and the last one to read of a PDF."""
-    document = reading.read(manual, words, progress, jobs, pages)
-    byte_lines.tables(document)
-    document.count_tables()
-    repairs.mend(document, words)
-    found = survey.survey(document, words)
+    document, tables = sources.read(manual, words, progress, jobs, pages)
+    interpretation = None
+    if words.has_rules or not document.blocks:
+        interpretation = interpret.interpret(tables, words, document.troubles)
+        found = interpretation.survey
+    else:
+        repairs.mend(document, words)
+        found = survey.survey(document, words)
     trees = assemble.assemble(document, found, words, prose)
     if not trees:
-        found.troubles.append(_nothing(document, found))
-    return Result(document, found), trees
+        found.troubles.append(_nothing(document, found) if interpretation is None else _nothing_by_rules(words))
+    return Result(document, found, tables=tables, interpretation=interpretation), trees
+
+
+def _nothing_by_rules(words: profile.Profile) -> Trouble:
+    help = (
+        "the other findings say why" if words.rules else "write rules in a profile (--profile): --explore proposes them"
+    )
+    return Trouble(NOTHING, "no rule gives a message", help=help, severity="error", sure=DOUBTFUL)
 
 
 def _nothing(document: Document, found: Survey) -> Trouble:

@@ -188,10 +188,10 @@ def gaps(message: ReadMessage) -> list[tuple[int, int]]:
         return []
     total = 8 * message.length
     free, at = [], 0
-    for one in sorted(message.fields, key=lambda f: f.at):
-        if one.at > at:
-            free.append((at, min(one.at, total) - 1))
-        at = max(at, one.end)
+    for start, end in sorted(message.extents()):
+        if start > at:
+            free.append((at, min(start, total) - 1))
+        at = max(at, end)
     if at < total:
         free.append((at, total - 1))
     return [(a, b) for a, b in free if b >= a]

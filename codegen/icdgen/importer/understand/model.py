@@ -23,11 +23,23 @@ class ReadField:
     count: int = 0  # elements of an array
     enum: str = ""
     bitfields: list[Bits] = field(default_factory=list)
+    facts: dict[str, Any] = field(default_factory=dict)  # further keys of the field in the ICD
 
     @property
     def end(self) -> int:
-        """The bit behind it."""
-        return self.at + self.bits * (self.count or 1)
+        """The bit behind it; behind what the shortest frame has of it, if its length varies."""
+        if "up_to" in self.facts:
+            return self.at
+        return self.at + self.bits * (self.facts.get("count") or self.count or 1)
+
+
+@dataclass(slots=True)
+class ReadStruct:
+    """A struct that a message repeats; ``length`` in bytes."""
+
+    name: str
+    length: int
+    fields: list[ReadField]
 
 
 @dataclass(slots=True)
@@ -47,7 +59,15 @@ class ReadMessage:
     listed: dict[str, object] = field(default_factory=dict)
     summary: str = ""
     lacks: str = ""  # why it cannot be held; "-" where a finding says so already
+    reserved: list[tuple[int, int]] = field(default_factory=list)  # first bit and size of what is printed as reserved
+    structs: list[ReadStruct] = field(default_factory=list)
+    is_by_rule: bool = False
     register_bits: int | None = None  # bits of each register whose bit 0 is the lowest one; 0: the whole message is one
+
+    def extents(self) -> list[tuple[int, int]]:
+        """The first bit and the bit behind of each field and of each run of reserved bits."""
+        fields = [(field.at, field.end) for field in self.fields]
+        return fields + [(at, at + size) for at, size in self.reserved]
 
     @property
     def ids(self) -> tuple[int | None, int | None, int | None]:

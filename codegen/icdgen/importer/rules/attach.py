@@ -1,0 +1,148 @@
+"""Tables that say more about fields and messages of other tables: enumerations, lookup tables, bits, and the index of messages."""
+
+from __future__ import annotations
+
+from icdgen.importer.rules.bit_order import Order, bits_of, run_of
+from icdgen.importer.rules.fields import Draft
+from icdgen.importer.rules.language import decimal, normalised
+from icdgen.importer.rules.notes import Notes
+from icdgen.importer.rules.parts import Part
+from icdgen.importer.understand.model import ReadMessage
+from icdgen.importer.understand.survey import Found
+from icdgen.importer.words import squeezed
+
+_SAID = ("kind", "length")
+
+
+def attach(parts: list[Part], messages: list[Part], order: Order, notes: Notes) -> None:
+    """Give enumerations, lookup tables and bits to the fields that their `of` names."""
+    for part in parts:
+        if part.rule.what not in ("enumeration", "lookup", "bits"):
+            continue
+        name = normalised(part.given.get("of", ""))
+        hosts = _hosts(name, part, parts, messages)
+        if not hosts:
+            notes.error(
+                "IMP107",
+                f"{part.table.title}: there is no field `{name}` for this {part.rule.what}",
+                part.table.spot,
+                "correct `of` of the rule, or the pattern with `{of}`",
+                part.rule.place,
+            )
+        for host, field in hosts:
+            if part.rule.what == "enumeration":
+                field.members, field.kind = part.pairs, "enum"
+            elif part.rule.what == "lookup":
+                _lookup(part, field, notes)
+            else:
+                _divide(part, host, field, order, notes)
+
+
+def _hosts(name: str, part: Part, parts: list[Part], messages: list[Part]) -> list[tuple[Part, Draft]]:
+    """The fields of this name. Where several tables speak of one, each goes to the nearest message above it."""
+    found = [(m, d) for m in messages for d in m.drafts if squeezed(d.name) == squeezed(name) and name]
+    rivals = [p for p in parts if p.rule.what == part.rule.what and squeezed(p.given.get("of", "")) == squeezed(name)]
+    if len(rivals) > 1 or part.rule.what == "bits":
+        above = [(m, d) for m, d in found if m.table.number <= part.table.number]
+        return above[-1:]
+    return found
+
+
+def _lookup(part: Part, field: Draft, notes: Notes) -> None:
+    points = [[raw, decimal(text)] for raw, text in part.pairs]
+    if any(physical is None for _, physical in points):
+        notes.error(
+            "IMP023",
+            f"{part.table.title}: a point of the lookup table of `{field.name}` is no number",
+            part.table.spot,
+            "correct the pattern of `points`",
+            part.rule.place,
+        )
+        return
+    field.facts["points"] = [
+        [raw, float(str(physical))] for raw, physical in sorted(points, key=lambda point: point[0] or 0)
+    ]
+
+
+def _divide(part: Part, host: Part, field: Draft, order: Order, notes: Notes) -> None:
+    """Put the fields of bits in the place of the field that they divide."""
+    whole = bits_of(field.at, field.bits, field.order or order)
+    covered = {bit for draft in part.drafts for bit in range(draft.at, draft.end)}
+    missing = sorted(set(range(field.bits)) - covered)
+    if missing or max(covered, default=0) >= field.bits:
+        shown = ", ".join(map(str, missing)) or f"{field.bits} and above"
+        notes.warn(
+            "IMP105",
+            f"{part.table.title}: the bits of `{field.name}` leave out or exceed its bits: {shown}",
+            part.table.spot,
+            "make sure that no row was lost",
+            part.rule.place,
+        )
+    made = []
+    for draft in part.drafts:
+        run = run_of(whole[draft.at : draft.end], order) if draft.end <= field.bits else None
+        if run is None:
+            notes.error(
+                "IMP105",
+                f"{part.table.title}: `{draft.name}` does not fit into the bits of `{field.name}`",
+                draft.spot,
+                "compare with the table",
+                part.rule.place,
+            )
+            continue
+        draft.at, draft.order = run[0], run[1] if run[1] != order else None
+        made.append(draft)
+    index = next(i for i, draft in enumerate(host.drafts) if draft is field)
+    host.drafts[index : index + 1] = made
+
+
+def check_index(index: list[Part], found: list[Found], notes: Notes) -> None:
+    """Complete messages from the index, and report what it contradicts, lists without a table, or lacks."""
+    messages = [one.thing for one in found if isinstance(one.thing, ReadMessage)]
+    for entry in index:
+        id, name = entry.number("id"), normalised(entry.name)
+        same = [
+            m for m in messages if (id is not None and id in m.ids) or (name and squeezed(m.name) == squeezed(name))
+        ]
+        if not same:
+            notes.warn(
+                "IMP061",
+                f"{entry.table.title}: it lists `{name or id}`, and no table describes it",
+                entry.table.spot,
+                "write a rule for its table, or leave the row out with `skip`",
+                entry.rule.place,
+            )
+        for message in same:
+            _complete(message, entry, id, name, notes)
+
+
+def _complete(message: ReadMessage, entry: Part, id: int | None, name: str, notes: Notes) -> None:
+    if not message.name:
+        message.name, message.names = name, [name]
+    stated = {"kind": entry.given.get("kind"), "length": entry.number("length")}
+    if all(one is None for one in message.ids) and id is not None:
+        if (message.kind or stated["kind"]) == "configuration":
+            message.set_id = message.get_id = id
+        else:
+            message.id = id
+    elif id is not None and id not in message.ids:
+        notes.error(
+            "IMP060",
+            f"{entry.table.title}: it gives `{message.name}` the id {id}, its own table says "
+            f"{next(one for one in message.ids if one is not None)}",
+            entry.table.spot,
+            "compare both tables",
+            entry.rule.place,
+        )
+    for key in _SAID:
+        own, other = getattr(message, key), stated[key]
+        if own in (None, "") and other:
+            setattr(message, key, other)
+        elif other and own != other:
+            notes.error(
+                "IMP060",
+                f"{entry.table.title}: it gives `{message.name}` the {key} {other}, its own table says {own}",
+                entry.table.spot,
+                "compare both tables",
+                entry.rule.place,
+            )

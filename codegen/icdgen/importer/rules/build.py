@@ -1,0 +1,224 @@
+"""Parts of tables -> messages and enumerations as the importer assembles them to ICDs."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+from icdgen.importer.profile import Profile
+from icdgen.importer.rules import attach
+from icdgen.importer.rules.bit_order import Order
+from icdgen.importer.rules.fields import Draft, joined_parts
+from icdgen.importer.rules.language import KINDS, normalised
+from icdgen.importer.rules.notes import Notes
+from icdgen.importer.rules.parts import Part
+from icdgen.importer.understand.model import ReadEnum, ReadField, ReadMember, ReadMessage, ReadStruct
+from icdgen.importer.understand.survey import Found
+from icdgen.importer.words import squeezed
+
+
+class Builder:
+    """Builds messages of parts; ``order`` is the node's."""
+
+    def __init__(self, profile: Profile, order: Order) -> None:
+        self.profile, self.order = profile, order
+        self.notes = Notes()
+        self.enums: dict[str, ReadEnum] = {}
+        self.enums_found: list[Found] = []
+
+    def build(self, parts: list[Part]) -> tuple[list[Found], Notes]:
+        """Return the messages and enumerations in the order of the tables, and the findings about them."""
+        messages = [part for part in parts if part.rule.what in ("message", "registers")]
+        for part in messages:
+            self.place(part)
+        messages = self.continued(messages)
+        attach.attach(parts, messages, self.order, self.notes)
+        made = []
+        for part in messages:
+            message = self.message(part)
+            made.append(Found(message.table, "message", message))
+        made += self.enums_found
+        return sorted(made, key=lambda found: found.table.order or 0), self.notes
+
+    def place(self, part: Part) -> None:
+        """Put the pieces of split fields together and bring bits into the node's order."""
+        is_register = part.rule.what == "registers"
+        length = part.number("length") or (max((draft.end for draft in part.drafts), default=0) + 7) // 8
+        part.drafts = joined_parts(part.drafts, self.order, is_register, length, self.notes, part.rule)
+
+    def continued(self, parts: list[Part]) -> list[Part]:
+        """The messages, those of one rule, id and kind put together whose fields do not overlap: a table that goes on."""
+        made: list[Part] = []
+        by_id: dict[tuple[str | None, ...], Part] = {}
+        for part in parts:
+            ids = tuple(part.given.get(role) for role in ("id", "set_id", "get_id"))
+            key = (part.rule.name, part.given.get("kind"), *ids)
+            first = by_id.get(key) if any(ids) else None
+            if first is None:
+                by_id[key] = part
+                made.append(part)
+            elif _overlap(first.drafts, part.drafts):
+                self.notes.error(
+                    "IMP105",
+                    f"{part.where}: table {first.table.number} describes a message of the same id, and "
+                    "fields of both overlap",
+                    part.table.spot,
+                    "correct the pattern of the id, or read each by its own rule",
+                    part.rule.place,
+                )
+                made.append(part)
+            else:
+                first.drafts = sorted([*first.drafts, *part.drafts], key=lambda draft: draft.at)
+        return made
+
+    def message(self, part: Part) -> ReadMessage:
+        """Return the message of a part."""
+        table = part.table.as_table()
+        kind = part.given.get("kind", "")
+        if kind and kind not in KINDS:
+            self.notes.error(
+                "IMP031",
+                f"{part.where}: its kind `{kind[:40]}` is none of {', '.join(KINDS)}",
+                part.table.spot,
+                f"translate it: `map: {{kind: {{{kind[:20]}: telemetry}}}}`",
+                part.rule.place,
+            )
+            kind = ""
+        made = ReadMessage(normalised(part.name), kind, table, names=[normalised(part.name)] if part.name else [])
+        made.is_by_rule = True
+        made.summary = part.given.get("message_text", "")
+        for role in ("id", "set_id", "get_id", "length"):
+            text = part.given.get(role)
+            value = part.number(role)
+            if text and value is None:
+                self.notes.error(
+                    "IMP023",
+                    f"{part.where}: its {role} is `{text[:40]}`, which is no number",
+                    part.table.spot,
+                    "correct the pattern, or state `base: 16`",
+                    part.rule.place,
+                )
+            setattr(made, role, value)
+        if kind == "configuration" and made.id is not None:
+            made.set_id = made.get_id = made.id
+            made.id = None
+        self.fields(made, part)
+        return made
+
+    def fields(self, made: ReadMessage, part: Part) -> None:
+        """Give the message its fields, reserved bits and structs."""
+        groups: dict[str, list[Draft]] = defaultdict(list)
+        seen: set[str] = set()
+        for draft in part.drafts:
+            if self.profile.is_reserved(draft.name):
+                made.reserved.append((draft.at, draft.size))
+            elif draft.roles.get("group"):
+                groups[normalised(draft.roles.get("group"))].append(draft)
+            else:
+                self.check_name(draft, part, seen)
+                made.fields.append(self.field(draft, part))
+        for name, drafts in groups.items():
+            self.group(made, name, drafts, part)
+        made.fields.sort(key=lambda field: field.at)
+
+    def check_name(self, draft: Draft, part: Part, seen: set[str]) -> None:
+        """Report names that look like a mistake of a rule."""
+        key = squeezed(draft.name)
+        if not any(c.isalpha() for c in draft.name) or key in seen:
+            what = "two fields have this name" if key in seen else "this is no name"
+            self.notes.error(
+                "IMP107",
+                f"{part.where}, field `{draft.name[:60]}`: {what}",
+                draft.spot,
+                "correct the pattern of `name`, or correct one with `set:`",
+                part.rule.place,
+            )
+        seen.add(key)
+
+    def field(self, draft: Draft, part: Part) -> ReadField:
+        """Return the field of a draft."""
+        made = ReadField(draft.name, draft.at, draft.bits, draft.kind, draft.described, draft.spot, draft.count)
+        made.facts = dict(draft.facts)
+        if draft.order is not None:
+            node = self.order
+            made.facts |= {
+                key: getattr(draft.order, key)
+                for key in Order._fields
+                if getattr(draft.order, key) != getattr(node, key)
+            }
+        if draft.kind == "bool" and draft.bits != 1:
+            self.notes.warn(
+                "IMP026",
+                f"{part.where}, field `{draft.name}`: a bool has one bit, this one {draft.bits}",
+                draft.spot,
+                "represented as uint",
+                part.rule.place,
+            )
+            made.type = "uint"
+        if draft.members:
+            made.enum = self.enumeration(draft, part)
+        elif draft.kind == "enum":
+            self.notes.error(
+                "IMP050",
+                f"{part.where}, field `{draft.name}`: nothing gives its values",
+                draft.spot,
+                "give them with the role `members`, or with a rule `what: enumeration`",
+                part.rule.place,
+            )
+            made.type = "uint"
+        return made
+
+    def enumeration(self, draft: Draft, part: Part) -> str:
+        """The name of the enumeration with the field's members; one for all fields of this name and these members."""
+        members = [ReadMember(value, name) for value, name in draft.members]
+        for name in (draft.name, f"{part.name} {draft.name}".strip(), f"{part.name} {draft.name} {draft.at}"):
+            own = self.enums.get(name)
+            if own is None:
+                own = self.enums[name] = ReadEnum(name, members, part.table.as_table())
+                self.enums_found.append(Found(own.table, "enumeration", own))
+            if own.members == members:
+                return name
+        return draft.name
+
+    def group(self, made: ReadMessage, name: str, drafts: list[Draft], part: Part) -> None:
+        """A struct that is repeated: as often as the frame has room for it, as a field counts, or so many times."""
+        strides = {draft.roles.get("stride") for draft in drafts} - {""}
+        start = min(draft.at for draft in drafts)
+        size = (max(draft.end for draft in drafts) - start + 7) // 8
+        if len(strides) > 1 or (strides and strides != {str(size)}):
+            self.notes.error(
+                "IMP105",
+                f"{part.where}: the fields of the group `{name}` need {size} bytes, its elements stand "
+                f"{' and '.join(sorted(strides))} bytes apart",
+                part.table.spot,
+                "check the role `stride`",
+                part.rule.place,
+            )
+            return
+        first = drafts[0].roles
+        counted = first.get("counter") or ("rest" if first.get("rest") else first.get("count"))
+        bound = first.get("up_to")
+        if not counted or (not bound and not counted.isdigit()):
+            self.notes.error(
+                "IMP105",
+                f"{part.where}: nothing says how often the group `{name}` is repeated",
+                part.table.spot,
+                "give `count`, or `counter` or `rest` and `up_to`, for instance under `each:`",
+                part.rule.place,
+            )
+            return
+        fields = []
+        for draft in drafts:
+            draft.facts = {key: value for key, value in draft.facts.items() if key not in ("count", "size", "up_to")}
+            field = self.field(draft, part)
+            field.at -= start
+            fields.append(field)
+        title = f"{part.name} {name}".strip()
+        made.structs.append(ReadStruct(title, size, fields))
+        facts = {"struct": title, "count": int(counted) if counted.isdigit() else counted}
+        whole = ReadField(name, start, 8 * size, "struct", drafts[0].described.__class__(), drafts[0].spot)
+        whole.facts = facts | ({"up_to": int(bound)} if bound and not counted.isdigit() else {})
+        made.fields.append(whole)
+
+
+def _overlap(first: list[Draft], second: list[Draft]) -> bool:
+    return any(a.at < b.end and b.at < a.end for a in first for b in second)

@@ -1,0 +1,72 @@
+"""Why a table became what it became: `icdgen import FILE --profile PROFILE --explain TABLE`."""
+
+from __future__ import annotations
+
+from icdgen.importer.document import Trouble
+from icdgen.importer.rules.cells import find_columns
+from icdgen.importer.rules.interpret import Interpretation
+from icdgen.importer.rules.notes import Notes
+from icdgen.importer.rules.parts import Part
+from icdgen.importer.rules.rows import read_rows
+from icdgen.importer.rules.rule import Rule
+from icdgen.importer.source_tables import SourceTable
+
+SHOWN = 60  # characters of a cell
+
+
+def explain(interpretation: Interpretation, number: int) -> str:
+    """Return the explanation of a table: every rule that was tried, texts and columns with their roles, fields, findings."""
+    choice = next(choice for choice in interpretation.choices if choice.table.number == number)
+    table = choice.table
+    place = f", {table.spot.place}" if table.spot.place else ""
+    lines = [f"{table.title}{place}: {len(table.rows)} rows, {table.width} columns"]
+    lines += [f"  caption: {table.caption}"] if table.caption else []
+    lines += [f"  heading: {heading}" for heading in table.headings]
+    lines += [f"  before:  {text[: 2 * SHOWN]}" for text in table.before[-5:]]
+    lines.append(f"  headings of columns: {' | '.join(table.titles)}")
+    lines += [f"  rule `{rule.name}` ({rule.place.line}) does not apply: {reason}" for rule, reason in choice.reasons]
+    for rule in choice.rules:
+        lines.append(f"  rule `{rule.name}` ({rule.place.line}) applies: {rule.what}")
+        if rule.what != "ignore":
+            parts = [part for part in interpretation.parts if part.table is table and part.rule is rule]
+            lines += _columns(rule, table) + [line for part in parts for line in _part(part)]
+    if not choice.rules:
+        lines.append("  no rule applies: the table gives nothing")
+    about = [t for t in interpretation.survey.troubles if t.spot.order == number - 1]
+    lines += [_finding(trouble) for trouble in about]
+    return "\n".join(line.rstrip() for line in lines)
+
+
+def _columns(rule: Rule, table: SourceTable) -> list[str]:
+    titles, rows = read_rows(rule, table, Notes())
+    roles: dict[str, str] = {}
+    for column in (*rule.columns, *rule.lines):
+        for title in find_columns(column, titles):
+            roles[title] = " or ".join(f"`{pattern.text}`" for pattern in column.patterns)
+    lines = [f"    {len(rows)} rows below the headings"]
+    for title in filter(None, titles):
+        given = roles.get(title) or ("ignored" if title in rule.ignore else "melted" if rule.melt else "no role")
+        lines.append(f"    column `{title}`: {given}")
+    return lines
+
+
+def _part(part: Part) -> list[str]:
+    given = ", ".join(f"{role} = `{text[:SHOWN]}`" for role, text in part.given.items())
+    lines = [f"    {part.rule.what}: {given}" if given else f"    {part.rule.what}"]
+    lines += [f"      value {value}: {name[:SHOWN]}" for value, name in part.pairs]
+    for draft in part.drafts:
+        count = f" x {draft.count}" if draft.count else ""
+        formula = f", {draft.described.formula}" if draft.described.formula else ""
+        unit = f" {draft.described.unit}" if draft.described.unit else ""
+        lines.append(f"      bit {draft.at:>4} +{draft.bits}{count}  {draft.kind}  {draft.name[:SHOWN]}{unit}{formula}")
+        lines += [f"        value {value}: {name[:SHOWN]}" for value, name in draft.members]
+    return lines
+
+
+def _finding(trouble: Trouble) -> str:
+    row = (
+        f" (line {trouble.spot.line})"
+        if trouble.spot.line
+        else f" (page {trouble.spot.page})" if trouble.spot.page else ""
+    )
+    return f"  {trouble.severity}[{trouble.code}]{row}: {trouble.message}"

@@ -1,0 +1,84 @@
+"""The kinds of tables of a document, each with the skeleton of a rule: `icdgen import FILE --explore`.
+
+A kind is a set of tables with the same headings; tables of different kinds are never put together. The skeleton names every
+column and gives none a role: what a column means is for a person to say.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any
+
+from icdgen.importer.source_tables import SourceTable, kinds, name_of
+from icdgen.importer.words import plain
+
+SAMPLES = 3  # cells shown of a column
+MOST_NUMBERS = 12
+
+
+def report(tables: list[SourceTable], document: str) -> str:
+    """Return a profile to be completed: a block for each kind with its tables, sample cells, and a rule."""
+    groups = kinds(tables)
+    lines = [
+        f"# {document}: {len(tables)} tables of {len(groups)} kinds, a rule for each. A table without a rule gives nothing.",
+        "# Give each column a role or a pattern (docs/reference/import-rules.md), or put its heading under `ignore`.",
+        "profile: 1",
+        "node: {byte_order: little, bit_order: lsb0}  # state both: little or big, lsb0 or msb0",
+        "rules:",
+    ]
+    for group in groups:
+        lines += ["", *_block(group)]
+    return "\n".join(line.rstrip() for line in lines) + "\n"
+
+
+def _block(group: list[SourceTable]) -> list[str]:
+    first = group[0]
+    numbers = ", ".join(str(table.number) for table in group[:MOST_NUMBERS]) + (
+        " ..." if len(group) > MOST_NUMBERS else ""
+    )
+    pages = sorted({table.page for table in group if table.page is not None})
+    where = f", pages {pages[0]} to {pages[-1]}" if len(pages) > 1 else f", page {pages[0]}" if pages else ""
+    lines = [f"  # {len(group)} table{'s' if len(group) != 1 else ''}: {numbers}{where}"]
+    for key, texts in (("caption", [first.caption]), ("heading", first.headings[-1:]), ("before", first.before[-1:])):
+        lines += [f"  #   {key}: {plain(text)[:100]}" for text in texts if text]
+    titles = first.titles
+    head = next((index for index, row in enumerate(first.rows) if [plain(c.text) for c in row.cells] == titles), 0)
+    lines.append(f"  - tables: {{head: {_quoted(' | '.join(map(_title, titles)))}}}")
+    lines += ["    what: message", "    message: {heading: '^{message} {id}$', kind: telemetry}", "    columns:"]
+    rows = first.grid()[head + 1 :]
+    for column, title in enumerate(titles):
+        cells = (plain(row[column].text) for row in rows if column < len(row))
+        samples = " | ".join(list(dict.fromkeys(filter(None, cells)))[:SAMPLES])
+        key = _quoted(title) if title else str(column + 1)
+        lines.append(f"      {key}:   # {samples[:90]}")
+    return lines
+
+
+def _title(title: str) -> str:
+    """A heading within `head`: an empty cell is any cell, and one that begins like a pattern is quoted."""
+    return "*" if not title else f"~^{re.escape(title)}$" if title.startswith("~") or " | " in title else title
+
+
+def _quoted(text: str) -> str:
+    if re.fullmatch(r"[A-Za-z][\w ()./-]*[\w)]|[A-Za-z]", text) and text.casefold() not in _WORDS:
+        return text
+    return json.dumps(text, ensure_ascii=False)
+
+
+_WORDS = {"y", "n", "yes", "no", "on", "off", "true", "false", "null"}
+
+
+def as_json(tables: list[SourceTable], document: str) -> str:
+    """Return the kinds of tables for programs."""
+    found: list[dict[str, Any]] = [
+        {
+            "headings": group[0].titles,
+            "count": len(group),
+            "tables": [table.number for table in group],
+            "pages": sorted({table.page for table in group if table.page is not None}),
+            "names": [name_of(table) for table in group],
+        }
+        for group in kinds(tables)
+    ]
+    return json.dumps({"document": document, "kinds": found}, indent=2, ensure_ascii=False)

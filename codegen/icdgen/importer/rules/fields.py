@@ -1,0 +1,400 @@
+"""Roles of a row -> a field with its place, type, scale and limits. Nothing has a default: what no rule states is a finding."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from decimal import Decimal
+from itertools import pairwise
+from typing import Any
+
+from icdgen.importer.document import Spot
+from icdgen.importer.profile import Profile
+from icdgen.importer.rules import bit_order
+from icdgen.importer.rules.bit_order import Bit, Order
+from icdgen.importer.rules.cells import Roles
+from icdgen.importer.rules.language import NUMBERS, TypeName, decimal, type_of, whole_number
+from icdgen.importer.rules.notes import Notes
+from icdgen.importer.rules.rule import Rule
+from icdgen.importer.source_tables import SourceTable
+from icdgen.importer.understand import descriptions, formulas
+from icdgen.importer.understand.descriptions import Described
+from icdgen.importer.words import tidy_unit
+
+MOST_BITS = 64  # of a number
+_EMPTY = ("", "-", "–", "—", "n/a", "none")
+_MEMBER = re.compile(
+    r"(?P<value>0x[0-9a-f]+|0b[01]+|-?[0-9]+)\s*[:=–-]?\s*(?P<name>[^;,\n]*?[^\s;,])\s*(?=[;,\n]|\Z)", re.I
+)
+
+
+@dataclass
+class Draft:
+    """A field in the making. ``bits`` are those of one element, ``places`` the bits of the frame that it has."""
+
+    name: str
+    at: int
+    bits: int
+    kind: str
+    described: Described
+    spot: Spot
+    roles: Roles
+    count: int = 0
+    bytes_reversed: bool = False
+    members: list[tuple[int, str]] = field(default_factory=list)
+    facts: dict[str, Any] = field(default_factory=dict)  # further keys of the field in the ICD
+    part: tuple[int, int] | None = None  # bit numbers of the whole field that this piece has
+    order: Order | None = None  # where it is not the node's
+
+    @property
+    def size(self) -> int:
+        """How many bits of the frame the field has; 0 if the end of the frame decides."""
+        return 0 if self.facts.get("count") == "rest" or "size" in self.facts else self.bits * (self.count or 1)
+
+    @property
+    def end(self) -> int:
+        """The number of the bit behind the field."""
+        return self.at + self.size
+
+
+class FieldReader:
+    """Makes the fields of a table's rows; ``order`` is the node's."""
+
+    def __init__(self, rule: Rule, table: SourceTable, profile: Profile, order: Order, notes: Notes) -> None:
+        self.rule, self.table, self.profile, self.order, self.notes = rule, table, profile, order, notes
+        self.next = 0  # where a field without a position stands
+
+    def read(self, roles: Roles) -> Draft | None:
+        """Return the field; None, with a finding, if something that it needs is missing."""
+        name, spot = roles.get("name"), self.table.spot_of(roles.row.source)
+        where = f"{self.table.title}, field `{name}`"
+        if not name:
+            self.error(
+                "IMP025",
+                f"{self.table.title}: the row `{roles.row.text[:80]}` gives no name",
+                spot,
+                "give a column the role `name`, or drop the row with `skip`",
+            )
+            return None
+        numbers = self.numbers(roles, where, spot)
+        printed = self.type_of(roles, where, spot)
+        if numbers is None or printed is None:
+            return None
+        place = self.place(numbers, roles)
+        sized = self.size(numbers, printed, roles, where, spot)
+        if sized is None:
+            return None
+        bits, count = sized
+        at, range_size = place if place is not None else (self.next, 0)
+        if bits == 0 and range_size:
+            bits = range_size // (count or 1)
+        if at < 0:
+            self.error("IMP105", f"{where}: it begins before the message, at bit {at}", spot,
+                       "`origin` is the byte of the table at which the message begins")  # fmt: skip
+            return None
+        if range_size and bits * (count or 1) != range_size:
+            self.error(
+                "IMP105",
+                f"{where}: its position covers {range_size} bits, its size is {bits * (count or 1)}",
+                spot,
+                "check the roles of position, size, type and count",
+            )
+            return None
+        if bits == 0 and self.rule.is_unit_wide and place is not None:
+            bits = 1 if "bit" in numbers else 8
+        if bits == 0 and (roles.get("rest") or roles.get("counter")) and not roles.get("group"):
+            bits = 8
+        if bits == 0:
+            self.error(
+                "IMP105",
+                f"{where}: nothing gives its size",
+                spot,
+                "give a role for `bits`, `bytes`, `last_byte` or `last_bit`, "
+                "or a type with a width; `width: unit` makes a single position one bit or byte",
+            )
+            return None
+        kind = printed.kind
+        if kind in ("uint", "int", "enum") and bits > MOST_BITS:
+            self.error(
+                "IMP105",
+                f"{where}: a number has at most {MOST_BITS} bits, this one {bits}",
+                spot,
+                "is it an array? `set: [{where: {name: ...}, bits: 16, count: 3}]`, or `type: bytes`",
+            )
+            return None
+        made = Draft(name, at, bits, kind, self.described(roles, numbers, where, spot), spot, roles, count)
+        self.facts(made, numbers, where, spot)
+        self.next = made.end
+        return made
+
+    def error(self, code: str, message: str, spot: Spot, help: str) -> None:
+        self.notes.error(code, message, spot, help, self.rule.place)
+
+    def numbers(self, roles: Roles, where: str, spot: Spot) -> dict[str, int] | None:
+        """The whole numbers among the roles; None, with a finding, if one is none."""
+        made = {}
+        for role in ("byte", "last_byte", "bit", "last_bit", "bytes", "bits", "count", "stride", "up_to"):
+            text = roles.get(role)
+            if not text:
+                continue
+            value = whole_number(text, self.rule.base if role in ("byte", "last_byte") else 10)
+            if value is None or value < 0:
+                self.error(
+                    "IMP023",
+                    f"{where}: `{role}` is `{text[:40]}`, which is no number",
+                    spot,
+                    "correct the pattern or the table file",
+                )
+                return None
+            made[role] = value
+        return made
+
+    def type_of(self, roles: Roles, where: str, spot: Spot) -> TypeName | None:
+        """The type that the rule, the row or the profile's `types` state."""
+        name = roles.get("type")
+        if not name and roles.members:
+            return TypeName("enum")
+        if not name:
+            self.error(
+                "IMP026",
+                f"{where}: nothing states its type",
+                spot,
+                "give a column the role `type`, or state one for all: `each: {type: uint}`",
+            )
+            return None
+        own = self.profile.types_of_profile.get("".join(name.casefold().split()))
+        found = own or type_of(name)
+        if found is None:
+            self.error(
+                "IMP026",
+                f"{where}: the type `{name[:40]}` is unknown",
+                spot,
+                f"explain it in the profile: `types: {{{name[:30]}: {{type: uint, bits: 16}}}}`",
+            )
+        return found
+
+    def place(self, numbers: dict[str, int], roles: Roles) -> tuple[int, int] | None:
+        """Number of the first bit and size of the range, 0 if only its beginning is given; None without a position."""
+        if "byte" not in numbers and "bit" not in numbers:
+            return None
+        first_bit = numbers.get("bit", 0)
+        size = 0
+        if "last_bit" in numbers:
+            first_bit, last = sorted((first_bit, numbers["last_bit"]))
+            size = last - first_bit + 1
+        first_byte = numbers.get("byte", 0)
+        if "last_byte" in numbers:
+            first_byte, last = sorted((first_byte, numbers["last_byte"]))
+            size = size or 8 * (last - first_byte + 1)
+        return 8 * (first_byte - self.rule.origin + roles.byte_shift) + first_bit, size
+
+    def size(
+        self, numbers: dict[str, int], printed: TypeName, roles: Roles, where: str, spot: Spot
+    ) -> tuple[int, int] | None:
+        """Bits of an element, 0 if only a range can tell, and number of elements, 0 for no array.
+
+        The role `bits` is the size of one element, `bytes` that of the whole field.
+        """
+        count = numbers.get("count", 0)
+        total = 8 * numbers.get("bytes", 0)
+        if printed.kind in ("text", "bytes") and count and total in (0, 8 * count):
+            return 8 * count, 0  # so many characters
+        count = 0 if count == 1 else count
+        element = numbers.get("bits") or (total // count if count and total % count == 0 else total)
+        if printed.bits and printed.kind != "bool":
+            if element in (0, printed.bits) or total == printed.bits:  # some tables print the size of one element
+                return printed.bits, count
+            self.error(
+                "IMP105",
+                f"{where}: its type `{roles.get('type')}` has {printed.bits} bits"
+                f"{f' times {count}' if count else ''}, its size is {numbers.get('bits') or total}",
+                spot,
+                "check the columns of type, size and count",
+            )
+            return None
+        if count and total % count:
+            self.error(
+                "IMP105",
+                f"{where}: {count} elements do not fit into {total // 8} bytes",
+                spot,
+                "check the columns of size and count",
+            )
+            return None
+        return element or printed.bits, count
+
+    def described(self, roles: Roles, numbers: dict[str, int], where: str, spot: Spot) -> Described:
+        """Unit, formula and description."""
+        text = roles.get("text")
+        made = descriptions.read(text, self.profile) if self.profile.reads_descriptions else Described(rest=text)
+        for problem in made.problems:
+            self.notes.warn("IMP040", f"{where}: {problem}: `{text[-160:]}`", spot, "read the page")
+        unit = tidy_unit(roles.get("unit")).strip("()")
+        if unit.casefold() not in _EMPTY:
+            made.unit = unit
+        formula = roles.get("formula")
+        if formula.casefold() not in _EMPTY:
+            scaled = formulas.per_step(formula, descriptions.names(self.profile))
+            if scaled is None:
+                self.error(
+                    "IMP040",
+                    f"{where}: the formula `{formula[:60]}` cannot be read",
+                    spot,
+                    "take its numbers with `{scale}`, `{offset}` and `{bias}`",
+                )
+            else:
+                made.formula, made.unit = scaled.formula, scaled.unit or made.unit
+        values = {}
+        for role in NUMBERS:
+            given = roles.get(role)
+            if given.casefold() in _EMPTY:
+                continue
+            value = decimal(given)
+            if value is None:
+                self.error(
+                    "IMP023",
+                    f"{where}: `{role}` is `{given[:40]}`, which is no number",
+                    spot,
+                    "correct the pattern or the table file",
+                )
+            else:
+                values[role] = value
+        roles.given = {role: text for role, text in roles.given.items() if role not in NUMBERS} | values
+        made.formula = scale_formula(values.get("scale"), values.get("offset"), values.get("bias")) or made.formula
+        return made
+
+    def facts(self, made: Draft, numbers: dict[str, int], where: str, spot: Spot) -> None:
+        """Limits, members, arrays of open length, parts."""
+        roles = made.roles
+        for role in ("min", "max"):
+            if role in roles.given and roles.get(role):
+                value = float(roles.get(role))
+                made.facts[role] = int(value) if value == int(value) else value
+        self.check_range(made, where, spot)
+        if (roles.get("rest") or roles.get("counter")) and not roles.get("group"):
+            counted: Any = roles.get("counter") or "rest"
+            key = "size" if made.kind in ("text", "bytes") else "count"
+            made.facts[key] = counted
+            if "up_to" in numbers:
+                made.facts["up_to"] = numbers["up_to"]
+            else:
+                self.error(
+                    "IMP105",
+                    f"{where}: nothing bounds its length",
+                    spot,
+                    "state it: `each: {up_to: 255}`, or under `set:`",
+                )
+        made.members = self.members(roles, where, spot)
+        if made.members and made.kind in ("uint", "int") and not made.described.formula:
+            made.kind = "enum"
+        text = roles.get("part")
+        if text:
+            first = 0 if text in "Ll" else 1 if text in "Hh" else int(text)
+            made.part = first, int(roles.get("last_part") or first)
+
+    def members(self, roles: Roles, where: str, spot: Spot) -> list[tuple[int, str]]:
+        printed = roles.members + [(m["value"], m["name"]) for m in _MEMBER.finditer(roles.get("members"))]
+        made = []
+        for text, name in printed:
+            value = whole_number(text, self.rule.base)
+            if value is None:
+                self.error(
+                    "IMP023",
+                    f"{where}: the value `{text[:40]}` of `{name[:40]}` is no number",
+                    spot,
+                    "correct the pattern",
+                )
+            else:
+                made.append((value, name))
+        return made
+
+    def check_range(self, made: Draft, where: str, spot: Spot) -> None:
+        """Report a range that the raw values of an unsigned number do not reach: an offset taken for a bias shows there."""
+        if made.kind != "uint" or made.bits > 53 or not {"min", "max"} & set(made.facts):
+            return
+        scale, offset, bias = (
+            Decimal(made.roles.get(r) or d) for r, d in (("scale", "1"), ("offset", "0"), ("bias", "0"))
+        )
+        low, high = sorted(scale * (raw - bias) + offset for raw in (Decimal(0), Decimal(2**made.bits - 1)))
+        for role, reaches in (
+            ("min", low <= Decimal(str(made.facts.get("min", low)))),
+            ("max", high >= Decimal(str(made.facts.get("max", high)))),
+        ):
+            if not reaches:
+                self.notes.warn(
+                    "IMP106",
+                    f"{where}: its range has the {role} {made.facts[role]}, its raw values give {low:f} to {high:f}",
+                    spot,
+                    "`offset` is added after scaling, `bias` is subtracted before: is one the other?",
+                    self.rule.place,
+                )
+
+
+def scale_formula(scale: str | None, offset: str | None, bias: str | None) -> str:
+    """Return the formula as an ICD writes it; empty if physical and raw value are the same."""
+    factor = scale if scale is not None and Decimal(scale) != 1 else ""
+    raw = "raw"
+    if bias is not None and Decimal(bias) != 0:
+        raw = f"raw {'+' if bias.startswith('-') else '-'} {bias.lstrip('-')}"
+        raw = f"({raw})" if factor else raw
+    made = f"{raw}*{factor}" if factor else raw
+    if offset is not None and Decimal(offset) != 0:
+        made = f"{made} {'-' if offset.startswith('-') else '+'} {offset.lstrip('-')}"
+    return "" if made == "raw" else made
+
+
+def joined_parts(
+    drafts: list[Draft], order: Order, is_register: bool, length: int, notes: Notes, rule: Rule
+) -> list[Draft]:
+    """Return the fields with those of one name and consecutive parts put together (``CB5`` to ``CB1``, ``D15`` to ``D0``).
+
+    Each field gets the number of its first bit in the node's order, or an order of its own if it is no run of bits there.
+    """
+    made: list[Draft] = []
+    pieces: dict[str, list[Draft]] = {}
+    for draft in drafts:
+        if draft.part is None:
+            made.append(draft)
+            continue
+        if draft.name not in pieces:
+            made.append(draft)
+        pieces.setdefault(draft.name, []).append(draft)
+    for name, split in pieces.items():
+        split.sort(key=lambda piece: piece.part or (0, 0))
+        ends = [piece.part for piece in split if piece.part is not None]
+        if any(before[1] + 1 != after[0] for before, after in pairwise(ends)):
+            numbers = ", ".join(str(first) if first == last else f"{last}:{first}" for first, last in ends)
+            notes.error(
+                "IMP105",
+                f"the parts {numbers} of `{name}` are not consecutive",
+                split[0].spot,
+                "a part is missing, or two have the same number: compare with the table",
+                rule.place,
+            )
+            made = [draft for draft in made if draft.name != name or draft.part is None]
+    kept = []
+    for draft in made:
+        parts = pieces[draft.name] if draft.part is not None else [draft]
+        bits = [bit for piece in parts for bit in _bits(piece, order, is_register, length)]
+        if draft.count or draft.size == 0:
+            kept.append(draft)  # elements stand one after the other: their first bit is as printed
+            continue
+        run = bit_order.run_of(bits, order)
+        if run is None:
+            notes.error(
+                "IMP105",
+                f"the bits of `{draft.name}` are no run of bits in any order",
+                draft.spot,
+                "state the byte order of the node, or read the parts as fields of their own",
+                rule.place,
+            )
+            continue
+        draft.at, draft.bits = run[0], len(bits)
+        draft.order = run[1] if run[1] != order else None
+        kept.append(draft)
+    return sorted(kept, key=lambda draft: draft.at)
+
+
+def _bits(piece: Draft, order: Order, is_register: bool, length: int) -> list[Bit]:
+    if is_register:
+        return bit_order.bits_of_register(piece.at, piece.size, length, order.byte_order)
+    return bit_order.bits_of(piece.at, piece.size, order)

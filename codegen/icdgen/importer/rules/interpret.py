@@ -1,0 +1,242 @@
+"""Tables and rules -> messages, enumerations and findings. Nothing here guesses: a table without a rule gives nothing."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from icdgen.importer.document import Spot, Trouble
+from icdgen.importer.profile import Profile
+from icdgen.importer.rules import attach, build
+from icdgen.importer.rules.bit_order import Order
+from icdgen.importer.rules.cells import Roles, read_roles
+from icdgen.importer.rules.fields import FieldReader
+from icdgen.importer.rules.language import MESSAGE_ROLES, cell_text, normalised, take, whole_number
+from icdgen.importer.rules.notes import Notes
+from icdgen.importer.rules.parts import Part
+from icdgen.importer.rules.rows import read_rows
+from icdgen.importer.rules.rule import Rule
+from icdgen.importer.rules.selection import Choice, choose
+from icdgen.importer.source_tables import SourceTable, kinds, texts
+from icdgen.importer.understand.survey import BACKGROUND, UNKNOWN, Found, Survey
+
+_HEX = re.compile(r"\b(?:0[xX][0-9A-Fa-f]+|[0-9A-Fa-f]*[0-9][0-9A-Fa-f]*[hH])\b")
+
+
+@dataclass
+class Interpretation:
+    """What the rules of a profile make of the tables of a document."""
+
+    choices: list[Choice]
+    parts: list[Part]
+    survey: Survey
+    attributes: dict[int, dict[str, str]]  # number of the table -> roles that texts around it give
+
+
+def interpret(tables: list[SourceTable], profile: Profile, extra: list[Trouble] | None = None) -> Interpretation:
+    """Apply the rules of ``profile`` to the tables; ``extra`` are findings of the reader of the source."""
+    return _Interpreter(tables, profile).run(extra or [])
+
+
+class _Interpreter:
+    def __init__(self, tables: list[SourceTable], profile: Profile) -> None:
+        self.tables, self.profile = tables, profile
+        self.notes = Notes()
+        self.parts: list[Part] = []
+        self.attributes: dict[int, dict[str, str]] = {}
+        words = (word.strip(".,;:()[]") for table in tables for text in texts(table) for word in text.split())
+        self.known = frozenset(words)
+        node = profile.data["node"]
+        self.order = Order(node.get("byte_order", "little"), node.get("bit_order", "lsb0"))
+
+    def run(self, extra: list[Trouble]) -> Interpretation:
+        choices = choose(self.profile.rules, self.tables)
+        for choice in choices:
+            for rule in choice.rules:
+                if rule.what != "ignore":
+                    self.read(rule, choice.table)
+        self.check_use(choices)
+        survey = Survey(troubles=[*extra, *self.notes.troubles])
+        made, notes = build.Builder(self.profile, self.order).build(self.parts)
+        attach.check_index([part for part in self.parts if part.rule.what == "index"], made, notes)
+        notes.dropped = self.notes.dropped
+        notes.finish(self.profile.rules)
+        survey.troubles += notes.troubles
+        things: dict[int | None, list[Found]] = {}
+        for found in made:
+            things.setdefault(found.table.order, []).append(found)
+        for choice in choices:
+            table = choice.table
+            ignored = bool(choice.rules) and choice.rules[-1].what == "ignore"
+            own = things.get(table.number - 1)
+            survey.found += own or [Found(table.as_table(), _what(choice, ignored), None)]
+        self.report_unread(choices, survey)
+        return Interpretation(choices, self.parts, survey, self.attributes)
+
+    # --- one table -------------------------------------------------------------------------------------------------
+
+    def read(self, rule: Rule, table: SourceTable) -> None:
+        """Add the parts that a rule reads from a table."""
+        titles, rows = read_rows(rule, table, self.notes)
+        given = self.around(rule, table)
+        self.attributes[table.number] = given
+        message = {role: text for role, text in given.items() if role in MESSAGE_ROLES}
+        shared = {role: text for role, text in given.items() if role not in MESSAGE_ROLES}
+        reader = FieldReader(rule, table, self.profile, self.order, self.notes)
+        parts: dict[tuple[str, ...], Part] = {}
+        for roles in read_roles(rule, table, titles, rows, self.known, self.notes):
+            roles.given = {**shared, **roles.given}
+            own = {role: roles.given.pop(role) for role in list(roles.given) if role in MESSAGE_ROLES}
+            key = tuple(own.get(role, "") for role in ("message", "id", "set_id", "get_id", "of"))
+            part = parts.setdefault(key, Part(rule, table, dict(message)))
+            part.given.update(own)
+            self.row(part, roles, reader)
+        if not parts and {"message", "id", "set_id"} & set(message) and rule.what in ("message", "registers"):
+            parts[()] = Part(rule, table, message)  # without parameters
+        self.parts += parts.values()
+
+    def row(self, part: Part, roles: Roles, reader: FieldReader) -> None:
+        """Add what one row gives."""
+        what = part.rule.what
+        if what == "index":
+            return
+        if what in ("enumeration", "lookup"):
+            name = roles.get("member") if what == "enumeration" else roles.get("points")
+            spot = part.table.spot_of(roles.row.source)
+            value = whole_number(roles.get("value").replace(" ", ""), part.rule.base)
+            if value is None or not name:
+                self.notes.error(
+                    "IMP023",
+                    f"{part.table.title}: the row `{roles.row.text[:80]}` gives no value and "
+                    f"{'name' if what == 'enumeration' else 'point'}",
+                    spot,
+                    "give columns the roles `value` and " + ("`member`" if what == "enumeration" else "`points`"),
+                    part.rule.place,
+                )
+            else:
+                part.pairs.append((value, name))
+            return
+        draft = reader.read(roles)
+        if draft is not None:
+            part.drafts.append(draft)
+
+    def around(self, rule: Rule, table: SourceTable) -> dict[str, str]:
+        """The roles that the rule states, or finds in texts around the table and in its rows; the nearest text first."""
+        given = dict(rule.literals)
+        for source, patterns in rule.sources.items():
+            for pattern in patterns:
+                if pattern.roles <= set(given):
+                    continue
+                for text in self.texts(table, source):
+                    taken = take([pattern], text)
+                    if taken is None:
+                        continue
+                    self.doubt(rule, table, taken.roles, taken.left)
+                    given.update({role: value for role, value in taken.roles.items() if role not in given})
+                    break
+                else:
+                    if source not in rule.optional:
+                        self.notes.error(
+                            "IMP103",
+                            f"{table.title}: no text of `{source}` matches `{pattern.text[:60]}` of rule "
+                            f"`{rule.name}`",
+                            table.spot,
+                            f"correct the pattern; `{source}?` makes it optional",
+                            pattern.place,
+                        )
+        for role, words in rule.map.items():
+            if (meaning := words.get(given.get(role, "").casefold())) is not None:
+                given[role] = meaning
+        return given
+
+    def texts(self, table: SourceTable, source: str) -> list[str]:
+        found = {
+            "caption": lambda: [table.caption],
+            "heading": lambda: table.headings[::-1],
+            "before": lambda: table.before[::-1],
+            "sheet": lambda: [table.sheet],
+            "row": lambda: [" | ".join(cell_text(c.text, self.known) for c in row.cells) for row in table.rows],
+        }[source]()
+        return [normalised(text) for text in found]
+
+    def doubt(self, rule: Rule, table: SourceTable, roles: dict[str, str], left: str) -> None:
+        """Report an id that is a plain number where the same text has a hexadecimal one."""
+        other = _HEX.search(left)
+        if "id" in roles and other and not _HEX.fullmatch(roles["id"]):
+            self.notes.warn(
+                "IMP104",
+                f"{table.title}: rule `{rule.name}` takes the id `{roles['id']}`, and the same text has "
+                f"`{other.group()}`",
+                table.spot,
+                "write the words before the id into the pattern",
+                rule.place,
+            )
+
+    # --- all tables ------------------------------------------------------------------------------------------------
+
+    def check_use(self, choices: list[Choice]) -> None:
+        """Report rules and corrections that have no effect."""
+        used = {rule.name for choice in choices for rule in choice.rules}
+        for rule in self.profile.rules:
+            if rule.name in used:
+                continue
+            taken = [c for c in choices if not any(other is rule for other, _ in c.reasons) and c.rules]
+            why = f"; {len(taken)} tables go to rules before it" if taken else ""
+            self.notes.error(
+                "IMP101",
+                f"rule `{rule.name}` applies to no table{why}",
+                Spot(),
+                "`--explain TABLE` says which condition fails, `--explore` shows the kinds of tables",
+                rule.place,
+            )
+        for rule in self.profile.rules:
+            for correction in rule.corrections:
+                if rule.name in used and correction.place not in self.notes.used_corrections:
+                    where = ", ".join(f"{role}: {pattern.pattern}" for role, pattern in correction.where.items())
+                    self.notes.error(
+                        "IMP101",
+                        f"`set` of rule `{rule.name}` matches no row: {where}",
+                        Spot(),
+                        "correct `where:`, or remove the entry",
+                        correction.place,
+                    )
+
+    def report_unread(self, choices: list[Choice], survey: Survey) -> None:
+        """List the tables without a rule by kind, and what rules ignore."""
+        unread = {c.table.number for c in choices if not c.rules}
+        for group in kinds(self.tables):
+            tables = [table for table in group if table.number in unread]
+            if not tables:
+                continue
+            numbers = ", ".join(str(table.number) for table in tables[:8]) + (" ..." if len(tables) > 8 else "")
+            titles = " | ".join(tables[0].titles)[:80]
+            survey.troubles.append(
+                Trouble(
+                    "IMP100",
+                    f"no rule applies to {'table' if len(tables) == 1 else 'tables'} {numbers} with the headings "
+                    f"`{titles}`",
+                    tables[0].spot,
+                    "write a rule, or let one with `what: ignore` name them",
+                )
+            )
+        for rule in self.profile.rules:
+            tables = [c.table for c in choices if rule in c.rules]
+            if rule.what == "ignore" and tables:
+                shown = ", ".join(dict.fromkeys(f"`{' | '.join(table.titles)[:40]}`" for table in tables[:30]))
+                count = f"{len(tables)} table{'s' if len(tables) != 1 else ''}"
+                survey.troubles.append(
+                    Trouble(
+                        "IMP108",
+                        f"rule `{rule.name}` ignores {count}: {shown[:300]}",
+                        Spot(),
+                        "make sure that none describes a message",
+                        "note",
+                        place=rule.place,
+                    )
+                )
+
+
+def _what(choice: Choice, ignored: bool) -> str:
+    if ignored:
+        return BACKGROUND
+    return choice.rules[-1].what if choice.rules else UNKNOWN

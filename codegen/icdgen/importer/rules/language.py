@@ -1,0 +1,224 @@
+"""Patterns, roles, numbers and type names of the rule language."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
+
+from icdgen.diagnostics import Place
+from icdgen.importer.words import join, plain
+
+INTEGER = r"(?:0[xX][0-9A-Fa-f]+|[0-9A-Fa-f]+[hH]\b|[0-9]+)"
+NUMBER = r"[-+−–]?(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
+TEXT = r".+?"
+UNIT = r"[A-Za-zµμΩ°℃%][\w°²³/·%]*"
+
+PLACE_ROLES = {
+    "byte": "first byte",
+    "last_byte": "last byte",
+    "bit": "lowest bit",
+    "last_bit": "highest bit",
+    "bytes": "size in bytes",
+    "bits": "size in bits",
+    "count": "number of elements of an array",
+    "part": "lowest bit number, or L or H, of a split field",
+    "last_part": "highest bit number of a split field",
+    "stride": "distance in bytes between the elements of a repeated group",
+}
+VALUE_ROLES = {
+    "scale": "factor: physical = scale * raw",
+    "offset": "added after scaling: physical = scale * raw + offset",
+    "bias": "subtracted before scaling: physical = scale * (raw - bias)",
+    "min": "lowest physical value",
+    "max": "highest physical value",
+    "value": "value of a member or of a point",
+    "up_to": "largest number of elements",
+}
+TEXT_ROLES = {
+    "name": "name of the field",
+    "type": "type name",
+    "unit": "unit",
+    "formula": "formula or factor with unit",
+    "members": "values and names in one cell",
+    "member": "name of a value",
+    "text": "description",
+    "group": "name of the repeated " "group",
+    "rest": "marks a field that extends to the end of the frame",
+    "counter": "name of the field that counts elements",
+    "default": "initial value (not represented in an ICD)",
+    "access": "access (not represented in an ICD)",
+    "points": "physical value of a point of a lookup table",
+}
+MESSAGE_ROLES = {
+    "message": "name of the message",
+    "id": "id of the message",
+    "set_id": "id that sets a configuration",
+    "get_id": "id that reads " "a configuration",
+    "kind": "telecommand, telemetry or configuration",
+    "length": "length in bytes",
+    "of": "name of the field to " "which an enumeration, a lookup table or bits belong",
+    "message_text": "description of the message",
+}
+ROLES = PLACE_ROLES | VALUE_ROLES | TEXT_ROLES | MESSAGE_ROLES
+INTEGERS = frozenset({*PLACE_ROLES, "value", "id", "set_id", "get_id", "length", "up_to"} - {"part"})
+NUMBERS = frozenset({"scale", "offset", "bias", "min", "max"})
+_PATTERN_OF = {
+    **dict.fromkeys(ROLES, TEXT),
+    **dict.fromkeys(INTEGERS, INTEGER),
+    **dict.fromkeys(NUMBERS, NUMBER),
+    "unit": UNIT,
+    "part": r"(?:[0-9]+|[LlHh])",
+    "last_part": r"[0-9]+",
+    "value": r"(?:-?[0-9]+|0[xX][0-9A-Fa-f]+|[0-9A-Fa-f]+[hH]\b|0b[01]+)",
+}
+KINDS = ("telecommand", "telemetry", "configuration")
+_ROLE = re.compile(r"\{([a-z_]+)(?::((?:[^{}]|\{[0-9]*,?[0-9]*\})*))?\}")
+_BRACE = re.compile(r"(?<!\\)\{(?![0-9]*,?[0-9]*\})")
+
+
+class PatternError(Exception):
+    """A pattern that cannot be used, with the reason and a remedy."""
+
+    def __init__(self, message: str, help: str) -> None:
+        super().__init__(message)
+        self.message, self.help = message, help
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """A pattern of a profile: a bare role (``regex`` is None), or a regular expression with groups that are roles."""
+
+    text: str
+    place: Place
+    regex: re.Pattern[str] | None = None
+
+    @property
+    def roles(self) -> frozenset[str]:
+        """The roles that it may give."""
+        return frozenset({self.text}) if self.regex is None else frozenset(self.regex.groupindex)
+
+
+class Taken(NamedTuple):
+    """Roles that a pattern took out of a text, and the text that no group or literal of it covers."""
+
+    roles: dict[str, str]
+    left: str
+
+
+def compile_pattern(text: str, place: Place) -> Pattern:
+    """Return the pattern of a text such as ``{byte}(?:-{last_byte})?`` or ``name``. Raises `PatternError`."""
+    if text in ROLES:
+        return Pattern(text, place)
+    unknown = next((match[1] for match in _ROLE.finditer(text) if match[1] not in ROLES), None)
+    if unknown is not None:
+        from icdgen.suggest import close_to
+
+        close = close_to(unknown, ROLES)
+        help = f"did you mean `{{{close}}}`?" if close else f"roles are {', '.join(sorted(ROLES))}"
+        raise PatternError(f"unknown role `{unknown}` in the pattern `{text}`", help)
+    expanded = _ROLE.sub(lambda m: f"(?P<{m[1]}>{m[2] or _PATTERN_OF[m[1]]})", text)
+    if _BRACE.search(expanded):
+        raise PatternError(
+            f"a brace of the pattern `{text}` belongs to no role", "write `{role}`, `{role:regex}` or `\\{`"
+        )
+    try:
+        regex = re.compile(expanded, re.I)
+    except re.error as error:
+        help = (
+            "each role may stand once in a pattern"
+            if "redefinition" in str(error)
+            else "check brackets and backslashes"
+        )
+        raise PatternError(f"the pattern `{text}` is no regular expression: {error}", help) from None
+    if not regex.groupindex:
+        from icdgen.suggest import close_to
+
+        close = close_to(text, ROLES)
+        help = f"did you mean the role `{close}`?" if close else "put what it finds into braces: `^{name} register$`"
+        raise PatternError(f"`{text}` is neither a role nor a pattern with a role", help)
+    return Pattern(text, place, regex)
+
+
+def take(patterns: Sequence[Pattern], text: str) -> Taken | None:
+    """Return the roles of the first pattern that matches; None if none matches."""
+    for pattern in patterns:
+        if pattern.regex is None:
+            return Taken({pattern.text: text} if text else {}, "")
+        match = pattern.regex.search(text)
+        if match is not None:
+            roles = {role: value.strip() for role, value in match.groupdict().items() if value and value.strip()}
+            return Taken(roles, normalised(f"{text[: match.start()]} {text[match.end() :]}"))
+    return None
+
+
+@lru_cache(maxsize=1 << 16)
+def normalised(text: str) -> str:
+    """The text in one line, full-width characters and odd blanks made ordinary."""
+    wide = "".join(unicodedata.normalize("NFKC", c) if "！" <= c <= "～" or c == "　" else c for c in text)
+    return plain(wide)
+
+
+def cell_text(text: str, known: frozenset[str]) -> str:
+    """The text of a cell in one line; a word that a line break parts at its hyphen is put together if ``known`` has it."""
+    return normalised(join(text.split("\n"), known) if "\n" in text else text)
+
+
+def whole_number(text: str, base: int = 10) -> int | None:
+    """The whole number of ``16``, ``0x10``, ``10h`` or ``0b10``; ``base`` is that of figures without a mark."""
+    text = text.replace("−", "-").replace("–", "-").replace(" ", "").strip()
+    if re.fullmatch(r"0[xX][0-9a-fA-F]+", text):
+        return int(text, 16)
+    if re.fullmatch(r"[0-9a-fA-F]+[hH]", text):
+        return int(text[:-1], 16)
+    if base != 2 and re.fullmatch(r"0b[01]+", text):
+        return int(text, 2)
+    digits = {2: "[01]+", 10: "[-+]?[0-9]+", 16: "[0-9a-fA-F]+"}[base]
+    return int(text, base) if re.fullmatch(digits, text) and len(text) < 25 else None
+
+
+def decimal(text: str) -> str | None:
+    """The number as an ICD writes it, with the digits of the source; None if it is none."""
+    text = text.replace("−", "-").replace("–", "-").replace(" ", "").lstrip("+")
+    if not re.fullmatch(NUMBER, text):
+        return None
+    return re.sub(r"^(-?)\.", r"\g<1>0.", text)
+
+
+class TypeName(NamedTuple):
+    """What a type name says: the type in an ICD, and its width in bits, 0 if it says none."""
+
+    kind: str
+    bits: int = 0
+
+
+_TYPE_NAMES = [
+    (r"(?:unsigned char|uchar|byte|octet)", "uint", 8),
+    (r"(?:signed char|char)", "int", 8),
+    (r"unsigned short(?: int)?", "uint", 16),
+    (r"short(?: int)?", "int", 16),
+    (r"unsigned long long(?: int)?", "uint", 64),
+    (r"long long(?: int)?", "int", 64),
+    (r"(?:unsigned|uint|u)[ _]?([0-9]+)?(?:_t)?", "uint", 0),
+    (r"(?:signed|sint|int|s|i)[ _]?([0-9]+)?(?:_t)?", "int", 0),
+    (r"(?:float|f)[ _]?(32|64)(?:_t)?", "float", 0),
+    (r"float|real|single", "float", 32),
+    (r"double", "float", 64),
+    (r"bool(?:ean)?|flag", "bool", 1),
+    (r"enum", "enum", 0),
+    (r"string|text|ascii", "text", 0),
+    (r"bytes|array|raw", "bytes", 0),
+]
+
+
+def type_of(name: str) -> TypeName | None:
+    """The type that a name of common use means; None for one that only a profile can explain."""
+    text = normalised(name).casefold()
+    for pattern, kind, bits in _TYPE_NAMES:
+        match = re.fullmatch(pattern, text)
+        if match:
+            return TypeName(kind, int(match[1]) if match.groups() and match[1] else bits)
+    return None

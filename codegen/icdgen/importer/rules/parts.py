@@ -1,0 +1,36 @@
+"""What a rule reads from a table for one message, enumeration, lookup table, index entry or set of bits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from icdgen.importer.rules.fields import Draft
+from icdgen.importer.rules.language import whole_number
+from icdgen.importer.rules.rule import Rule
+from icdgen.importer.source_tables import SourceTable
+
+
+@dataclass
+class Part:
+    """What a rule read from one table for one message, enumeration, lookup table, index entry or set of bits."""
+
+    rule: Rule
+    table: SourceTable
+    given: dict[str, str]  # roles of the message
+    drafts: list[Draft] = field(default_factory=list)
+    pairs: list[tuple[int, str]] = field(default_factory=list)  # values with members, or with points
+
+    @property
+    def name(self) -> str:
+        """The name of the message."""
+        return self.given.get("message", "")
+
+    @property
+    def where(self) -> str:
+        """How a finding calls it."""
+        return f"{self.table.title}, message `{self.name}`" if self.name else self.table.title
+
+    def number(self, role: str) -> int | None:
+        """The number of an id or a length; None if nothing gives it."""
+        text = self.given.get(role, "")
+        return whole_number(text, self.rule.base) if text else None

@@ -1,0 +1,158 @@
+"""A table and its rule -> rows by heading. The operations run in a fixed order, whatever the order of the keys:
+
+transpose, headings, repeated headings, `stop`, `skip`, `join`, `fill`, `glue`, `keep`.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+
+from icdgen.importer.rules.language import cell_text, normalised
+from icdgen.importer.rules.notes import Notes
+from icdgen.importer.rules.rule import Rule
+from icdgen.importer.rules.selection import heading_row, texts_of
+from icdgen.importer.source_tables import Cell, Slot, SourceRow, SourceTable
+
+
+@dataclass
+class DataRow:
+    """A row below the headings. ``values``: heading -> text with its line breaks; ``ranges``: heading -> the first and
+    the last column that the cell covers; ``roles``: what the rule knows of the row before it looks at cells."""
+
+    values: dict[str, str]
+    source: SourceRow
+    cells: dict[str, Cell] = field(default_factory=dict)
+    ranges: dict[str, tuple[int, int]] = field(default_factory=dict)
+    roles: dict[str, str] = field(default_factory=dict)
+    is_short: bool = False
+
+    @property
+    def text(self) -> str:
+        """The whole row in one line."""
+        return " | ".join(filter(None, map(normalised, self.values.values())))
+
+
+def read_rows(rule: Rule, table: SourceTable, notes: Notes) -> tuple[list[str], list[DataRow]]:
+    """Return the headings and the rows of a table that a rule selected."""
+    texts = texts_of(table, rule.transpose)
+    head = heading_row(rule, texts)
+    assert head is not None
+    grid = table.grid()
+    if rule.transpose:
+        titles, rows = _transposed(table, grid, head)
+    else:
+        start = head + rule.head_rows if head >= 0 else 0
+        titles = _titles(grid[head:start]) if head >= 0 else [str(i + 1) for i in range(max(map(len, grid), default=0))]
+        rows = [_row(titles, slots, row) for slots, row in zip(grid[start:], table.rows[start:], strict=True)]
+        repeated = [[normalised(slot.text) for slot in slots] for slots in grid[head:start]]
+        if head >= 0:
+            rows = [row for row in rows if [normalised(v) for v in row.values.values()] not in repeated]
+    return titles, _operated(rule, rows, notes)
+
+
+def _titles(heads: list[list[Slot]]) -> list[str]:
+    """The heading of each column; one over several columns gets a number behind it (``Name``, ``Name.2``)."""
+    width = max(map(len, heads), default=0)
+    made: list[str] = []
+    for column in range(width):
+        slots = [row[column] for row in heads if column < len(row)]
+        made.append(" ".join(dict.fromkeys(filter(None, (normalised(slot.cell.text) for slot in slots)))))
+    return [_numbered(title, made[:index]) for index, title in enumerate(made)]
+
+
+def _numbered(title: str, before: list[str]) -> str:
+    """The heading with its number if columns to the left have it, too."""
+    count = before.count(title)
+    return f"{title}.{count + 1}" if count and title else title
+
+
+def _row(titles: list[str], slots: list[Slot], source: SourceRow) -> DataRow:
+    made = DataRow(dict.fromkeys(filter(None, titles), ""), source, is_short=len(slots) < len(titles))
+    for column, slot in enumerate(slots):
+        title = titles[column] if column < len(titles) else ""
+        if not title and slot.is_origin and slot.cell.text.strip():
+            title = f"column {column + 1}"
+        if not title or not slot.is_origin:
+            continue
+        made.values[title] = slot.cell.text
+        made.cells[title] = slot.cell
+        made.ranges[title] = column, min(column + slot.cell.columns, len(titles)) - 1
+    return made
+
+
+def _transposed(table: SourceTable, grid: list[list[Slot]], head: int) -> tuple[list[str], list[DataRow]]:
+    """Rows for the columns of a table whose headings stand on the left. A cell over several columns is one row, in which
+    the other cells give a range (``7:5``); a heading that is repeated begins the next byte."""
+    names = [normalised(slots[head].cell.text) if head < len(slots) else "" for slots in grid]
+    starts = [index for index, name in enumerate(names) if name == names[0]]
+    titles = names[: starts[1] if len(starts) > 1 else None]
+    made: list[DataRow] = []
+    for block, start in enumerate(starts):
+        rows = grid[start : starts[block + 1] if block + 1 < len(starts) else None]
+        source = table.rows[start]
+        width = max(map(len, rows), default=0)
+        column = head + 1
+        while column < width:
+            end = max(
+                (slots[column].column + slots[column].cell.columns for slots in rows if column < len(slots)),
+                default=column + 1,
+            )
+            values = {}
+            for name, slots in zip(titles, rows, strict=False):
+                texts = [slot.cell.text for slot in slots[column:end] if slot.is_origin]
+                values[name] = texts[0] if len(texts) == 1 else f"{texts[0]}:{texts[-1]}" if texts else ""
+            made.append(DataRow(values, source, roles={"byte": str(block)} if len(starts) > 1 else {}))
+            column = max(end, column + 1)
+    return titles, made
+
+
+def _operated(rule: Rule, rows: list[DataRow], notes: Notes) -> list[DataRow]:
+    made: list[DataRow] = []
+    for row in rows:
+        if not any(text.strip() for text in row.values.values()):
+            continue
+        if rule.stop is not None and rule.stop.search(row.text):
+            break
+        if rule.skip is not None and rule.skip.search(row.text):
+            notes.drop(rule, "skip", row.text)
+            continue
+        if made and rule.join and all(_goes_on(made[-1], row, title) for title in rule.join):
+            _append(made[-1], row)
+            continue
+        made.append(row)
+    above: dict[str, str] = {}
+    for row in made:
+        for title in rule.fill:
+            above[title] = row.values[title] = row.values.get(title) or above.get(title, "")
+        for title in rule.glue:
+            if title in row.values:
+                row.values[title] = re.sub(r"\s*\n\s*", "", row.values[title])
+    kept = []
+    for row in made:
+        if all(pattern.search(normalised(row.values.get(title, ""))) for title, pattern in rule.keep.items()):
+            kept.append(row)
+        else:
+            notes.drop(rule, "keep", row.text)
+    return kept
+
+
+def _goes_on(above: DataRow, row: DataRow, title: str) -> bool:
+    """Whether a column is empty in a row, or has the cell of the row above, which spans both."""
+    cell = row.cells.get(title)
+    return not row.values.get(title, "").strip() or (cell is not None and cell is above.cells.get(title))
+
+
+def _append(above: DataRow, row: DataRow) -> None:
+    """Put the cells of a row below those of the row above; a cell that spans both stands there already."""
+    for title, text in row.values.items():
+        if text.strip() and row.cells.get(title) is not above.cells.get(title):
+            above.values[title] = f"{above.values.get(title, '')}\n{text}".strip("\n")
+    above.cells = {title: cell for title, cell in above.cells.items() if cell is row.cells.get(title)} | {
+        title: cell for title, cell in above.cells.items() if title not in row.cells
+    }
+
+
+def one_line(row: DataRow, title: str, known: frozenset[str]) -> str:
+    """The text of a cell in one line."""
+    return cell_text(row.values.get(title, ""), known)

@@ -1,0 +1,264 @@
+"""The rules of a profile, checked and ready for use."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from icdgen.diagnostics import Finding, Findings, Place
+from icdgen.icd.located import Map, Seq
+from icdgen.importer.rules.language import KINDS, MESSAGE_ROLES, ROLES, Pattern, PatternError, compile_pattern
+from icdgen.suggest import close_to
+
+CODE = "IMP001"
+SOURCES = ("caption", "heading", "before", "row", "sheet")  # texts in which `message` looks for roles
+WHAT = ("message", "registers", "index", "enumeration", "lookup", "bits", "ignore")
+_MERGED = ("tables", "message", "columns", "each", "map")  # keys of which `like` takes over single entries
+
+
+@dataclass(frozen=True)
+class Column:
+    """An entry of `columns`: which columns it is about, and the patterns for their cells."""
+
+    key: str
+    patterns: tuple[Pattern, ...]
+    place: Place
+
+    @property
+    def is_optional(self) -> bool:
+        """Whether the table may lack the column."""
+        return self.key.endswith("?") and not self.key.startswith("~")
+
+    @property
+    def titles(self) -> list[str]:
+        """The headings of the columns whose cells are joined; one for most."""
+        key = self.key if self.key.startswith("~") else self.key.rstrip("?")
+        return key.split(" + ")
+
+
+@dataclass(frozen=True)
+class Correction:
+    """An entry of `set`: the patterns that the roles of a row must match, and the roles that it gives."""
+
+    where: dict[str, re.Pattern[str]]
+    roles: dict[str, str]
+    place: Place
+
+
+@dataclass
+class Rule:
+    """What tables of one kind mean. Every key is described in ``docs/reference/import-rules.md``."""
+
+    name: str
+    place: Place
+    what: str = "message"
+    head: str = ""
+    pages: tuple[int, int] | None = None
+    nth: int | None = None
+    conditions: dict[str, re.Pattern[str]] = field(default_factory=dict)  # source -> pattern
+    literals: dict[str, str] = field(default_factory=dict)  # role -> value
+    sources: dict[str, list[Pattern]] = field(default_factory=dict)  # source -> patterns, all of them used
+    optional: set[str] = field(default_factory=set)  # sources that may match nothing
+    columns: list[Column] = field(default_factory=list)
+    lines: list[Column] = field(default_factory=list)
+    melt: Pattern | None = None
+    each: dict[str, str] = field(default_factory=dict)
+    map: dict[str, dict[str, str]] = field(default_factory=dict)
+    corrections: list[Correction] = field(default_factory=list)
+    skip: re.Pattern[str] | None = None
+    stop: re.Pattern[str] | None = None
+    keep: dict[str, re.Pattern[str]] = field(default_factory=dict)
+    join: list[str] = field(default_factory=list)
+    fill: list[str] = field(default_factory=list)
+    glue: list[str] = field(default_factory=list)
+    ignore: list[str] = field(default_factory=list)
+    head_rows: int = 1
+    transpose: bool = False
+    also: bool = False
+    is_unit_wide: bool = False
+    origin: int = 0
+    base: int = 10
+
+
+def read_rules(tree: Seq) -> list[Rule]:
+    """Return the rules of a profile whose structure was checked. Raises `Findings` with everything that is wrong in them."""
+    findings: list[Finding] = []
+    by_name: dict[str, Map] = {}
+    rules: list[Rule] = []
+    for index, own in enumerate(tree, 1):
+        name = own.get("rule", f"rule {index}")
+        merged = own
+        if "like" in own:
+            base = by_name.get(own["like"])
+            if base is None:
+                close = close_to(own["like"], by_name)
+                help = f"did you mean `{close}`?" if close else "name an earlier rule with `rule:`"
+                findings.append(
+                    Finding(CODE, f"there is no rule `{own['like']}` before this one", own.at("like"), help)
+                )
+            else:
+                merged = _laid_over(base, own)
+        if name in by_name:
+            findings.append(Finding(CODE, f"two rules are called `{name}`", own.at("rule"), "give each its own name"))
+        by_name[name] = merged
+        rules.append(_Reader(findings).read(merged, name, own.place))
+    if findings:
+        raise Findings(findings)
+    return rules
+
+
+def _laid_over(base: Map, own: Map) -> Map:
+    """The keys of an earlier rule with those of this one over them."""
+    made = Map(own.spot)
+    for source in (base, own):
+        for key, value in source.items():
+            if key in ("rule", "like") and source is base:
+                continue
+            if key in _MERGED and key in made and isinstance(value, Map):
+                inner = Map(value.spot)
+                for part in (made[key], value):
+                    inner.update(part)
+                    inner.spots.update(part.spots)
+                value = inner
+            made[key] = value
+            made.spots[key] = source.spots[key]
+    return made
+
+
+class _Reader:
+    """Makes a `Rule` of a mapping and adds what is wrong in it to ``findings``."""
+
+    def __init__(self, findings: list[Finding]) -> None:
+        self.findings = findings
+
+    def read(self, tree: Map, name: str, place: Place) -> Rule:
+        """Return the rule; what cannot be read of it is left out, with a finding."""
+        made = Rule(name, place, tree.get("what", "message"))
+        made.head_rows, made.transpose = tree.get("head_rows", 1), tree.get("transpose", False)
+        made.also, made.origin, made.base = tree.get("also", False), tree.get("origin", 0), tree.get("base", 10)
+        made.is_unit_wide = tree.get("width") == "unit"
+        self.conditions(made, tree["tables"])
+        self.message(made, tree.get("message") or Map(place))
+        for key in ("columns", "lines"):
+            entries = tree.get(key) or Map(place)
+            getattr(made, key).extend(
+                Column(c, self.patterns(v, entries.at(c)), entries.key_at(c)) for c, v in entries.items()
+            )
+        if "melt" in tree:
+            made.melt = next(iter(self.patterns(tree["melt"], tree.at("melt"))), None)
+        made.each = self.roles(tree.get("each"))
+        for role, words in (tree.get("map") or {}).items():
+            self.role(role, tree["map"].key_at(role))
+            made.map[role] = {str(word).casefold(): str(meaning) for word, meaning in words.items()}
+        for index, entry in enumerate(tree.get("set", ())):
+            where = {role: self.regex(text, entry["where"].at(role)) for role, text in entry["where"].items()}
+            for role in entry["where"]:
+                self.role(role, entry["where"].key_at(role))
+            given = self.roles(entry, leave_out="where")
+            made.corrections.append(Correction(where, given, tree["set"].item_at(index)))
+        for key in ("skip", "stop"):
+            if key in tree:
+                setattr(made, key, self.regex(tree[key], tree.at(key)))
+        made.keep = {c: self.regex(text, tree["keep"].at(c)) for c, text in (tree.get("keep") or {}).items()}
+        for key in ("join", "fill", "glue", "ignore"):
+            getattr(made, key).extend(str(text) for text in tree.get(key, ()))
+        self.together(made, tree)
+        return made
+
+    def conditions(self, made: Rule, tree: Map) -> None:
+        made.head = str(tree.get("head", ""))
+        for title in re.split(r"\s\|\s", made.head):
+            if title.startswith("~"):
+                self.regex(title[1:], tree.at("head"))
+        if "page" in tree:
+            first, _, last = str(tree["page"]).partition("-")
+            made.pages = int(first), int(last or first)
+        made.nth = tree.get("nth")
+        made.conditions = {
+            key: self.regex(tree[key], tree.at(key)) for key in ("caption", "heading", "before", "sheet") if key in tree
+        }
+
+    def message(self, made: Rule, tree: Map) -> None:
+        for key, value in tree.items():
+            source = key.rstrip("?")
+            if source in SOURCES:
+                made.sources[source] = list(self.patterns(value, tree.at(key)))
+                if key.endswith("?"):
+                    made.optional.add(source)
+                continue
+            made.literals["message" if key == "name" else key] = str(value)
+        kind = made.literals.get("kind")
+        if kind is not None and kind not in KINDS:
+            self.add(f"`{kind}` is no kind of message", tree.at("kind"), f"write {', '.join(KINDS)}")
+        if (
+            made.what in ("enumeration", "lookup", "bits")
+            and not {"of"} & set(made.literals)
+            and not any("of" in pattern.roles for patterns in made.sources.values() for pattern in patterns)
+        ):
+            self.add(
+                f"nothing says to which field the {made.what} belongs",
+                made.place,
+                "add `message: {of: FIELD}`, or a pattern with `{of}`",
+            )
+
+    def patterns(self, value: Any, place: Place) -> tuple[Pattern, ...]:
+        """The patterns of a text, or of a list of them."""
+        made = []
+        for index, text in enumerate(value if isinstance(value, Seq) else [value]):
+            where = value.item_at(index) if isinstance(value, Seq) else place
+            try:
+                made.append(compile_pattern(str(text), where))
+            except PatternError as error:
+                self.add(error.message, where, error.help)
+        return tuple(made)
+
+    def regex(self, text: Any, place: Place) -> re.Pattern[str]:
+        try:
+            return re.compile(str(text), re.I)
+        except re.error as error:
+            self.add(f"`{text}` is no regular expression: {error}", place, "check brackets and backslashes")
+            return re.compile("")
+
+    def roles(self, tree: Map | None, leave_out: str = "") -> dict[str, str]:
+        """A mapping of roles to values, as texts."""
+        given = {role: str(value) for role, value in (tree or {}).items() if role != leave_out}
+        for role in given:
+            assert tree is not None
+            self.role(role, tree.key_at(role))
+        return given
+
+    def role(self, role: str, place: Place) -> None:
+        if role not in ROLES:
+            close = close_to(role, ROLES)
+            help = f"did you mean `{close}`?" if close else f"roles are {', '.join(sorted(ROLES))}"
+            self.add(f"unknown role `{role}`", place, help)
+
+    def together(self, made: Rule, tree: Map) -> None:
+        """What single keys do not show."""
+        if made.what == "ignore":
+            used = [key for key in ("columns", "message", "lines", "melt", "each", "set") if key in tree]
+            if used:
+                self.add(
+                    f"`{used[0]}` has no effect in a rule that ignores its tables", tree.key_at(used[0]), "remove it"
+                )
+            return
+        if not (made.columns or made.lines):
+            self.add(f"the rule `{made.name}` gives no column a role", made.place, "add `columns:`")
+        if made.melt is not None and not any(column.key == "*" for column in made.columns):
+            self.add("`melt` needs the pattern of the cells", tree.key_at("melt"), 'add `"*": name` to `columns`')
+        if made.melt is None and (star := next((c for c in made.columns if c.key == "*"), None)):
+            self.add("`*` are the cells of melted columns, and nothing is melted", star.place, "add `melt:`")
+        if made.melt is not None and made.lines:
+            self.add("`melt` and `lines` exclude each other", tree.key_at("lines"), "remove one of them")
+
+    def add(self, message: str, place: Place, help: str) -> None:
+        self.findings.append(Finding(CODE, message, place, help))
+
+
+def roles_of_message(rule: Rule) -> Iterator[str]:
+    """The roles of a message that the rule may give, by whatever key."""
+    yield from (role for role in rule.literals if role in MESSAGE_ROLES)
+    for patterns in (*rule.sources.values(), *(c.patterns for c in (*rule.columns, *rule.lines))):
+        yield from (role for pattern in patterns for role in pattern.roles if role in MESSAGE_ROLES)

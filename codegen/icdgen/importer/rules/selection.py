@@ -1,0 +1,106 @@
+"""Which rule decides about a table, and why others do not."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from dataclasses import dataclass, field
+
+from icdgen.importer.rules.language import normalised
+from icdgen.importer.rules.rule import Rule
+from icdgen.importer.source_tables import SourceTable
+
+SEARCHED = 6  # rows in which the headings are looked for: titles and notes stand above them
+NO_HEAD = "none"
+
+
+@dataclass
+class Choice:
+    """The rules that apply to a table, and for each rule before the last one why it does not."""
+
+    table: SourceTable
+    rules: list[Rule] = field(default_factory=list)
+    reasons: list[tuple[Rule, str]] = field(default_factory=list)
+
+
+def texts_of(table: SourceTable, transpose: bool) -> list[list[str]]:
+    """The texts of the table by row and column, or by column and row."""
+    rows = [[normalised(slot.text) for slot in row] for row in table.grid()]
+    if not transpose:
+        return rows
+    width = max(map(len, rows), default=0)
+    padded = [row + [""] * (width - len(row)) for row in rows]
+    return [list(column) for column in zip(*padded, strict=True)]
+
+
+def heading_row(rule: Rule, texts: list[list[str]]) -> int | None:
+    """The index of the heading row; -1 for a rule without one, None if no row fits."""
+    if rule.head in ("", NO_HEAD):
+        return -1
+    wanted = titles_wanted(rule)
+    return next((index for index, row in enumerate(texts[:SEARCHED]) if _first_difference(wanted, row) is None), None)
+
+
+def titles_wanted(rule: Rule) -> list[str]:
+    """The cells of `head`."""
+    return [normalised(title) for title in re.split(r"\s\|\s", rule.head)]
+
+
+def _first_difference(wanted: list[str], row: list[str]) -> int | None:
+    for index, title in enumerate(wanted):
+        cell = row[index] if index < len(row) else ""
+        fits = title == "*" or (
+            re.search(title[1:], cell, re.I) is not None
+            if title.startswith("~")
+            else title.casefold() == cell.casefold()
+        )
+        if not fits or index >= len(row):
+            return index
+    return None
+
+
+def why_not(rule: Rule, table: SourceTable) -> str:
+    """Why a rule does not apply to a table, its `nth` aside; empty if it does."""
+    if rule.pages is not None and not (table.page is not None and rule.pages[0] <= table.page <= rule.pages[1]):
+        return f"the table stands on page {table.page}" if table.page is not None else "the source has no pages"
+    for source, pattern in rule.conditions.items():
+        texts = {"caption": [table.caption], "heading": table.headings, "before": table.before, "sheet": [table.sheet]}[
+            source
+        ]
+        if not any(pattern.search(normalised(text)) for text in texts):
+            shown = f": `{normalised(texts[-1])[:50]}`" if texts and texts[-1] else "; there is none"
+            return f"`{source}` does not match{shown}"
+    texts_by_row = texts_of(table, rule.transpose)
+    if heading_row(rule, texts_by_row) is not None:
+        return ""
+    wanted = titles_wanted(rule)
+    nearest = max(texts_by_row[:SEARCHED], key=lambda row: _agreement(wanted, row), default=[])
+    index = _first_difference(wanted, nearest) or 0
+    cell = nearest[index] if index < len(nearest) else ""
+    return f"the headings differ: `{wanted[index]}` is wanted as cell {index + 1}, the table has `{cell[:40]}`"
+
+
+def _agreement(wanted: list[str], row: list[str]) -> int:
+    return sum(_first_difference([title], [cell]) is None for title, cell in zip(wanted, row, strict=False))
+
+
+def choose(rules: list[Rule], tables: list[SourceTable]) -> list[Choice]:
+    """Decide for each table: the first rule that fits, and rules before it that leave the table to others (`also`)."""
+    made = []
+    seen: Counter[str] = Counter()
+    for table in tables:
+        choice = Choice(table)
+        for rule in rules:
+            reason = why_not(rule, table)
+            if not reason and rule.nth is not None:
+                seen[rule.name] += 1
+                if seen[rule.name] != rule.nth:
+                    reason = f"it is number {seen[rule.name]} of the tables that fit, `nth` is {rule.nth}"
+            if reason:
+                choice.reasons.append((rule, reason))
+                continue
+            choice.rules.append(rule)
+            if not rule.also:
+                break
+        made.append(choice)
+    return made

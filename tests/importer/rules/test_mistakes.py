@@ -1,0 +1,127 @@
+"""Mistakes that people make in profiles: each is reported with its place, and none gives a wrong result in silence."""
+
+from __future__ import annotations
+
+import pytest
+
+from icdgen.diagnostics import Findings
+from icdgen.importer import profile
+from tests.importer.rules.test_rules import NODE, found, read
+
+TABLE = """4.1 Basic state (STATE) ID:0x02F4
+
+Num\tParameter\tPosition\tLength\tRange\tFactor\tOffset\tUnit
+1\tVoltage\t0\t16\t0~1000\t0.1\t0\tV
+2\tCurrent\t16\t16\t-400~400\t0.1\t-400\tA
+3\tLevel\t32\t8\t0~100\t1\t0\t%
+"""
+RULES = r"""rules:
+  - rule: state
+    tables: {head: Num | Parameter | Position}
+    message: {heading: '\({message:\w+}\) ID:{id}$', kind: telemetry}
+    columns:
+      Parameter: name
+      Position: bit
+      Length: bits
+      Range: '^{min}~{max}$'
+      Factor: scale
+      Offset: offset
+      Unit: unit
+    each: {type: uint}
+    ignore: [Num]
+"""
+
+
+def test_the_profile_without_a_mistake_has_no_finding(tmp_path):
+    result, tree = read(tmp_path, TABLE, RULES)
+    assert [t.message for t in result.troubles if t.severity != "note"] == []
+    assert [(f["at"], f["name"]) for f in tree["messages"][0]["fields"]] == [
+        (0, "Voltage"),
+        (16, "Current"),
+        (32, "Level"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "line", "message"),
+    [
+        ("    ignore: [Num]", "    ignores: [Num]", 16, "unknown key `ignores`"),
+        (
+            "Offset: offset",
+            "Offset: ofset",
+            13,
+            "`ofset` is neither a role nor a pattern with a role: did you mean the role `offset`?",
+        ),
+        (
+            "{min}~{max}",
+            "{mini}~{max}",
+            11,
+            "unknown role `mini` in the pattern `^{mini}~{max}$`: did you mean `{min}`?",
+        ),
+        ("'^{min}~{max}$'", "'^({min}~{max}$'", 11, "is no regular expression"),
+        ("'^{min}~{max}$'", r"'^\d+~\d+$'", 11, "is neither a role nor a pattern with a role"),
+        ("each: {type: uint}", "each: {typ: uint}", 15, "unknown role `typ`: did you mean `type`?"),
+        ("kind: telemetry", "kind: telemtry", 6, "`telemtry` is no kind of message"),
+        ("  - rule: state", "  - rule: state\n    like: stat", 5, "there is no rule `stat` before this one"),
+        ("  - rule: state", "  - rule: state\n    what: messages", 5, "`what` cannot be the text 'messages'"),
+        ("head: Num | Parameter", "head: Num | ~Para(meter", 5, "`Para(meter` is no regular expression"),
+        ("    ignore: [Num]", "    ignore: [Num]\n    skip: '('", 17, "`(` is no regular expression"),
+        ("    ignore: [Num]", "    melt: '^D{bit}$'", 16, "`melt` needs the pattern of the cells"),
+        ("      Unit: unit", "      '*': name", 14, "`*` are the cells of melted columns, and nothing is melted"),
+        (
+            "  - rule: state",
+            "  - rule: state\n    what: enumeration",
+            4,
+            "nothing says to which field the enumeration belongs",
+        ),
+        ("'^{min}~{max}$'", "'^{min}~{min}$'", 11, "each role may stand once in a pattern"),
+    ],
+)
+def test_a_mistake_in_the_profile_is_found_before_anything_is_read(tmp_path, right, wrong, line, message):
+    assert RULES.count(right) == 1
+    (tmp_path / "rules.yaml").write_text(NODE + RULES.replace(right, wrong), encoding="utf-8")
+    with pytest.raises(Findings) as caught:
+        profile.load(tmp_path / "rules.yaml")
+    assert any(
+        message in f"{f.message}: {f.help}" and (f.code, f.place.line) == ("IMP001", line)
+        for f in caught.value.findings
+    ), [(f.message, f.help, f.place.line) for f in caught.value.findings]
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "code", "message"),
+    [
+        ("Factor: scale", "Scale: scale", "IMP102", "it has no column `Scale` of rule `state`"),
+        ("Num | Parameter", "Num | Parametr", "IMP101", "rule `state` applies to no table"),
+        ("rules:\n", "rules:\n  - {rule: all, tables: {head: '~.'}, what: ignore}\n", "IMP101", "1 tables go to rules before it"),
+        ("Position: bit", "Position: byte", "IMP035", "no field covers bit 16 to 127"),
+        ("Length: bits", "Length: bytes", "IMP105", "a number has at most 64 bits, this one 128"),
+        ("Offset: offset", "Offset: bias", "IMP106", "its range has the min -400, its raw values give 40.0 to 6593.5"),
+        ("      Offset: offset\n", "", "IMP102", "rule `state` gives the column `Offset` no role: `0` and 2 more"),
+        ("    ignore: [Num]", "    ignore: [Num]\n    origin: 1", "IMP105", "begins before the message"),
+        ("    ignore: [Num]", "    ignore: [Num]\n    skip: Current", "IMP035", "no field covers bit 16 to 31"),
+        ("    ignore: [Num]", "    ignore: [Num]\n    set: [{where: {unit: ^furlong$}, type: int}]", "IMP101", "matches no row"),
+        ("ID:{id}$", "ID:{id:F4}$", "IMP103", "no text of `heading` matches"),
+        (r"'\({message:\w+}\) ID:{id}$'", r"'^{id:\d+}.* \({message:\w+}\)'", "IMP104", "the same text has `0x02F4`"),
+        ("    each: {type: uint}\n", "", "IMP026", "nothing states its type"),
+        ("Length: bits", "Length: text", "IMP105", "nothing gives its size"),
+        ("Parameter: name", "Parameter: text", "IMP025", "gives no name"),
+        ("'^{min}~{max}$'", "'^{min}'", "IMP104", "leaves `~1000` of `0~1000`"),
+        (", kind: telemetry", "", "IMP031", "its rule gives no kind"),
+        (" ID:{id}$'", "'", "IMP031", "its rule gives no id"),
+        ("Parameter: name", "Parameter: '^{name:Volt}'", "IMP103", "no pattern of rule `state` takes `Current`"),
+    ],
+)  # fmt: skip
+def test_a_mistake_that_shows_in_the_result_is_a_finding(tmp_path, right, wrong, code, message):
+    assert RULES.count(right) == 1
+    result, _ = read(tmp_path, TABLE, RULES.replace(right, wrong))
+    assert any(message in text for text in found(result, code)), [(t.code, t.message) for t in result.troubles]
+    if code not in ("IMP035", "IMP104", "IMP106"):
+        assert result.failed
+
+
+def test_every_finding_about_a_rule_names_its_line(tmp_path):
+    result, _ = read(tmp_path, TABLE, RULES.replace("Factor: scale", "Scale: scale"))
+    trouble = next(t for t in result.troubles if t.code == "IMP102" and "no column" in t.message)
+    assert (trouble.place.line, trouble.place.column) == (12, 7)
+    assert "its columns are `Num`, `Parameter`" in trouble.help
