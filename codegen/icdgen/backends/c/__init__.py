@@ -11,6 +11,7 @@ from icdgen.backends.c import accessors, bits, conditional, constants, decoding,
 from icdgen.backends.c.declared_names import declared_names
 from icdgen.backends.c.member_groups import Groups, Structs, in_groups
 from icdgen.backends.c.runtime import whole
+from icdgen.backends.c.short_names import SIGNIFICANT, with_short_names
 from icdgen.backends.c.statement import call, head, like
 from icdgen.backends.c.text import FILE, comment, described, literal, noted, prose
 from icdgen.backends.origin import origin
@@ -40,18 +41,22 @@ class CBackend:
 
     name = "c"
     reserved = names.RESERVED
-    significant = 63  # characters of a name that C99 warrants to tell it from others
+    significant = SIGNIFICANT
 
     def __init__(self) -> None:
         self.packages = Packages()
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """Every file, the support header first, then node by node."""
+        prefixed = with_prefix(icd, self.packages.c_prefix)
+        yield from with_short_names(self._files(prefixed, render), lambda: self.identifiers(prefixed))
+
+    def _files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         from icdgen.describe.links import links_of  # the rules about names need none of it
 
         first = f"/* {origin()} */\n"
         yield PurePosixPath("icdgen.h"), first + whole("icdgen.h", render)
-        description = describe(with_prefix(icd, self.packages.c_prefix))
+        description = describe(icd)
         if any(one.has_wide_steps for node in description.nodes for one in node.composites):
             yield PurePosixPath("icdgen_wide.h"), first + whole("icdgen_wide.h", render)
         links = links_of(description)

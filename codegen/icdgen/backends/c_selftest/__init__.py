@@ -26,9 +26,13 @@ class CSelftestBackend:
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """The engine, the list of nodes, and one file of vectors a node."""
+        from icdgen.backends.c.declared_names import declared_names
+        from icdgen.backends.c.short_names import with_short_names
         from icdgen.backends.c_selftest import rows
+        from icdgen.describe import describe
 
-        return rows.files(with_prefix(icd, self.packages.c_prefix), render)
+        prefixed = with_prefix(icd, self.packages.c_prefix)
+        return with_short_names(rows.files(prefixed, render), lambda: declared_names(describe(prefixed)))
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """None of its own: all are made from those of the ``c`` backend."""
