@@ -145,7 +145,8 @@ def test_an_error_control_is_a_field_and_what_is_not_held_is_said_with_its_line(
     assert field(gyro, "State", "Crc")["summary"] == "CRC16_CCITT."
     assert ("IMP082", "`Crc` is CRC16_CCITT of what is in the frame") in said(gyro)
     (missing,) = [one for one in gyro.definitions.troubles if one.severity == "error"]
-    assert missing.message == "message `Sometimes` is not held: `Extra` is there only on a condition"
+    why = "`Extra` is there only on a condition"
+    assert missing.message == f"message `Sometimes`: from `Extra` on only bytes are held: {why}"
     lines = (SHEETS / "gyro.xml").read_text().splitlines()
     assert 'name="Sometimes"' in lines[missing.spot.line - 1]
 
@@ -164,8 +165,8 @@ def test_a_value_that_nothing_defines_costs_what_uses_it(tmp_path):
     folder = copied(tmp_path, "mission.xml", '<Define name="NAME_LENGTH" value="${WORD} + 4"/>', "")
     read = imported("camera.xml", folder)
     why = "nothing in the file or beside it defines `${MISSION/NAME_LENGTH}`"
-    assert ("IMP070", f"message `Shoot` is not held: {why}") in said(read)
-    assert read.held == 3
+    assert ("IMP081", f"message `Shoot`: from `File` on only bytes are held: {why}") in said(read)
+    assert read.held == 4 and message(read, "Shoot")["fields"][-1]["type"] == "bytes"
     (folder / "mission.xml").unlink()
     assert "nothing in the file or beside it defines `${MISSION/HEADER}`" in why_not("camera.xml", folder)
 

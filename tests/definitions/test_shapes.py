@@ -328,3 +328,29 @@ def test_a_header_that_no_icd_can_have_costs_itself_and_not_the_messages(monkeyp
     (lost,) = errors(read)
     assert lost.code == "IMP070" and lost.message.startswith("the header is not held: the length of")
     assert read.held == 5 and "protocol" not in read.trees["aggregate"]
+
+
+def test_xtce_a_field_of_unknown_size_costs_what_follows_and_not_the_message(tmp_path):
+    text = '<StringParameterType name="text_t"><StringDataEncoding><SizeInBits><LeadingSize/></SizeInBits></StringDataEncoding></StringParameterType>'  # fmt: skip # noqa: E501
+    read = edited(
+        tmp_path,
+        ("</ParameterTypeSet>", f"{text}</ParameterTypeSet>"),
+        ('name="Position" parameterTypeRef="vec3_t"', 'name="Position" parameterTypeRef="text_t"'),
+    )
+    (lost,) = errors(read)
+    assert (lost.code, lost.spot.line) == ("IMP081", 83)
+    assert lost.message == "message `Orbit`: from `Position` on only bytes are held: its size stands in front of it"
+    assert read.held == 5 and [(one["name"], one["type"]) for one in message(read, "Orbit")["fields"]] == [
+        ("Elapsed", "uint"), ("Position", "bytes"),
+    ]  # fmt: skip
+    assert unused(read) and "`Shadow`" in "".join(text for text, _ in unused(read))
+
+
+def test_xtce_what_tells_a_message_apart_must_be_held(tmp_path):
+    read = edited(tmp_path, ('name="Kind" typeRef="u8_t"', 'name="Kind" typeRef="lost_t"'))
+    why = "there is no parameter type `lost_t`"
+    assert sorted(one.message for one in errors(read)) == [
+        f"message `{name}` is not held: it is told by `Section/Kind`, which is in or behind `Section`: {why}"
+        for name in ("Sails", "Wheels")
+    ]
+    assert read.held == 3

@@ -331,11 +331,13 @@ def test_what_a_parameter_counts_is_an_open_end(text, held, tmp_path):
 
 
 @pytest.mark.parametrize("dynamic", [value(2, 0), value(1, 0.5), "<DynamicValue/>"])
-def test_an_array_that_no_parameter_counts_is_not_held(dynamic, tmp_path):
+def test_an_array_that_no_parameter_counts_is_held_as_bytes_to_the_end(dynamic, tmp_path):
     (tmp_path / "one.xml").write_text(counted(dynamic))
-    with pytest.raises(Findings) as raised:
-        run.read(tmp_path / "one.xml", xtce.Xtce())
-    assert any("no parameter counts" in one.message for one in raised.value.findings)
+    read = run.read(tmp_path / "one.xml", xtce.Xtce())
+    (lost,) = [one for one in read.definitions.troubles if one.severity == "error"]
+    assert lost.code == "IMP081" and lost.message.startswith("message `A`: from `D` on only bytes are held: ")
+    assert "no parameter counts" in lost.message and read.failed
+    assert field(read, "A", "D") == {"at": 8, "name": "D", "type": "bytes", "size": "rest", "up_to": 65_534}
 
 
 @pytest.mark.parametrize("bits", [8 * 65_536, 10**12])

@@ -35,10 +35,17 @@ def packets() -> Iterator[Definitions]:
             if f"message `{one['name']}`" in open_:
                 one["fields"] = [part for part in one["fields"] if "size" not in part]
         missing = [one.message for one in read.definitions.troubles if one.severity == "error"]
+        # a message that ends in bytes for fields which are not held counts as one that is missing
+        tree["messages"] = [one for one in tree["messages"] if not any(_is_cut(one, text) for text in missing)]
         try:
             yield _definitions(path, tree, missing)
         except NotImplementedError:
             continue  # of what the library does not know, such as arrays
+
+
+def _is_cut(message: dict, finding: str) -> bool:
+    """Whether a finding says that only bytes are held of the end of a message."""
+    return finding.startswith(f"message `{message['name']}`: from ")
 
 
 class _Any(dict):

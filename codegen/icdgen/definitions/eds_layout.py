@@ -14,6 +14,7 @@ from icdgen.definitions.eds_types import ARRAY, CONTAINER, Types, described
 from icdgen.definitions.eds_values import whole
 from icdgen.definitions.frames import BIG, LITTLE
 from icdgen.definitions.model import Item, NotHeld, again
+from icdgen.definitions.reading import TooMuch
 from icdgen.definitions.wording import line, shortest
 from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS, REST
 
@@ -44,12 +45,17 @@ class Layout:
     told: dict[Hashable, int] = field(default_factory=dict)  # by what is constrained: its only raw value
     at: int = 0
     within: tuple[Element, ...] = ()  # containers in which this one is repeated
+    lost: tuple[str, NotHeld] | None = None  # the entry from which on only bytes are held, and why
 
     def read(self, container: Element) -> None:
         """Raises `NotHeld`."""
         self._add(container, (), self.within)
         for one in self.constraints:
             part = next((part for part in self.parts if part.path == one.path), None)
+            if part is None and self.lost is not None:
+                name, why = self.lost
+                text = f"it is told by `{line('.'.join(one.path), 100)}`, which is in or behind `{name}`: {why}"
+                raise NotHeld(text, why.help)
             raw = eds_parts.constrain(part, one, self.sheets, self.types)
             if raw is not None and part is not None:
                 self.told[part.path, part.entry] = raw
@@ -89,20 +95,42 @@ class Layout:
 
     def _entries(self, container: Element, tag: str, path: tuple[str, ...], within: tuple[Element, ...]) -> None:
         for entry in container.iterfind(f"{tag}/*"):
-            self.types.step()
-            name = line(self.sheets.attribute(entry, "name"), 100) or f"unnamed {self.at}"
-            if entry.find("PresentWhen") is not None:
-                raise NotHeld(f"`{name}` is there only on a condition")
-            if self.parts and not self.parts[-1].bits:
-                raise NotHeld(f"`{name}` stands behind `{self.parts[-1].path[-1]}`, whose length is not fixed")
-            if entry.tag == "PaddingEntry":
-                self.at += whole(self.sheets.attribute(entry, "sizeInBits"), "the size of a padding", 0, 8 * MOST_BYTES)
-            elif entry.tag in (*_FIELDS, "ListEntry"):
-                self._entry(entry, name, path, within)
-            else:
-                raise NotHeld(f"it has a `{line(entry.tag, 60)}`")
-            if len(self.parts) > MOST_FIELDS or self.at > 8 * MOST_BYTES:
-                raise NotHeld(f"it has more than {MOST_FIELDS} fields or {MOST_BYTES} bytes")
+            if self.lost is not None:
+                break
+            before, at = len(self.parts), self.at
+            try:
+                self._placed(entry, path, within)
+            except TooMuch:
+                raise
+            except NotHeld as why:
+                self._lose(entry, path, why, before, at)
+
+    def _lose(self, entry: Element, path: tuple[str, ...], why: NotHeld, before: int, at: int) -> None:
+        """Holds the bytes from an entry to the end instead of its fields. Raises ``why`` if there are none ahead."""
+        if self.lost is not None or not before or at % 8 or not self.parts[before - 1].bits:
+            raise why
+        del self.parts[before:]
+        name = line(entry.get("name"), 100) or f"unnamed {at}"
+        item: Item = {"type": "bytes", "up_to": MOST_BYTES}
+        self.parts.append(Part((*path, name), entry, item, at, 0, element=8))
+        self.at, self.lost = at, (name, why)
+
+    def _placed(self, entry: Element, path: tuple[str, ...], within: tuple[Element, ...]) -> None:
+        """Puts an entry where the last one ended. Raises `NotHeld`."""
+        self.types.step()
+        name = line(self.sheets.attribute(entry, "name"), 100) or f"unnamed {self.at}"
+        if entry.find("PresentWhen") is not None:
+            raise NotHeld(f"`{name}` is there only on a condition")
+        if self.parts and not self.parts[-1].bits:
+            raise NotHeld(f"`{name}` stands behind `{self.parts[-1].path[-1]}`, whose length is not fixed")
+        if entry.tag == "PaddingEntry":
+            self.at += whole(self.sheets.attribute(entry, "sizeInBits"), "the size of a padding", 0, 8 * MOST_BYTES)
+        elif entry.tag in (*_FIELDS, "ListEntry"):
+            self._entry(entry, name, path, within)
+        else:
+            raise NotHeld(f"it has a `{line(entry.tag, 60)}`")
+        if len(self.parts) > MOST_FIELDS or self.at > 8 * MOST_BYTES:
+            raise NotHeld(f"it has more than {MOST_FIELDS} fields or {MOST_BYTES} bytes")
 
     def _entry(self, entry: Element, name: str, path: tuple[str, ...], within: tuple[Element, ...]) -> None:
         type_, count = self._element(entry, name)

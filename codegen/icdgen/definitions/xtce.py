@@ -32,7 +32,7 @@ _WITHOUT_EFFECT = frozenset(
         for key in ("signed", "sizeInBits")
     }
 )
-IN_HEADER, BASE_ONLY = "IMP086", "IMP087"
+AS_BYTES, IN_HEADER, BASE_ONLY = "IMP081", "IMP086", "IMP087"
 _HAZARDOUS = frozenset({"vital", "critical", "severe"})
 
 
@@ -112,7 +112,15 @@ class _Found:
             shown = ", ".join(f"`{one.item['name']}`" for one in lost)
             text = f"message `{self.name}`: {shown} lies within the header"
             to.warn(IN_HEADER, text, "it is left out: the parts of a header have their own meaning", "error")
-        return self.layout.laid_out(made, start, BIG, to)
+        message = self.layout.laid_out(made, start, BIG, to)
+        if self.layout.lost is not None:
+            name, why = self.layout.lost
+            text = f"message `{self.name}`: from `{name}` on only bytes are held: {why}"
+            place = self.layout.names.place(self.element)
+            to.warn(
+                AS_BYTES, text, why.help or "describe the rest by hand, or simplify the definition", "error", *place
+            )
+        return message
 
     def _is_ahead(self, part: Part, start: int) -> bool:
         """Whether a part is one of what stands in front of the data: of the primary header, or the id."""

@@ -9,6 +9,7 @@ from xml.etree.ElementTree import Element
 
 from icdgen.definitions.frames import LITTLE, ORDERS, Place, laid_out
 from icdgen.definitions.model import Definitions, Item, NotHeld, again
+from icdgen.definitions.reading import TooMuch
 from icdgen.definitions.wording import line
 from icdgen.definitions.xtce_calibration import fixed, number
 from icdgen.definitions.xtce_names import Names, beside, called
@@ -71,6 +72,7 @@ class Layout:
     at: int = 0
     behind: str = ""  # the entry just before, where it is not always there
     size: int = 0  # bits that every frame has, where that is said
+    lost: tuple[str, NotHeld] | None = None  # the entry from which on only bytes are held, and why
 
     def add(self, container: Element, within: tuple[Element, ...] = (), is_included: bool = False) -> None:
         """Adds the entries of a container behind those that it inherits. Raises `NotHeld`."""
@@ -91,18 +93,37 @@ class Layout:
             self.size = size
         entries = container.find("EntryList")
         for entry in () if entries is None else entries:
-            self._move(entry, start)
-            before = len(self.parts)
-            self._entry(entry, container, within)
-            if (condition := entry.find("IncludeCondition")) is not None:
-                needs = self._needs(condition, container, _named(entry))
-                self.jumps, self.behind = True, _named(entry)
-                for part in self.parts[before:]:
-                    if "when" in part.item:
-                        raise NotHeld(f"`{_named(entry)}` is there only on conditions within each other")
-                    part.item |= needs
+            if self.lost is not None:
+                break
+            before, at = len(self.parts), self.at
+            try:
+                self._move(entry, start)
+                self._entry(entry, container, within)
+                if (condition := entry.find("IncludeCondition")) is not None:
+                    self._conditional(entry, self._needs(condition, container, _named(entry)), before)
+            except TooMuch:
+                raise
+            except NotHeld as why:
+                self._lose(entry, why, before, at)
             if len(self.parts) > MOST_FIELDS:
                 raise NotHeld(f"it has more than {MOST_FIELDS} fields")
+
+    def _conditional(self, entry: Element, needs: Item, before: int) -> None:
+        """Makes what an entry added to ``before`` parts present only where other fields have some values."""
+        self.jumps, self.behind = True, _named(entry)
+        for part in self.parts[before:]:
+            if "when" in part.item:
+                raise NotHeld(f"`{_named(entry)}` is there only on conditions within each other")
+            part.item |= needs
+
+    def _lose(self, entry: Element, why: NotHeld, before: int, at: int) -> None:
+        """Holds the bytes from an entry to the end of the frame instead of their fields. Raises ``why`` if there are none ahead."""
+        if self.lost is not None or not before or at % 8 or self.behind or not self.parts[before - 1].piece.bits:
+            raise why
+        del self.parts[before:]
+        item: Item = {"name": _named(entry), "type": "bytes", "size": "rest", "up_to": MOST_BYTES}
+        self.parts.append(Part(None, item, Piece(item, 0), at))
+        self.at, self.lost = at, (_named(entry), why)
 
     def _move(self, entry: Element, start: int) -> None:
         location = entry.find("LocationInContainerInBits")
@@ -260,6 +281,10 @@ class Layout:
     def _part(self, told: Told) -> Part:
         """The last part that is the parameter, argument or member. Raises `NotHeld`."""
         part = next((one for one in reversed(self.parts) if one.reference == told.reference), None)
+        if part is None and self.lost is not None:
+            name, why = self.lost
+            text = f"it is told by `{told.reference.name}`, which is in or behind `{name}`: {why}"
+            raise NotHeld(text, why.help)
         if part is None:
             raise NotHeld(f"it is told by `{told.reference.name}`, which it does not have")
         return part
