@@ -173,7 +173,7 @@ def test_a_table_that_is_not_understood_is_named(tmp_path):
         (b"", "the file is empty"),
         (b"nothing but prose\n", "no message and no enumeration"),
         (b"ID\t1\n\xff\xfe\n", "not UTF-8"),
-        (b"PK\x03\x04 a zip archive", "neither a PDF nor a text"),
+        (b"PK\x03\x04 a zip archive", "no kind of document that icdgen reads"),
     ],
 )
 def test_a_text_without_anything_to_import_is_a_finding(tmp_path, data, message):

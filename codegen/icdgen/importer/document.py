@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from icdgen.diagnostics import Place
-from icdgen.importer.words import table_name
+from icdgen.importer.words import plain, table_name
 
 CERTAIN, LIKELY, DOUBTFUL = "certain", "likely", "doubtful"
 
@@ -62,6 +62,29 @@ class PrintedRow:
         """Return the cells of some columns."""
         end = start + width
         return PrintedRow(self.texts[start:end], self.edges[start : end + 1], self.continues[start:end])
+
+
+@dataclass(slots=True)
+class Cell:
+    """A cell; ``text`` has the line breaks of the source, ``columns`` and ``rows`` are its spans."""
+
+    text: str
+    columns: int = 1
+    rows: int = 1
+
+
+@dataclass(slots=True)
+class SourceRow:
+    """The cells that begin in a row, from left to right; those of cells above that reach into it are left out."""
+
+    cells: list[Cell]
+    page: int | None = None
+    line: int | None = None
+
+    @property
+    def shown(self) -> str:
+        """The filled cells for a finding."""
+        return " | ".join(plain(cell.text) for cell in self.cells if cell.text.strip())
 
 
 @dataclass(slots=True)
@@ -132,6 +155,8 @@ class Table:
     order: int | None = None  # which table of the document it is
     run: int = 1  # which run of ascending numbers it is in
     section: str = ""  # the heading above it
+    sheet: str = ""  # of a spreadsheet
+    source_rows: list[SourceRow] = field(default_factory=list)  # of sources that state the spans of cells
 
     @property
     def all_rows(self) -> list[Row]:
@@ -209,6 +234,7 @@ class Document:
     troubles: list[Trouble] = field(default_factory=list)
     pages: int | None = None  # None for text, which has no pages
     title: str = ""
+    needs_rules: bool = False  # of sources whose tables only rules can read
 
     @property
     def tables(self) -> list[Table]:

@@ -62,7 +62,7 @@ def run(
     and the finding IMP004. ``pages``: the first and the last one to read of a PDF."""
     document, tables = sources.read(manual, words, progress, jobs, pages)
     interpretation = None
-    if words.has_rules or not document.blocks:
+    if words.has_rules or document.needs_rules:
         interpretation = interpret.interpret(tables, words, document.troubles)
         found = interpretation.survey
     else:

@@ -11,34 +11,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from icdgen.importer.document import Box, Document, Heading, PrintedRow, Row, Spot, Table, Text
+from icdgen.importer.document import Box, Cell, Document, Heading, PrintedRow, Row, SourceRow, Spot, Table, Text
 from icdgen.importer.words import plain, squeezed, table_name
 
 SNAP = 3.0  # points: edges of cells that are nearer than this are one
 SAME_WIDTH = 8.0  # points: by so much may the parts of a table differ that stand on several pages
-
-
-@dataclass(slots=True)
-class Cell:
-    """A cell; ``text`` has the line breaks of the source, ``columns`` and ``rows`` are its spans."""
-
-    text: str
-    columns: int = 1
-    rows: int = 1
-
-
-@dataclass(slots=True)
-class SourceRow:
-    """The cells that begin in a row, from left to right; those of cells above that reach into it are left out."""
-
-    cells: list[Cell]
-    page: int | None = None
-    line: int | None = None
-
-    @property
-    def shown(self) -> str:
-        """The filled cells for a finding."""
-        return " | ".join(plain(cell.text) for cell in self.cells if cell.text.strip())
 
 
 class Slot(NamedTuple):
@@ -167,12 +144,14 @@ def from_document(document: Document) -> list[SourceTable]:
         elif isinstance(block, Text):
             before.append(block.text)
         else:
-            rows = _rows(block)
+            rows = block.source_rows or _rows(block)
             if not any(cell.text for row in rows for cell in row.cells):
                 continue
             headings = [heading.title for heading in chain]
             boxes = [Box(box.page, *(round(value, 1) for value in box[1:])) for box in block.boxes]
-            made.append(SourceTable(len(made) + 1, rows, block.caption, block.number, headings, before, boxes))
+            made.append(
+                SourceTable(len(made) + 1, rows, block.caption, block.number, headings, before, boxes, block.sheet)
+            )
             before = []
     return made
 

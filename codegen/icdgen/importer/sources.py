@@ -1,4 +1,4 @@
-"""Every source of tables -> `SourceTable`: PDF, text, and folders of table files."""
+"""Every source of tables -> `SourceTable`: documents of all kinds, and folders of table files."""
 
 from __future__ import annotations
 

@@ -14,8 +14,8 @@ from typing import Any
 from icdgen.diagnostics import Finding, Findings
 from icdgen.icd import schema, source
 from icdgen.icd.located import Map
-from icdgen.importer.document import Box, Document
-from icdgen.importer.source_tables import Cell, SourceRow, SourceTable, name_of
+from icdgen.importer.document import Box, Cell, Document, SourceRow
+from icdgen.importer.source_tables import SourceTable, name_of
 from icdgen.importer.words import table_name, table_number
 
 SUFFIX = ".table.yaml"
@@ -164,4 +164,4 @@ def _cell_of(value: Any) -> Cell:
 def document_of(folder: Path) -> Document:
     """Return the document that the tables of a folder come from, without its text. Raises `Findings`."""
     first = source.read(min(folder.glob(f"*{SUFFIX}")))
-    return Document(str(first.get("document", folder.name)), title=str(first.get("title", "")))
+    return Document(str(first.get("document", folder.name)), title=str(first.get("title", "")), needs_rules=True)

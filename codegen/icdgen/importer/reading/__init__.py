@@ -35,13 +35,35 @@ def read(
         from icdgen.importer.reading import pdf
 
         return pdf.read(path, profile, progress, jobs, pages)
-    if b"\0" in start or start[:4] in (b"PK\x03\x04", b"\xd0\xcf\x11\xe0"):
-        raise _refused(name, "this is neither a PDF nor a text", "export the manual as PDF first")
+    kind = _kind(path, start)
     if pages is not None:
-        raise UserError("a text has no pages", "leave --pages out")
+        raise UserError(f"{name} has no pages", "leave --pages out")
+    if kind in ("csv", "xlsx"):
+        from icdgen.importer.reading import spreadsheet
+
+        return spreadsheet.read_csv(path) if kind == "csv" else spreadsheet.read_xlsx(path)
+    if kind:
+        from icdgen.importer.reading import markup
+
+        readers = {"docx": markup.read_docx, "html": markup.read_html, "markdown": markup.read_markdown}
+        return readers[kind](path, profile)
+    if b"\0" in start or start[:4] in (b"PK\x03\x04", b"\xd0\xcf\x11\xe0"):
+        raise _refused(
+            name, "this is no kind of document that icdgen reads", "export it as PDF, .docx, .xlsx, CSV or HTML first"
+        )
     from icdgen.importer.reading import text
 
     return text.read(path, profile)
+
+
+def _kind(path: Path, start: bytes) -> str:
+    """The kind of a document that is neither PDF nor text, by its first bytes and the end of its name."""
+    suffix = path.suffix.casefold()
+    if start[:4] == b"PK\x03\x04":
+        return {".xlsx": "xlsx", ".xlsm": "xlsx", ".docx": "docx"}.get(suffix, "")
+    if suffix in (".html", ".htm", ".xhtml") or start.lstrip()[:15].lower().startswith((b"<!doctype html", b"<html")):
+        return "html"
+    return {".csv": "csv", ".md": "markdown", ".markdown": "markdown"}.get(suffix, "")
 
 
 def _refused(name: str, message: str, help: str) -> Findings:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from pathlib import Path
 
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.importer import headings, labels
 from icdgen.importer.document import Block, Document, Heading, Row, Table, Text
 from icdgen.importer.profile import Profile
+from icdgen.importer.reading.captions import Caption, attach_captions
 from icdgen.importer.understand import grids
 from icdgen.importer.words import CONTINUED, plain, table_number
 
@@ -39,7 +39,7 @@ def read(path: Path, profile: Profile) -> Document:
 class _Reader:
     def __init__(self, profile: Profile, name: str) -> None:
         self.profile, self.name = profile, name
-        self.blocks: list[Block | _Caption] = []
+        self.blocks: list[Block | Caption] = []
         self.table: Table | None = None
         self.raw: list[Row] = []
         self.page: int | None = None
@@ -65,7 +65,7 @@ class _Reader:
         heading = _HEADING.match(plain(text))
         if caption and (caption["mark"] or not caption["title"]):
             title = CONTINUED.sub("", caption["title"]).strip()
-            self.blocks.append(_Caption(table_number(caption["number"]), title, self.page, number, plain(text)))
+            self.blocks.append(Caption(table_number(caption["number"]), title, plain(text), self.page, number))
         elif heading and len(text) < 120:
             self.blocks.append(Heading(heading["number"], heading["text"], self.page, number))
         else:
@@ -104,43 +104,7 @@ class _Reader:
     def done(self) -> list[Block]:
         """The blocks, each caption with its table."""
         self.close()
-        blocks = self.blocks
-        captions = [i for i, b in enumerate(blocks) if isinstance(b, _Caption)]
-        after = {i: _table(blocks, i, 1) for i in captions}
-        before = {i: _table(blocks, i, -1) for i in captions}
-        above = sum(t is not None for t in after.values()) >= sum(t is not None for t in before.values())
-        owner: dict[int, int] = {}
-        for i in captions if above else reversed(captions):
-            if (target := (after if above else before)[i]) is not None:
-                owner[target] = i
-        used = set(owner.values())
-        made: list[Block] = []
-        for index, block in enumerate(blocks):
-            if isinstance(block, _Caption):
-                if index not in used:
-                    made.append(Text(block.text, block.page, block.line))
-                continue
-            if isinstance(block, Table) and index in owner:
-                caption = blocks[owner[index]]
-                assert isinstance(caption, _Caption)
-                if made and isinstance(made[-1], Table) and made[-1].number == caption.number:
-                    made[-1].rows += block.rows or block.head
-                    continue
-                block.number, block.caption, block.line = caption.number, caption.title, caption.line
-            made.append(block)
-        return made
-
-
-class _Caption:
-    """A line that reads like a caption."""
-
-    def __init__(self, number: int, title: str, page: int | None, line: int, text: str) -> None:
-        self.number, self.title, self.page, self.line, self.text = number, title, page, line, text
-
-
-def _table(blocks: Sequence[Block | _Caption], index: int, step: int) -> int | None:
-    near = index + step
-    return near if 0 <= near < len(blocks) and isinstance(blocks[near], Table) else None
+        return attach_captions(self.blocks)
 
 
 def _stacked(upper: list[str], lower: list[str]) -> list[str] | None:

@@ -8,11 +8,12 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 
+from icdgen.importer.document import Cell, SourceRow
 from icdgen.importer.rules.language import cell_text, normalised
 from icdgen.importer.rules.notes import Notes
 from icdgen.importer.rules.rule import Rule
 from icdgen.importer.rules.selection import heading_row, texts_of
-from icdgen.importer.source_tables import Cell, Slot, SourceRow, SourceTable
+from icdgen.importer.source_tables import Slot, SourceTable
 
 
 @dataclass

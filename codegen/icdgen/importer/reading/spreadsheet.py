@@ -1,0 +1,173 @@
+"""Spreadsheets -> documents: CSV with the standard library, XLSX with openpyxl.
+
+A sheet is a section; rows without any text separate its tables. A row of one cell above a table is a text before it. Merged
+cells are cells that span rows and columns.
+"""
+
+from __future__ import annotations
+
+import csv
+import datetime
+import io
+import zipfile
+from pathlib import Path
+from typing import Any
+
+from icdgen.diagnostics import Finding, Findings, Place
+from icdgen.errors import UserError
+from icdgen.importer.document import Block, Cell, Document, Heading, SourceRow, Spot, Table, Text, Trouble
+
+CODE = "IMP002"
+MOST_ROWS, MOST_COLUMNS = 100_000, 1_000  # of a sheet: sheets that are formatted to their end have a million rows
+Cells = list[tuple[int, list[Cell]]]  # number of the row, counted from 1, and the cells that begin in it
+
+
+def read_csv(path: Path) -> Document:
+    """Return the document of a CSV file. Raises `Findings` if it is not UTF-8 or no CSV."""
+    name = str(path)
+    data = path.read_bytes()
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data[: error.start].count(b"\n") + 1
+        problem = f"byte 0x{data[error.start]:02X} is not UTF-8"
+        raise Findings([Finding(CODE, problem, Place(name, line), "save it as CSV in UTF-8")]) from None
+    delimiter = max(",;\t|", key=text[:10_000].count)
+    rows: Cells = []
+    reader = csv.reader(io.StringIO(text), delimiter=delimiter, strict=True)
+    try:
+        start = 1
+        for row in reader:
+            rows.append((start, [Cell(cell.strip().replace("\r\n", "\n")) for cell in row]))
+            start = reader.line_num + 1
+    except csv.Error as error:
+        message = f"this is no CSV: {error}"
+        raise Findings(
+            [Finding(CODE, message, Place(name, reader.line_num), "check the quotes in this line")]
+        ) from None
+    document = Document(name, needs_rules=True)
+    document.blocks = _blocks(rows, "")
+    return document
+
+
+def read_xlsx(path: Path) -> Document:
+    """Return the document of a workbook. Raises `Findings` if it cannot be read, `UserError` without openpyxl."""
+    try:
+        import openpyxl
+        from openpyxl.utils.exceptions import InvalidFileException
+    except ImportError:
+        raise UserError("reading a spreadsheet needs openpyxl", "pip install 'icdgen[import]'") from None
+    try:
+        book = openpyxl.load_workbook(path, data_only=True)
+        formulas = openpyxl.load_workbook(path)
+    except (InvalidFileException, zipfile.BadZipFile, KeyError, ValueError, OSError) as error:
+        help = "open it in a spreadsheet program and save it as .xlsx"
+        raise Findings([Finding(CODE, f"the workbook cannot be read: {error}", Place(str(path)), help)]) from None
+    document = Document(str(path), title=str(book.properties.title or ""), needs_rules=True)
+    for sheet in book.worksheets:
+        if sheet.sheet_state != "visible":
+            document.troubles.append(
+                Trouble(
+                    "IMP013",
+                    f"the sheet `{sheet.title}` is hidden; it was left out",
+                    help="show it if it has tables",
+                    severity="note",
+                )
+            )
+            continue
+        reader = _Sheet(sheet, formulas[sheet.title], document)
+        document.blocks += [Heading("", sheet.title), *_blocks(reader.rows(), sheet.title)]
+    return document
+
+
+class _Sheet:
+    """A sheet with the values of its cells, and the same sheet with their formulas."""
+
+    def __init__(self, sheet: Any, formulas: Any, document: Document) -> None:
+        self.sheet, self.formulas, self.document = sheet, formulas, document
+
+    def rows(self) -> Cells:
+        """The rows up to the last one with a value; cells that are merged into another one are left out."""
+        height, width = min(self.sheet.max_row, MOST_ROWS), min(self.sheet.max_column, MOST_COLUMNS)
+        spans = {}
+        covered = set()
+        for area in self.sheet.merged_cells.ranges:
+            bottom, right = min(area.max_row, height), min(area.max_col, width)
+            spans[area.min_row, area.min_col] = right - area.min_col + 1, bottom - area.min_row + 1
+            covered |= {(r, c) for r in range(area.min_row, bottom + 1) for c in range(area.min_col, right + 1)}
+        covered -= set(spans)
+        made: Cells = []
+        for row in range(1, height + 1):
+            cells = []
+            for column in range(1, width + 1):
+                if (row, column) in covered:
+                    continue
+                columns, rows = spans.get((row, column), (1, 1))
+                cells.append(Cell(self.text(row, column), columns, rows))
+            made.append((row, cells))
+        return made
+
+    def text(self, row: int, column: int) -> str:
+        """The value of a cell as text; reports values that are not what was typed."""
+        cell = self.sheet.cell(row, column)
+        value = cell.value
+        where = f"sheet `{self.sheet.title}`, cell {cell.coordinate}"
+        if isinstance(value, (datetime.date, datetime.time)):
+            self.report(row, f"{where}: the spreadsheet program made the date {value} of what was typed",
+                        "was it a range such as 1-2? Format the column as text and type it again")  # fmt: skip
+            return str(value)
+        if value is None:
+            formula = self.formulas.cell(row, column).value
+            if isinstance(formula, str) and formula.startswith("="):
+                self.report(
+                    row,
+                    f"{where}: the formula `{formula[:40]}` has no stored value",
+                    "open and save it in a spreadsheet program",
+                )
+            return ""
+        if isinstance(value, bool):
+            return "TRUE" if value else "FALSE"
+        if isinstance(value, float):
+            return str(int(value)) if value == int(value) else repr(value)
+        if isinstance(value, str) and value.startswith("#") and value.endswith(("!", "?", "/A")):
+            self.report(row, f"{where}: its formula gives the error `{value}`", "correct the formula")
+        return str(value).strip().replace("\r\n", "\n")
+
+    def report(self, row: int, message: str, help: str) -> None:
+        self.document.troubles.append(Trouble("IMP023", message, Spot(line=row), help, "error"))
+
+
+def _blocks(rows: Cells, sheet: str) -> list[Block]:
+    """Tables between rows without text, and the texts above them."""
+    made: list[Block] = []
+    table: list[SourceRow] = []
+    open_rows = 0  # that a merged cell above reaches into
+
+    def close() -> None:
+        if table:
+            rows = list(table)
+            while rows and not rows[-1].shown:
+                rows.pop()
+            made.append(Table(line=rows[0].line, sheet=sheet, source_rows=_without_empty_columns(rows)))
+            table.clear()
+
+    for number, cells in rows:
+        filled = [cell.text for cell in cells if cell.text]
+        open_rows = max(open_rows - 1, 0)
+        if not filled and not open_rows:
+            close()
+        elif len(filled) == 1 and not table and not open_rows and (cells[0].text or len(cells) > 1):
+            made.append(Text(filled[0], line=number))
+        else:
+            table.append(SourceRow(cells, line=number))
+        open_rows = max([open_rows, *(cell.rows for cell in cells if cell.text)])
+    close()
+    return made
+
+
+def _without_empty_columns(rows: list[SourceRow]) -> list[SourceRow]:
+    """The rows without empty cells behind the last filled one of the table."""
+    if any(cell.columns > 1 or cell.rows > 1 for row in rows for cell in row.cells):
+        return rows
+    width = max((index + 1 for row in rows for index, cell in enumerate(row.cells) if cell.text), default=0)
+    return [SourceRow(row.cells[:width], row.page, row.line) for row in rows]

@@ -1,0 +1,194 @@
+"""Spreadsheets, web pages, Markdown and Word documents give the tables that a PDF gives, and are read by the same rules."""
+
+from __future__ import annotations
+
+import datetime
+from pathlib import Path
+
+import pytest
+
+from icdgen.diagnostics import Findings
+from icdgen.importer import profile, run, sources, table_files
+from tests.importer.rules.test_rules import NODE, found
+
+openpyxl = pytest.importorskip("openpyxl", reason="pip install 'icdgen[import]'")
+docx = pytest.importorskip("docx", reason="pip install 'icdgen[import]'")
+
+TITLES = ["Message", "ID", "Dir", "Byte", "Type", "Resolution", "Unit", "Comment"]
+ROWS = [  # the message cells are merged over the rows of a message
+    ["Motor state", "0x21", "TM", "1", "uint8", "", "", "Mode"],
+    [None, None, None, "2-3", "int16", "0.5", "rpm", "Speed\nof the motor"],
+    ["Set speed", "0x22", "TC", "1-2", "uint16", "0.5", "rpm", "Speed"],
+]
+RULES = NODE + r"""rules:
+  - tables: {head: Message | ID | Dir}
+    columns:
+      Message: message
+      ID: id
+      Dir: kind
+      Byte: '^{byte}(?:-{last_byte})?$'
+      Type: type
+      Resolution: scale
+      Unit: unit
+      Comment: ['^{name:\w+} of', name]
+    map: {kind: {TM: telemetry, TC: telecommand}}
+    origin: 1
+"""
+
+
+def xlsx(path: Path) -> None:
+    book = openpyxl.Workbook()
+    sheet = book.active
+    sheet.title = "Messages"
+    sheet.append(["Interface of the motor, issue 3"])
+    sheet.append([])
+    for row in (TITLES, *ROWS):
+        sheet.append([int(cell) if cell and cell.isdigit() else cell for cell in row])
+    for column in "ABC":
+        sheet.merge_cells(f"{column}4:{column}5")
+    book.create_sheet("Old").sheet_state = "hidden"
+    book.save(path)
+
+
+def word(path: Path) -> None:
+    document = docx.Document()
+    document.add_heading("Messages", 1)
+    table = document.add_table(1 + len(ROWS), len(TITLES))
+    for index, row in enumerate((TITLES, *ROWS)):
+        for column, text in enumerate(row):
+            table.cell(index, column).text = text or ""
+    for column in range(3):
+        table.cell(1, column).merge(table.cell(2, column))
+        table.cell(1, column).text = ROWS[0][column]
+    document.save(str(path))
+
+
+def html(path: Path) -> None:
+    body = "".join(f"<th>{title}</th>" for title in TITLES)
+    lines = [f"<tr>{body}</tr>"]
+    for index, row in enumerate(ROWS):
+        span = ' rowspan="2"' if index == 0 else ""
+        cells = (
+            f"<td{span if c < 3 else ''}>{(t or '').replace(chr(10), '<br>')}</td>"
+            for c, t in enumerate(row)
+            if t is not None
+        )
+        lines.append("<tr>" + "\n  ".join(cells) + "</tr>")
+    path.write_text(f"<html><body><h1>Messages</h1><table>{''.join(lines)}</table></body></html>", encoding="utf-8")
+
+
+def separated(path: Path) -> None:
+    lines = [";".join(TITLES)]
+    for index, row in enumerate(ROWS):
+        row = [text if text is not None else ROWS[index - 1][column] for column, text in enumerate(row)]
+        lines.append(";".join(f'"{text}"' if "\n" in text else text for text in row))
+    path.write_text("Interface of the motor\n\n" + "\n".join(lines) + "\n", encoding="utf-8")
+
+
+def markdown(path: Path) -> None:
+    lines = ["# Messages", "", "| " + " | ".join(TITLES) + " |", "|---" * len(TITLES) + "|"]
+    for index, row in enumerate(ROWS):
+        row = [text if text is not None else ROWS[index - 1][column] for column, text in enumerate(row)]
+        lines.append("| " + " | ".join(text.replace("\n", "<br>") for text in row) + " |")
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+WRITERS = {"motor.xlsx": xlsx, "motor.docx": word, "motor.html": html, "motor.csv": separated, "motor.md": markdown}
+
+
+@pytest.mark.parametrize("name", WRITERS)
+def test_one_rule_reads_a_table_of_every_source(tmp_path, name):
+    WRITERS[name](tmp_path / name)
+    (tmp_path / "rules.yaml").write_text(RULES, encoding="utf-8")
+    result, trees = run.run(tmp_path / name, profile.load(tmp_path / "rules.yaml"), jobs=1)
+    assert [t.message for t in result.troubles if t.severity == "error"] == []
+    state, speed = trees["motor"]["messages"]
+    assert (state["name"], state["id"], state["kind"], state["length"]) == ("Motor state", 0x21, "telemetry", 3)
+    assert [(f["at"], f["bits"], f["name"], f["type"]) for f in state["fields"]] == [
+        (0, 8, "Mode", "uint"),
+        (8, 16, "Speed", "int"),
+    ]
+    assert (state["fields"][1]["formula"], state["fields"][1]["unit"]) == ("raw*0.5", "rpm")
+    assert (speed["name"], speed["kind"], speed["length"]) == ("Set speed", "telecommand", 2)
+
+
+@pytest.mark.parametrize("name", WRITERS)
+def test_table_files_of_every_source_give_the_same(tmp_path, name):
+    WRITERS[name](tmp_path / name)
+    document, tables = sources.read(tmp_path / name, profile.load())
+    assert [cell.text for cell in tables[0].rows[0].cells] == TITLES
+    assert tables[0].rows[2].cells[-1].text == "Speed\nof the motor"
+    table_files.write(tables, tmp_path / "tables", document)
+    assert table_files.read(tmp_path / "tables") == tables
+
+
+def test_a_range_that_a_spreadsheet_made_a_date_is_an_error(tmp_path):
+    book = openpyxl.Workbook()
+    book.active.append(["Byte", "Name"])
+    book.active.append([datetime.date(2026, 1, 2), "Speed"])
+    book.active.append(["=A1+1", "Load"])
+    book.save(tmp_path / "motor.xlsx")
+    document, _ = sources.read(tmp_path / "motor.xlsx", profile.load())
+    date, formula = [t for t in document.troubles if t.severity == "error"]
+    assert "sheet `Sheet`, cell A2: the spreadsheet program made the date 2026-01-02" in date.message
+    assert "range such as 1-2" in date.help
+    assert "cell A3: the formula `=A1+1` has no stored value" in formula.message
+
+
+def test_sheets_have_several_tables_with_texts_above_and_hidden_ones_are_named(tmp_path):
+    xlsx(tmp_path / "motor.xlsx")
+    book = openpyxl.load_workbook(tmp_path / "motor.xlsx")
+    sheet = book["Messages"]
+    for row in ([], ["Errors"], ["Code", "Meaning"], [0, "none"], [1.5, "hot"]):
+        sheet.append(row)
+    book.save(tmp_path / "motor.xlsx")
+    document, tables = sources.read(tmp_path / "motor.xlsx", profile.load())
+    assert [(t.headings, t.before, t.sheet) for t in tables] == [
+        (["Messages"], ["Messages", "Interface of the motor, issue 3"], "Messages"), (["Messages"], ["Errors"], "Messages"),
+    ]  # fmt: skip
+    assert [[cell.text for cell in row.cells] for row in tables[1].rows] == [
+        ["Code", "Meaning"],
+        ["0", "none"],
+        ["1.5", "hot"],
+    ]
+    assert [t.message for t in document.troubles] == ["the sheet `Old` is hidden; it was left out"]
+
+
+def test_captions_and_the_chain_of_headings_come_from_the_document(tmp_path):
+    text = """<h1>4 Telemetry</h1><h2>4.1 Motor</h2><p>Asked for by <b>0x21</b>.</p><table><caption>Motor state</caption>
+      <tr><td>a</td><td colspan=2>b</td></tr></table>
+      <p>Table 7: Tank state</p><table><tr><td rowspan=9>c</td><td>d<p>e</p></td></tr></table><h2>4.2 Rest</h2>"""
+    (tmp_path / "a.html").write_text(text, encoding="utf-8")
+    _, (first, second) = sources.read(tmp_path / "a.html", profile.load())
+    assert (first.headings, first.caption, first.before[-1]) == (
+        ["4 Telemetry", "4.1 Motor"],
+        "Motor state",
+        "Asked for by 0x21.",
+    )
+    assert first.rows[0].cells[1].columns == 2
+    assert (second.label, second.caption, second.rows[0].cells[1].text) == (7, "Tank state", "d\ne")
+    assert second.rows[0].cells[0].rows == 1  # no more than there are
+
+
+@pytest.mark.parametrize(
+    ("name", "data"),
+    [
+        ("a.xlsx", b"PK\x03\x04nothing"),
+        ("a.docx", b"PK\x03\x04nothing"),
+        ("a.csv", b"a;\xff"),
+        ("a.csv", b'a;"b'),
+        ("a.zip", b"PK\x03\x04"),
+        ("a.md", b"\xff"),
+    ],
+)
+def test_a_file_that_cannot_be_read_is_a_finding(tmp_path, name, data):
+    (tmp_path / name).write_bytes(data)
+    with pytest.raises(Findings) as caught:
+        sources.read(tmp_path / name, profile.load())
+    assert caught.value.findings[0].code == "IMP002" and caught.value.findings[0].help
+
+
+def test_without_rules_a_spreadsheet_gives_its_tables_and_no_message(tmp_path):
+    xlsx(tmp_path / "motor.xlsx")
+    result, trees = run.run(tmp_path / "motor.xlsx", profile.load(), jobs=1)
+    assert trees == {} and len(found(result, "IMP100")) == 1
