@@ -242,7 +242,7 @@ def test_a_folder_is_imported_by_the_command(tmp_path):
     result = icdgen("import", "cfs", cwd=tmp_path)
     assert result.returncode == 0, result.stdout + result.stderr
     assert "without messages of their own: cfs/config/eds/config.xml, cfs/core/eds/packets.xml" in result.stdout
-    assert sorted(path.name for path in (tmp_path / "icd").iterdir()) == ["lamp.yaml", "pump.yaml"]
+    assert sorted(path.name for path in (tmp_path / "icd").glob("*.yaml")) == ["lamp.yaml", "pump.yaml"]
     said = json.loads(icdgen("import", "cfs", "--update", "--format", "json", cwd=tmp_path).stdout)
     assert {one["definition"]: one["held"] for one in said["definitions"]}["cfs/pump/eds/pump.xml"] == 1
     assert [one["file"] for one in said["files"]] == ["icd/lamp.yaml", "icd/pump.yaml"] and said["check"] == []
