@@ -6,6 +6,7 @@ port, ``can://interface/channel`` (of python-can).
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import select
@@ -18,7 +19,7 @@ from urllib.parse import urlsplit
 
 from icdgen_runtime.wire.can import CanPacket
 
-from icdgen.errors import UserError
+from icdgen.link.exclusive import PortError, busy, lock_port
 
 CONNECT_TIMEOUT = 5.0  # s
 WRITE_TIMEOUT = 5.0
@@ -26,10 +27,6 @@ MOST_OF_A_PACKET = 1400  # bytes of a stream in one datagram
 MOST_OF_A_DATAGRAM = 65507
 _BARE_ADDRESS = re.compile(r"(\[[0-9A-Fa-f:.]+\]|[\w.-]+):\d{1,5}")  # host and port without tcp:// or udp://
 FORMS = "tcp://HOST:PORT, udp://HOST:PORT, /dev/ttyUSB0, COM3, can://socketcan/can0"
-
-
-class PortError(UserError):
-    """The port cannot be opened, or is gone."""
 
 
 class Port(Protocol):
@@ -105,6 +102,11 @@ class Terminal:
         self.path = path
         with _failures(f"cannot open {path}", OSError, help="check the path and your rights to it"):
             self.file = os.open(path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+        try:
+            lock_port(self.file, path)
+        except PortError:
+            os.close(self.file)
+            raise
         with suppress(OSError):
             tty.setraw(self.file)
 
@@ -143,14 +145,20 @@ class Serial:
         serial = _library("serial", "pyserial")
         self.name, self.errors = name, (serial.SerialException, OSError)
         with _failures(f"cannot open {name}", *self.errors, ValueError, help=f"a port is named so: {FORMS}"):
-            self.serial = serial.Serial(
-                name,
-                settings.get("baud_rate", 115200),
-                bytesize=settings.get("data_bits", 8),
-                parity=str(settings.get("parity", "none"))[0].upper(),
-                stopbits=settings.get("stop_bits", 1),
-                write_timeout=WRITE_TIMEOUT,
-            )
+            try:
+                self.serial = serial.Serial(
+                    name,
+                    settings.get("baud_rate", 115200),
+                    bytesize=settings.get("data_bits", 8),
+                    parity=str(settings.get("parity", "none"))[0].upper(),
+                    stopbits=settings.get("stop_bits", 1),
+                    write_timeout=WRITE_TIMEOUT,
+                    exclusive=True,  # Windows always opens ports so
+                )
+            except self.errors as error:
+                if _is_in_use(error):
+                    raise busy(name) from None
+                raise
 
     def read(self, timeout: float) -> bytes:
         with _failures(self.name, *self.errors):
@@ -245,6 +253,14 @@ def _is_pty(path: str) -> bool:
     except OSError:
         return False
     return stat.S_ISCHR(found.st_mode) and os.path.realpath(path).startswith("/dev/pts/")
+
+
+def _is_in_use(error: Exception) -> bool:
+    """Whether pyserial failed because another program has the port."""
+    if getattr(error, "errno", None) in (errno.EAGAIN, errno.EBUSY):
+        return True
+    # pyserial reports a lock that it does not get by text alone, and Windows an open port as a denied access.
+    return "exclusively lock" in str(error) or (os.name == "nt" and "PermissionError" in str(error))
 
 
 def _library(name: str, package: str) -> Any:

@@ -1,0 +1,85 @@
+"""Exclusive use of serial ports and terminals: two programs on one line take each other's replies."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+from icdgen.errors import UserError
+
+
+class PortError(UserError):
+    """The port cannot be opened, or is gone."""
+
+
+def lock_port(file: int, path: str) -> None:
+    """Lock an open serial port or terminal for this process until it is closed. Raises `PortError` that names the owner.
+
+    The lock is `flock`, which pyserial (``exclusive=True``), picocom and others take as well.
+    """
+    import fcntl
+
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise busy(path) from None
+    except OSError:
+        pass  # this kind of file has no locks
+
+
+def busy(path: str) -> PortError:
+    """The error for a port that another program uses."""
+    users = [f"{name} (process {pid})" for pid, name in users_of(path)]
+    owner = f" by {', '.join(users)}" if users else " by another program"
+    return PortError(
+        f"{path} is in use{owner}; nothing was sent",
+        "end that program, or connect to another port: a serial line serves one program at a time",
+    )
+
+
+def users_of(path: str) -> list[tuple[int, str]]:
+    """Other processes that have locked the file, or else have it open, with their commands, as far as Linux shows them."""
+    target = os.path.realpath(path)
+    others = [pid for pid in _pids() if pid != os.getpid() and _has_open(pid, target)]
+    # A simulator holds its own end of a pseudo-terminal open: only the owner of the lock is in the way.
+    owners = _lock_owners(target)
+    return [(pid, _command(pid)) for pid in sorted(set(others) & owners or owners or set(others))]
+
+
+def _lock_owners(path: str) -> set[int]:
+    """Process ids of the file's locks, of lines such as ``1: FLOCK  ADVISORY  WRITE 4711 00:18:3 0 EOF``."""
+    try:
+        file = os.stat(path)
+        lines = [line.split() for line in Path("/proc/locks").read_text(encoding="ascii").splitlines()]
+    except OSError:
+        return set()
+    place = f"{os.major(file.st_dev):02x}:{os.minor(file.st_dev):02x}:{file.st_ino}"
+    owners = {int(words[4]) for words in lines if len(words) > 5 and words[5] == place and words[1] == "FLOCK"}
+    return {pid for pid in owners if pid > 0} - {os.getpid()}
+
+
+def _pids() -> Iterator[int]:
+    try:
+        yield from (int(name) for name in os.listdir("/proc") if name.isdecimal())
+    except OSError:
+        return
+
+
+def _has_open(pid: int, target: str) -> bool:
+    try:
+        return any(os.path.realpath(file) == target for file in Path(f"/proc/{pid}/fd").iterdir())
+    except OSError:
+        return False  # it has ended, or belongs to another user
+
+
+def _command(pid: int) -> str:
+    try:
+        words = Path(f"/proc/{pid}/cmdline").read_bytes().decode(errors="replace").split("\0")
+    except OSError:
+        return "unknown"
+    words = [word for word in words if word]
+    if len(words) > 1 and os.path.basename(words[0]).startswith("python"):
+        words = words[words.index("-m") + 1 :] if "-m" in words[:-1] else words[1:]
+    # Only program and subcommand: further words may be long, or secret.
+    return " ".join([os.path.basename(words[0]), *words[1:2]]) if words else "unknown"
