@@ -17,7 +17,8 @@ from icdgen.link.options import session_options
 if TYPE_CHECKING:
     from icdgen_runtime.wire.session import BusSession
 
-    from icdgen.link.live import Monitor, Screen
+    from icdgen.link.live import Monitor
+    from icdgen.link.screen import Screen
 
 _SHORTEST_PAUSE = 0.1  # s between two attempts to reach a line that is gone
 
@@ -42,13 +43,15 @@ def monitor(
     """Show live telemetry of NODE as a table: MESSAGEs by id or name, default the identification.
 
     NODE may be left out where there is one only. Frames that the device sends of its own accord (logs) are shown as well; over a
-    link with envelopes they are all, or those of MESSAGEs, and only what a telecommand asks for is asked for. On a
-    terminal the table stays in its place; in a pipe each round is printed; --format json prints an object for each frame. A line
-    that is lost is taken up again as soon as it is there. Exit status: 1 if a frame was not answered in the last round.
+    link with envelopes they are all, or those of MESSAGEs, and only what a telecommand asks for is asked for. What does not
+    answer any more keeps its last values, with their age. On a terminal the table stays in its place, and scrolls if it is longer
+    (arrows, PgUp, PgDn, Home, End). In a pipe each round is printed; --format json prints an object for each frame. A line that
+    is lost is taken up again as soon as it is there. Exit status: 1 if a frame was not answered in the last round.
     """
-    from icdgen.link.live import Monitor, Screen
+    from icdgen.link.live import Monitor
     from icdgen.link.options import open_session, stranger
     from icdgen.link.ports import PortError
+    from icdgen.link.screen import Screen
     from icdgen.values.find import find_named
 
     icd = load_or_exit(icds).icd
@@ -106,6 +109,8 @@ class _Rounds:
             if session.wait(end * 1000):
                 screen.show()
         if self.watched.listens:
+            self.watched.end()
+            screen.show()
             self._print(screen)
 
     def miss(self, screen: Screen) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
@@ -13,15 +14,15 @@ from icdgen.errors import UserError
 from icdgen.icd.model import Icd, Message
 from icdgen.link.heard import FAULTS, Heard
 from icdgen.protocol import facts
-from icdgen.tables import Column, clean
+from icdgen.tables import Column
 from icdgen.values.find import find_message, find_node
 from icdgen.values.frame import Frame, frame
 
 if TYPE_CHECKING:
     from icdgen_runtime.wire.events import Event
-    from rich.table import Table
 
-_COLUMNS = ("frame", "field", "value", "unit", "remarks")
+OLD_SECONDS = 5.0  # from then on the age of a value is shown, though nobody asked for it
+COLUMNS = ("frame", "field", "value", "unit", "remarks")
 
 
 class Monitor:
@@ -41,7 +42,9 @@ class Monitor:
                 raise UserError("it is not said what to show", "name messages: icdgen monitor NODE MESSAGE ...")
             self.messages.append(self.known.identification.message)
         self.last: dict[str, bytes] = {}
-        self.silent: set[str] = set()  # what was not answered in this round, or did not come
+        self.came_at: dict[str, float] = {}  # when, by time.monotonic()
+        self.awaited: set[str] = set()  # what has not come in this round yet
+        self.silent: set[str] = set()  # what was not answered in the last round, or did not come
         self.faults: dict[int, str] = {}  # what was wrong with what came, by id
 
     @property
@@ -63,7 +66,12 @@ class Monitor:
     def begin(self) -> None:
         """A round begins."""
         if self.listens:
-            self.silent = {message.name for message in self.messages}
+            self.awaited = {message.name for message in self.messages}
+
+    def end(self) -> None:
+        """A round is over: what has not come is silent."""
+        if self.listens:
+            self.silent = set(self.awaited)
 
     def took(self, message: Message, outcome: Outcome) -> None:
         """What became of a request for the frame."""
@@ -73,13 +81,18 @@ class Monitor:
             self.silent.add(message.name)
 
     def _came(self, message: Message, id: int, data: bytes) -> None:
+        self.awaited.discard(message.name)
         self.silent.discard(message.name)
         self.faults.pop(id, None)
+        self._keep(message, data)
+
+    def _keep(self, message: Message, data: bytes) -> None:
         self.last[message.name] = data
+        self.came_at[message.name] = time.monotonic()
 
     def miss(self) -> None:
         """There is no line: nothing was answered."""
-        self.silent = {message.name for message in self.messages}
+        self.silent = self.awaited = {message.name for message in self.messages}
         self.faults.clear()
 
     def event(self, event: Event) -> None:
@@ -97,71 +110,49 @@ class Monitor:
             for one in event.log.frames:
                 message = self.known.telemetry.get(one.id) if one.id is not None else None
                 if message and message.length == len(one.data):
-                    self.last[message.name] = one.data
+                    self._keep(message, one.data)
 
     def frames(self) -> Iterator[Frame]:
         """What was answered, and what came unasked."""
-        for name in self._names():
-            if name in self.last and name not in self.silent:
-                message = next(m for m in self.icd.messages_of(self.node) if m.name == name)
-                yield frame(self.icd, self.node, message, self.last[name])
+        yield from (self._frame(name) for name in self._names() if name in self.last and name not in self.silent)
+
+    def _frame(self, name: str) -> Frame:
+        message = next(m for m in self.icd.messages_of(self.node) if m.name == name)
+        return frame(self.icd, self.node, message, self.last[name])
 
     def rows(self) -> Iterator[tuple[str, str, str, str, str]]:
-        """Frame, field, value, unit, remarks."""
-        found = {one.message.name: one for one in self.frames()}
+        """Frame, field, value, unit, remarks. What does not answer any more keeps its last values, with their age."""
         ids = {message.name: message.telemetry_id for message in self.messages}
         nothing = "nothing came" if self.listens else "no answer"
         for name in self._names():
+            remarks = []
             if name in self.silent:
-                yield name, "", "", "", self.faults.get(ids.get(name) or 0, nothing)
-            elif name in found:
-                for number, row in enumerate(found[name].rows):
-                    unit = row.field.unit_symbol
-                    yield name if number == 0 else "", row.field.name, row.text, unit, "; ".join(row.remarks)
+                remarks.append(self.faults.get(ids.get(name) or 0, nothing))
+            if name not in self.last:
+                if remarks:
+                    yield name, "", "", "", remarks[0]
+                continue
+            age = time.monotonic() - self.came_at[name]
+            if name in self.silent or age >= OLD_SECONDS:
+                remarks.append(f"last value, {_age_text(age)} old")
+            for number, row in enumerate(self._frame(name).rows):
+                of_row = "; ".join([*remarks, *row.remarks] if number == 0 else row.remarks)
+                yield name if number == 0 else "", row.field.name, row.text, row.field.unit_symbol, of_row
 
     def _names(self) -> list[str]:
         wanted = [message.name for message in self.messages]
-        return wanted + [name for name in self.last if name not in wanted]
+        return wanted + [name for name in list(self.last) if name not in wanted]
 
     def text(self) -> str:
         """The table for a pipe, or for a single round."""
-        columns = [Column(title, right=title == "value") for title in _COLUMNS]
+        columns = [Column(title, right=title == "value") for title in COLUMNS]
         table = tables.render(columns, list(self.rows()), tables.width_of(sys.stdout)).rstrip("\n")
         return "\n".join(filter(None, (table, self.heard.text())))
 
 
-class Screen:
-    """A table that stays in its place. Nothing happens unless ``live``."""
-
-    def __init__(self, monitor: Monitor, live: bool) -> None:
-        self.monitor, self.live = monitor, None
-        if live:
-            from rich.live import Live
-
-            self.live = Live(get_renderable=self._table, auto_refresh=False)
-
-    def __enter__(self) -> Screen:
-        if self.live:
-            self.live.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self.live:
-            self.live.stop()
-
-    def show(self) -> None:
-        """Draws the table anew."""
-        if self.live:
-            self.live.refresh()
-
-    def _table(self) -> Table:
-        from rich.table import Table
-        from rich.text import Text
-
-        table = Table(box=None, padding=(0, 2, 0, 0), pad_edge=False)
-        for title in _COLUMNS:
-            table.add_column(title, justify="right" if title == "value" else "left")
-        for row in self.monitor.rows():
-            style = "red" if row[0] in self.monitor.silent else ""
-            table.add_row(*(Text(clean(cell), style=style) for cell in row))
-        return table
+def _age_text(seconds: float) -> str:
+    """For instance 12 s, 3 min, 2 h 5 min."""
+    minutes, hours = int(seconds // 60), int(seconds // 3600)
+    if not minutes:
+        return f"{int(seconds)} s"
+    return f"{hours} h {minutes % 60} min" if hours else f"{minutes} min {int(seconds) % 60} s"

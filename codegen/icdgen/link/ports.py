@@ -19,7 +19,8 @@ from urllib.parse import urlsplit
 
 from icdgen_runtime.wire.can import CanPacket
 
-from icdgen.link.exclusive import PortError, busy, lock_port
+from icdgen.link.exclusive import PortError as PortError
+from icdgen.link.exclusive import busy, lock_port
 
 CONNECT_TIMEOUT = 5.0  # s
 WRITE_TIMEOUT = 5.0

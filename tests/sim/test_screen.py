@@ -1,0 +1,86 @@
+"""The table of `icdgen monitor`: values outlive a device that stops answering, and a small terminal scrolls."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import pty
+import select
+import struct
+import subprocess
+import sys
+import termios
+import time
+
+import pytest
+from icdgen_runtime.wire.events import Done, Timeout
+
+from icdgen.link import live
+from tests.sim.device import ICD, simulator
+
+
+def watched(*names: str) -> live.Monitor:
+    return live.Monitor(ICD, "cubeacp", names)
+
+
+def test_a_device_that_stops_answering_leaves_its_last_values_and_their_age(monkeypatch):
+    now = 100.0
+    monkeypatch.setattr(live.time, "monotonic", lambda: now)
+    monitor = watched("146")
+    (message,) = monitor.messages
+    monitor.took(message, Timeout(message.telemetry_id, 3))
+    assert [row[4] for row in monitor.rows()] == ["no answer"]
+    monitor.took(message, Done(id=message.telemetry_id, attempts=1, data=bytes((1, 0)) + bytes(message.length - 2)))
+    fresh = [row[:4] for row in monitor.rows()]
+    assert not any(row[4] for row in monitor.rows()) and not monitor.failed
+    for seconds, age in ((12, "12 s"), (200, "3 min 20 s"), (7500, "2 h 5 min")):
+        now = 100.0 + seconds
+        monitor.took(message, Timeout(message.telemetry_id, 3))
+        rows = list(monitor.rows())
+        assert [row[:4] for row in rows] == fresh and rows[0][4] == f"no answer; last value, {age} old"
+    assert monitor.failed and not list(monitor.frames())
+    monitor.miss()
+    assert [row[:4] for row in monitor.rows()] == fresh
+
+
+def screen_of(columns: int, lines: int, place: str, keys: bytes) -> str:
+    """What the monitor writes to a terminal of that size, after keys have been typed."""
+    terminal, end = pty.openpty()
+    fcntl.ioctl(end, termios.TIOCSWINSZ, struct.pack("HHHH", lines, columns, 0, 0))
+    words = ["monitor", "cubeacp", "128", "146", "150", "Communication Status", "--port", place, "--every", "0.2"]
+    environment = {**os.environ, "TERM": "xterm", "COLUMNS": str(columns), "LINES": str(lines)}
+    command = [sys.executable, "-m", "icdgen", *words]
+    # A session of its own whose controlling terminal is this one.
+    code = "import fcntl, os, sys, termios; os.setsid(); fcntl.ioctl(0, termios.TIOCSCTTY, 0); os.execv(sys.argv[1], sys.argv[1:])"
+    program = subprocess.Popen(
+        [sys.executable, "-c", code, *command], stdin=end, stdout=end, stderr=subprocess.PIPE, env=environment
+    )
+    os.close(end)
+    try:
+        text = _read_until(terminal, "of 20" if lines < 20 else "Communication Status", 30)
+        os.write(terminal, keys)
+        return text + _read_until(terminal, "", 2)
+    finally:
+        program.kill()
+        program.communicate()
+        os.close(terminal)
+
+
+def _read_until(terminal: int, words: str, seconds: float) -> str:
+    text, end = "", time.monotonic() + seconds
+    while time.monotonic() < end and not (words and words in text):
+        if select.select([terminal], [], [], 0.1)[0]:
+            text += os.read(terminal, 65536).decode(errors="replace")
+    return text
+
+
+@pytest.mark.pty
+def test_a_table_longer_than_the_terminal_scrolls_to_its_end():
+    with simulator("--node", "cubeacp", "--tcp", "0") as (place, _):
+        top = screen_of(80, 12, place, b"")
+        assert "lines 1 to 9 of 20" in top and "CAN telecommand buffer error" not in top
+        assert "lines 2 to 10 of 20" in screen_of(80, 12, place, b"\x1b[B")
+        end = screen_of(80, 12, place, b"\x1b[F")
+        assert "lines 12 to 20 of 20" in end and "CAN telecommand buffer error" in end
+        whole = screen_of(100, 40, place, b"")
+        assert " of 20" not in whole and "CAN telecommand buffer error" in whole
