@@ -17,11 +17,16 @@ from icdgen.errors import UserError
 from icdgen.reports.excerpt import shown
 from icdgen.suggest import close_words
 
-# Each is a module in ``icdgen.commands`` with a click command of the same name; `import` cannot be one in Python.
-_COMMANDS = (
-    "generate", "init", "check", "fmt", "rule", "show", "units", "docs", "decode", "encode", "diff", "import", "sim", "log",
-    "monitor", "send", "schema",
-)  # fmt: skip
+# Commands as `--help` groups them. Each is a module in ``icdgen.commands`` with a click command of the same name; the module
+# of `import` is `import_`, as that is a keyword of Python.
+_GROUPS = {
+    "Describe a device": ("init", "check", "fmt", "show", "rule", "units", "schema"),
+    "Generate": ("generate", "docs"),
+    "Import and compare": ("import", "diff"),
+    "Frames and logs": ("decode", "encode", "log"),
+    "Talk to a device": ("sim", "monitor", "send"),
+}
+_COMMANDS = tuple(name for names in _GROUPS.values() for name in names)
 _DEFAULT = "generate"
 _FOLDERS = ("--cmake-dir", "--examples-dir")
 _WHOLE = 10_000  # characters of a sentence
@@ -47,11 +52,12 @@ class _Commands(click.Group):
         return super().parse_args(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """The first sentence of each command, whole: click cuts it off at the width of the terminal."""
-        found = ((name, self.get_command(ctx, name)) for name in self.list_commands(ctx))
-        rows = [(name, command.get_short_help_str(_WHOLE)) for name, command in found if command is not None]
-        with formatter.section("Commands"):
-            formatter.write_dl(rows)
+        """Write the complete first sentence of each command: click cuts it off at the width of the terminal."""
+        for title, names in _GROUPS.items():
+            commands = ((name, self.get_command(ctx, name)) for name in names)
+            rows = [(name, command.get_short_help_str(_WHOLE)) for name, command in commands if command is not None]
+            with formatter.section(title):
+                formatter.write_dl(rows)
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         from icdgen.commands.common import known_languages
@@ -77,7 +83,7 @@ def _refuse_mistyped(word: str) -> None:
         return
     close = close_words(word, _COMMANDS)
     meant = "did you mean " + " or ".join(f"`{name}`" for name in close) + "?" if close else ""
-    raise UserError(f"there is no command `{word}`, and no file of that name", meant or "`icdgen --help` lists them")
+    raise UserError(f"`{word}` is neither a command nor a file", meant or "`icdgen --help` lists the commands")
 
 
 def _folder(name: str, what: str, place: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
@@ -98,17 +104,29 @@ def _folder(name: str, what: str, place: str) -> Callable[[Callable[..., None]],
     cls=_Commands,
     invoke_without_command=True,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
-    epilog="`icdgen --lang c` is short for `icdgen generate --lang c`. Exit status: 0 clean, 1 findings, 2 misuse.",
+    epilog="`icdgen --lang c` is short for `icdgen generate --lang c`. `icdgen COMMAND --help` shows the options of a command "
+    "and an example. Exit status: 0 success, 1 findings, 2 wrong usage.",
 )
 @click.version_option(__version__, prog_name="icdgen")
 @_folder("--cmake-dir", "the CMake module, for CMAKE_MODULE_PATH", "cmake")
 @_folder("--examples-dir", "the example programs and ICDs", "examples")
 @click.pass_context
 def icdgen(ctx: click.Context) -> None:
-    """Code, golden vectors and documentation from validated device ICDs."""
+    """Generate code, golden vectors and documentation from checked ICDs of devices."""
     if ctx.invoked_subcommand is None:
-        if command := icdgen.get_command(ctx, _DEFAULT):
-            ctx.invoke(command)
+        _generate_or_help(ctx)
+
+
+def _generate_or_help(ctx: click.Context) -> None:
+    """Generate what icdgen.toml names; without languages there, print the help and exit with the status of wrong usage."""
+    from icdgen.commands.common import chosen
+
+    command = icdgen.get_command(ctx, _DEFAULT)
+    if command is not None and chosen(())[1].lang:
+        ctx.invoke(command)
+        return
+    click.echo(ctx.get_help())
+    ctx.exit(2)
 
 
 def main(arguments: list[str], run: str = "") -> None:
@@ -120,7 +138,7 @@ def main(arguments: list[str], run: str = "") -> None:
         status = _complain(str(error), error.help)
     except click.ClickException as error:
         context = getattr(error, "ctx", None)
-        help = f"`{context.command_path} --help` says what there is" if context else ""
+        help = f"`{context.command_path} --help` lists the options" if context else ""
         status = _complain(error.format_message(), help)
     except (click.Abort, KeyboardInterrupt):
         _complain("interrupted")
@@ -129,7 +147,7 @@ def main(arguments: list[str], run: str = "") -> None:
         status = 141
     except OSError as error:
         place = error.filename or "the output cannot be written"
-        status = _complain(f"{place}: {error.strerror}", "check the path, or the disk")
+        status = _complain(f"{place}: {error.strerror}", "check the path and the free space of the disk")
     except RecursionError:
         status = _complain("the input is nested too deeply", "an ICD needs five levels, icdgen.toml two")
     except MemoryError:

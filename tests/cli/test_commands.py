@@ -63,6 +63,12 @@ class TestFmt:
         icdgen("fmt", demo)
         assert icdgen("fmt", "--check", demo).status == 0
 
+    def test_it_reports_what_it_did(self, icdgen, demo):
+        demo.write_text(DEMO.replace("bits: 4,  name", "bits: 4, name"))
+        assert "1 file not in the canonical layout" in icdgen("fmt", "--check", demo).out
+        assert "1 file formatted" in icdgen("fmt", demo).out
+        assert "1 file unchanged" in icdgen("fmt", demo).out
+
     @pytest.mark.parametrize("data", [b"a: [", b"\xff\xfe", b""])
     def test_what_is_not_yaml_is_a_finding_and_left_alone(self, icdgen, demo, data):
         demo.write_bytes(data)

@@ -106,12 +106,12 @@ def test_a_name_that_no_node_can_have_is_answered_with_one_that_can(icdgen, tmp_
 )
 def test_a_mistyped_command_is_answered_with_the_one_meant(icdgen, word, answer):
     result = icdgen(word)
-    assert result.status == 2 and f"there is no command `{word}`" in result.err and answer in result.err
+    assert result.status == 2 and f"`{word}` is neither a command nor a file" in result.err and answer in result.err
 
 
 def test_a_folder_named_like_a_slip_is_still_an_icd(icdgen, tmp_path):
     (tmp_path / "chek").mkdir()
-    assert "there is no command" not in icdgen("chek", "--lang", "c").err
+    assert "neither a command" not in icdgen("chek", "--lang", "c").err
 
 
 def test_units_are_listed_with_the_spellings_they_replace(icdgen):

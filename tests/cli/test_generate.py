@@ -103,7 +103,6 @@ def test_without_icds_the_shipped_ones_are_meant(icdgen, tmp_path):
         (["--lang", "cobol"], "there is no backend `cobol`; there are: assurance, c, "),
         (["--lang", "C"], "did you mean `c`?"),
         (["--lang", "py"], "did you mean `python`?"),
-        ([], "say what to generate"),
         (["--lang"], "requires an argument"),
         (["--langs", "c"], "No such option"),
         (["--lang", "c", "--templates", "nowhere"], "there is no folder nowhere"),

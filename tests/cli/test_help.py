@@ -1,34 +1,38 @@
-"""Help and errors are whole, however narrow the terminal."""
+"""The help: `icdgen` alone prints it, commands are in groups, and each has an example that its options accept."""
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
+import shlex
 
+import click
 import pytest
 
+from icdgen.cli import icdgen as group
 
-@pytest.mark.parametrize("width", [40, 80, 200])
-def test_no_summary_of_a_command_is_cut_off(width):
-    result = subprocess.run(
-        [sys.executable, "-m", "icdgen", "--help"],
-        capture_output=True,
-        text=True,
-        check=True,
-        env={**os.environ, "COLUMNS": str(width)},
-    )
-    text = " ".join(result.stdout.partition("Commands:")[2].partition("Languages:")[0].split())
-    assert "..." not in text
-    for words in (
-        "those of icdgen.toml, else those shipped.",
-        "on the wire, in meaning, in generated names, in words only.",
-    ):
-        assert words in text
+COMMANDS = group.list_commands(click.Context(group))
 
 
-def test_each_line_of_several_errors_says_that_it_is_one(icdgen):
-    result = icdgen("encode", "cubeacp", "Set Wheel Speed", "x=1", "y=999999", "w=2")
-    errors = [line for line in result.err.splitlines() if not line.startswith("  help:")]
-    assert result.status == 2 and len(errors) == 2, result.err
-    assert all(line.startswith("icdgen: error: ") for line in errors)
+def test_icdgen_alone_prints_the_help_and_fails_where_nothing_is_to_be_generated(icdgen):
+    result = icdgen()
+    assert result.status == 2 and result.out == icdgen("--help").out and result.err == ""
+
+
+def test_icdgen_alone_generates_what_the_configuration_names(icdgen, demo, tmp_path):
+    (tmp_path / "icdgen.toml").write_text('icds = ["icd"]\nlang = ["c"]\n')
+    assert icdgen().status == 0 and (tmp_path / "generated" / "c" / "demo.h").is_file()
+
+
+def test_commands_are_grouped_and_each_is_in_one_group(icdgen):
+    text = icdgen("--help").out
+    sections = [text.index(f"\n{title}:\n") for title in ("Describe a device", "Generate", "Talk to a device")]
+    assert sections == sorted(sections)
+    assert [name for name in COMMANDS if text.count(f"\n  {name} ") != 1] == []
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_a_command_has_an_example_that_its_options_accept(name):
+    command = group.get_command(click.Context(group), name)
+    assert command is not None and command.epilog.startswith("Example: icdgen ")
+    words = shlex.split(command.epilog.removeprefix("Example: icdgen "))
+    arguments = words[1:] if words[0] == name else words
+    command.make_context(name, arguments, resilient_parsing=True)

@@ -12,7 +12,7 @@ from icdgen.backends.packages import of_project
 from icdgen.commands.common import chosen, format_option, icd_arguments, print_findings
 
 
-@click.command()
+@click.command(epilog="Example: icdgen check icd/")
 @icd_arguments
 @format_option(*reports.FORMATS)
 def check(icds: tuple[Path, ...], form: str) -> None:

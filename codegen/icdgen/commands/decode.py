@@ -24,7 +24,7 @@ _MOST = 1_000_000  # bytes that are read for frames
 _CSV = ("frame", "node", "message", "direction", "id", "field", "raw", "value", "unit", "remarks", "time")
 
 
-@click.command()
+@click.command(epilog='Example: icdgen decode wheels 146 "2efb 0a00 0000"')
 @click.argument("arguments", nargs=-1, required=True, metavar="[NODE [MESSAGE]] FRAME...")
 @icd_option
 @kind_option

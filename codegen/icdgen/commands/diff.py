@@ -30,7 +30,7 @@ def _asked(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) -
     return words
 
 
-@click.command()
+@click.command(epilog="Example: icdgen diff HEAD~1..HEAD icd/ --fail-on wire,meaning")
 @click.argument("sides", nargs=-1, required=True, metavar="OLD [NEW]")
 @format_option(*reports.FORMATS)
 @click.option("--out", "-o", type=PATH, help="File to write the report to (default: standard output).")

@@ -11,7 +11,7 @@ from icdgen.backends.packages import of_project
 from icdgen.commands.common import PATH, chosen, icd_arguments, print_findings, say
 
 
-@click.command()
+@click.command(epilog="Example: icdgen docs --out site")
 @icd_arguments
 @click.option("--out", "-o", type=PATH, help="Folder to write to (default: site).")
 @click.option(

@@ -10,7 +10,7 @@ import click
 from icdgen.commands.common import format_option, icd_option, kind_option, load_or_exit, print_frame
 
 
-@click.command()
+@click.command(epilog='Example: icdgen encode wheels "Set Speed" x=100 y=-100 z=0')
 @click.argument("words", nargs=-1, required=True, metavar="[NODE] MESSAGE [FIELD=VALUE]...")
 @icd_option
 @kind_option
@@ -18,8 +18,6 @@ from icdgen.commands.common import format_option, icd_option, kind_option, load_
 @click.option("--raw", is_flag=True, help="Values are raw values, and are not held against limits.")
 def encode(words: tuple[str, ...], icds: tuple[Path, ...], kind: str | None, form: str, raw: bool) -> None:
     """Encode a message from physical values.
-
-    For instance: icdgen encode wheels "Set Speed" x=100 y=-100 z=0
 
     NODE may be left out where there is one only.
     """

@@ -13,17 +13,17 @@ from icdgen.diagnostics import Findings
 from icdgen.errors import UserError
 
 
-@click.command()
+@click.command(epilog="Example: icdgen fmt icd/")
 @icd_arguments
 @click.option(
-    "--check", is_flag=True, help="Write nothing; exit 1 and name the files that are not in the canonical layout."
+    "--check", is_flag=True, help="Write nothing; name the files that are not in the canonical layout and exit with 1."
 )
 def fmt(icds: tuple[Path, ...], check: bool) -> None:
-    """Write ICD files and errata overlays in the canonical layout; comments are kept."""
+    """Write ICDs and errata files in the canonical layout; comments are kept."""
     from icdgen.icd import source
     from icdgen.icd.fmt import format_text
 
-    status = 0
+    status = changed = unchanged = 0
     for path in _files(chosen(icds)[0]):
         text = ""
         try:
@@ -37,14 +37,25 @@ def fmt(icds: tuple[Path, ...], check: bool) -> None:
             status = 1
             continue
         if formatted == text:
+            unchanged += 1
             continue
+        changed += 1
         if check:
             status = 1
             say(f"{path}: not in the canonical layout")
             continue
         write_file(path, formatted, "make it writable, or use --check")
         say(f"{path}: formatted")
+    if changed or unchanged:
+        say(_summary(changed, unchanged, check))
     sys.exit(status)
+
+
+def _summary(changed: int, unchanged: int, check: bool) -> str:
+    """Count of files per outcome: ``1 file formatted, 2 files unchanged``."""
+    outcomes = {"not in the canonical layout" if check else "formatted": changed, "unchanged": unchanged}
+    parts = [f"{n} {'file' if n == 1 else 'files'} {outcome}" for outcome, n in outcomes.items() if n]
+    return ", ".join(parts)
 
 
 def _files(paths: list[Path]) -> list[Path]:

@@ -21,7 +21,7 @@ class _Languages(click.Option):
         return super().get_help_record(ctx)
 
 
-@click.command()
+@click.command(epilog="Example: icdgen --lang c --lang python --out generated icd/wheels.yaml")
 @icd_arguments
 @click.option("--lang", "-l", "languages", multiple=True, cls=_Languages)
 @click.option("--out", "-o", type=PATH, help="Folder to write to (default: generated/LANG).")

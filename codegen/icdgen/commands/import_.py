@@ -40,7 +40,7 @@ PAGES = _Pages()
 ABOUT_FILES = frozenset({"IMP002", "IMP003", "IMP005"})
 
 
-@click.command("import")
+@click.command("import", epilog="Example: icdgen import network.dbc --out icd")
 @click.argument("files", metavar="FILE|FOLDER...", type=PATH, nargs=-1, required=True)
 @click.option("--out", type=PATH, default=Path("icd"), show_default=True, help="Folder for the ICDs, one file a node.")
 @click.option("--kind", help="Kind of a definition that is not recognized by how it begins: xtce, dbc, ksy ...")

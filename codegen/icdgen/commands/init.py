@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from icdgen.starter.style import Style
 
 
-@click.command()
+@click.command(epilog="Example: icdgen init battery")
 @click.argument("name")
 @click.option(
     "--from", "origin", metavar="NODE", help="In the style of this node: how its messages travel, byte and bit order."

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 _SUFFIXES = {".csv": "csv", ".jsonl": "jsonl", ".ndjson": "jsonl", ".parquet": "parquet", ".pq": "parquet"}
 
 
-@click.command()
+@click.command(epilog="Example: icdgen log wheels telemetry.bin --out telemetry.csv")
 @click.argument("words", nargs=-1, required=True, metavar="[NODE] FILE [MESSAGE]...")
 @click.option("--node", "name", help="The same as NODE.")
 @click.option("--out", "-o", type=PATH, metavar="FILE", help="Convert to this file, whose ending tells the format.")

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _SHORTEST_PAUSE = 0.1  # s between two attempts to reach a line that is gone
 
 
-@click.command()
+@click.command(epilog="Example: icdgen monitor wheels 146 --port tcp://127.0.0.1:4000")
 @click.argument("words", nargs=-1, metavar="[NODE] [MESSAGE]...")
 @session_options
 @icd_option

@@ -7,7 +7,7 @@ import click
 from icdgen.errors import UserError
 
 
-@click.command()
+@click.command(epilog="Example: icdgen rule ICD055")
 @click.argument("code", required=False)
 def rule(code: str | None) -> None:
     """Explain the rule CODE with examples; without CODE, list all: of ICDs, of their changes and of importing manuals."""

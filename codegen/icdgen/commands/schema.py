@@ -9,7 +9,7 @@ import click
 from icdgen.commands.common import PATH, say, write_file
 
 
-@click.command()
+@click.command(epilog="Example: icdgen schema")
 @click.option("--out", "-o", type=PATH, help="File to write to, for instance icd/icdgen.schema.json.")
 def schema(out: Path | None) -> None:
     """Print the JSON Schema of ICDs and errata overlays, by which editors complete and check them.

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from icdgen.values.frame import Frame
 
 
-@click.command()
+@click.command(epilog='Example: icdgen send wheels "Set Speed" x=100 --port tcp://host:4000')
 @click.argument("words", nargs=-1, required=True, metavar="[NODE] MESSAGE [FIELD=VALUE]...")
 @session_options
 @icd_option
@@ -31,8 +31,6 @@ if TYPE_CHECKING:
 @format_option("text", "json")
 def send(words: tuple[str, ...], icds: tuple[Path, ...], raw: bool, yes: bool, form: str, **options: Any) -> None:
     """Send one telecommand and wait for its acknowledge, or for what the ICD says that it is answered with.
-
-    For instance: icdgen send wheels "Set Speed" x=100 --port tcp://host:4000
 
     NODE may be left out where there is one only. What the ICD calls dangerous (its `hazard`) is shown and asked about first;
     without a terminal to ask on it is only sent with --yes. Exit status: 0 acknowledged (or sent, if it is never acknowledged),

@@ -11,7 +11,7 @@ import click
 from icdgen.commands.common import format_option, icd_option, kind_option, load_or_exit
 
 
-@click.command()
+@click.command(epilog="Example: icdgen show wheels 146")
 @click.argument("node", required=False)
 @click.argument("item", required=False)
 @icd_option

@@ -31,7 +31,7 @@ class _Sim(click.Command):
         return super().parse_args(ctx, spread)
 
 
-@click.command(cls=_Sim)
+@click.command(cls=_Sim, epilog="Example: icdgen sim --node wheels --tcp 4000")
 @click.option("--node", "name", help="The program that runs; one that starts another does so after the boot time.")
 @click.option("--pty", is_flag=True, help="Serve on a pseudo-terminal, whose path is printed.")
 @click.option("--tcp", type=_PORT, metavar="PORT", help="Serve on a TCP port; 0 takes a free one, which is printed.")

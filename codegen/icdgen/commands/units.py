@@ -7,7 +7,7 @@ import sys
 import click
 
 
-@click.command()
+@click.command(epilog="Example: icdgen units")
 def units() -> None:
     """List the units that every ICD may use; others are declared in the ICD under `units:`."""
     from icdgen import tables
