@@ -75,29 +75,32 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
     const best = clean.filter((one) => one.read.length === most);
     const chosen = Array.from({ length: most }, (_, at) => [best[0].read[at].span, decided(best.map((one) => one.read[at]), "a frame in an envelope")]);
     let lost = least;
+    const taken = new Uint8Array(data.length);
+    const mark = ([at, end]) => taken.fill(1, at, end);
+    const isFree = (at, end) => !taken.subarray(at, end).includes(1);
+    chosen.forEach(([span]) => mark(span));
     // Packets of the other direction between them.
     for (const other of found.filter((one) => !best.includes(one) && best.some(({ speaker }) => speaker === one.speaker))) {
       for (const one of other.read) {
-        if (chosen.some(([span]) => overlaps(span, one.span))) continue;
+        if (!isFree(...one.span)) continue;
+        mark(one.span);
         chosen.push([one.span, one]);
         lost -= one.span[1] - one.span[0];
       }
     }
-    const left = leftOut(heard.filter(({ speaker }) => speaker === best[0].speaker), chosen.map(([span]) => span));
+    const left = leftOut(heard.filter(({ speaker }) => speaker === best[0].speaker), isFree);
     const [first, ...others] = chosen.sort(([a], [b]) => a[0] - b[0]).map(([, one]) => one);
     return [noted(without(first, ...left), ...envelopes.around(lost)), ...others];
   }
 
-  const overlaps = (one, other) => one[0] < other[1] && other[0] < one[1];
-
   /** Packets beside those that were read, each as the direction explains it whose header fits best. */
-  function leftOut(heard, read) {
-    const beside = heard.flatMap((one) => one.faults).filter((one) => !read.some((span) => overlaps(span, [one.at, one.end])));
-    const places = [...new Set(beside.map((one) => one.at))].sort((a, b) => a - b);
+  function leftOut(heard, isFree) {
+    const beside = heard.flatMap((one) => one.faults).filter(({ at, end }) => isFree(at, end));
+    const likeliest = new Map();
+    for (const one of beside) if (!(likeliest.get(one.at)?.rank >= one.rank)) likeliest.set(one.at, one);
     const found = [];
     let end = 0;
-    for (const place of places) {
-      const fault = envelopes.likeliest(beside.filter(({ at }) => at === place));
+    for (const [place, fault] of [...likeliest].sort(([a], [b]) => a - b)) {
       if (place >= end) found.push(fault.text); // what seems to begin within a damaged packet is no packet of its own
       end = Math.max(end, fault.end);
     }

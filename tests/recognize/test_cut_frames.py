@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from time import process_time
 
 import pytest
 
@@ -218,3 +219,14 @@ def test_a_request_that_the_icd_has_no_message_for_is_a_packet_and_no_text(tmp_p
             recognize(battery, "DD A5 03 00 FF FD 77", *words)
     (reply,) = recognize(battery, "DD 03 00 02 0E 10 FF E0 77")
     assert reply.message.name == "Basic" and reply.data.hex() == "0e10"
+
+
+def test_a_long_recording_with_much_damage_is_read_in_a_time_that_grows_with_its_length(motor):
+    def seconds(count: int) -> float:
+        begin = process_time()
+        found = recognize(motor, bytes.fromhex((SPEED + "a55a090009" + POWER[:-2] + "ff") * count))
+        assert len(found) == count and len(found[0].left_out) == 2 * count
+        return process_time() - begin
+
+    seconds(10)
+    assert seconds(4000) < 20 * max(seconds(500), 0.02)  # 64 times where it is quadratic

@@ -24,9 +24,13 @@ class Span(NamedTuple):
     at: int
     end: int
 
-    def overlaps(self, other: Span) -> bool:
-        """Whether there is a byte that is in both."""
-        return self.at < other.end and other.at < self.end
+    def mark(self, taken: bytearray) -> None:
+        """Marks its bytes in a map of the line."""
+        taken[self.at : self.end] = b"\1" * (self.end - self.at)
+
+    def is_free(self, taken: bytearray) -> bool:
+        """Whether none of its bytes is marked."""
+        return taken.find(1, self.at, self.end) < 0
 
 
 class _Listener(StreamDecoder):
@@ -90,13 +94,17 @@ def readings(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> list[Rea
         best[0].spans[at]: match.decided([one.readings[at] for one in best], "a frame in an envelope", asked)
         for at in range(-fewer)
     }
+    taken = bytearray(len(data))
+    for span in chosen:
+        span.mark(taken)
     others = [one for one in found if one not in best and any(one.speaker is other.speaker for other in best)]
     for other in others:
         for span, reading in zip(other.spans, other.readings, strict=True):
-            if not any(map(span.overlaps, chosen)):
+            if span.is_free(taken):
                 chosen[span] = reading
+                span.mark(taken)
                 least -= span.end - span.at
-    left = _left_out([one for one in heard if one.speaker is best[0].speaker], list(chosen))
+    left = _left_out([one for one in heard if one.speaker is best[0].speaker], taken)
     first, *rest = [chosen[span] for span in sorted(chosen)]
     return [first.without(*left).noted(*match.around(least, ())), *rest]
 
@@ -113,11 +121,11 @@ def begun(speakers: Sequence[Speaker], data: bytes) -> Fault | None:
     return max(filter(None, every), key=lambda one: one.rank, default=None)
 
 
-def _left_out(heard: Sequence[Heard], read: Sequence[Span]) -> list[str]:
+def _left_out(heard: Sequence[Heard], taken: bytearray) -> list[str]:
     """Packets beside those that were read, each as the direction explains it whose header fits best."""
     likeliest: dict[int, tuple[Span, Fault]] = {}
     for span, fault in (both for one in heard for both in one.faults):
-        if not any(map(span.overlaps, read)) and (span.at not in likeliest or fault.rank > likeliest[span.at][1].rank):
+        if span.is_free(taken) and (span.at not in likeliest or fault.rank > likeliest[span.at][1].rank):
             likeliest[span.at] = span, fault
     found, end = [], 0
     for at, (span, fault) in sorted(likeliest.items()):
