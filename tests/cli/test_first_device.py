@@ -102,7 +102,11 @@ def test_a_name_that_no_node_can_have_is_answered_with_one_that_can(icdgen, tmp_
 
 @pytest.mark.parametrize(
     ("word", "answer"),
-    [("chekc", "did you mean `check`?"), ("Check", "did you mean `check`?"), ("quux", "`icdgen --help` lists them")],
+    [
+        ("chekc", "did you mean `check`?"),
+        ("Check", "did you mean `check`?"),
+        ("quux", "`icdgen --help` lists the commands"),
+    ],
 )
 def test_a_mistyped_command_is_answered_with_the_one_meant(icdgen, word, answer):
     result = icdgen(word)
