@@ -39,7 +39,7 @@ def test_titles_are_one_line_and_say_different_things():
 def test_an_explanation_has_title_reason_and_both_examples():
     text = rules.explain("icd021")
     page = rules.ALL["ICD021"].page
-    assert text.startswith("# ICD021: two fields overlap (error)\n")
+    assert text.startswith("# ICD021: Fields overlap (error)\n")
     assert all(part in text for part in (page.why, page.wrong, page.right))
 
 

@@ -66,7 +66,7 @@ def test_sarif_names_the_tool_and_the_rules_that_were_broken():
     assert driver["name"] == "icdgen"
     assert [rule["id"] for rule in driver["rules"]] == ["ICD020", "ICD041", "ICD999"]
     first = driver["rules"][0]
-    assert first["shortDescription"]["text"] == "a field goes past the end of its message"
+    assert first["shortDescription"]["text"] == "Field extends past the end of its message"
     assert first["fullDescription"]["text"]
     assert "Wrong:" in first["help"]["text"]
     assert first["defaultConfiguration"] == {"level": "error"}
