@@ -57,11 +57,12 @@ class PrintedRow:
     texts: list[str]
     edges: tuple[float, ...] = ()
     continues: tuple[bool, ...] = ()
+    page: int | None = None
 
     def slice(self, start: int, width: int) -> PrintedRow:
         """Return the cells of some columns."""
         end = start + width
-        return PrintedRow(self.texts[start:end], self.edges[start : end + 1], self.continues[start:end])
+        return PrintedRow(self.texts[start:end], self.edges[start : end + 1], self.continues[start:end], self.page)
 
 
 @dataclass(slots=True)

@@ -228,7 +228,8 @@ def _is_held(message: ReadMessage, most: int, troubles: list[Trouble]) -> bool:
         what = f"its fields need {needed} bytes, its length is {message.length}"
         say("IMP033", what, "look at the page; `icdgen check` tells the fields")
     if message.length and not message.fields:
-        say("IMP034", f"it has {message.length} bytes and no field", "look at the page", sure=DOUBTFUL)
+        severity = "error" if message.is_by_rule else "warning"
+        say("IMP034", f"it has {message.length} bytes and no field", "look at the page", severity, DOUBTFUL)
     elif free := messages.gaps(message):
         bits = ", ".join(f"{a}" if a == b else f"{a} to {b}" for a, b in free)
         severity = "warning" if message.is_by_rule else "note"

@@ -5,9 +5,38 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from icdgen.importer.document import Document, Row, Table, Trouble
+from icdgen.importer.document import Cell, Document, Row, SourceRow, Spot, Table, Trouble
 from icdgen.importer.profile import Profile
+from icdgen.importer.source_tables import SourceTable
 from icdgen.importer.words import number
+
+
+def mend_tables(tables: list[SourceTable], profile: Profile) -> list[Trouble]:
+    """Repair the tables that rules read in the same ways; return a note for each repair."""
+    notes = []
+    for table in tables:
+        for entry in profile.data["damage"]:
+            count = 0
+            if "printed" in entry:
+                pattern = re.compile(rf"(?<!\w){re.escape(entry['printed'])}(?!\w)")
+                for cell in (cell for row in table.rows for cell in row.cells):
+                    cell.text, times = pattern.subn(entry["meant"].replace("\\", r"\\"), cell.text)
+                    count += times
+                if count:
+                    what = f"`{entry['printed']}` is taken for `{entry['meant']}` {count} times"
+                    notes.append(_mended(f"{table.title}: {what}", table.spot))
+            elif entry.get("table") == table.label and "group" in entry:
+                for index, row in enumerate(table.rows):
+                    if row.cells and number(row.cells[0].text) == entry["before"]:
+                        table.rows.insert(index, SourceRow([Cell(entry["group"])], row.page, row.line))
+                        what = f"the group heading `{entry['group']}` is put back before {entry['before']}"
+                        notes.append(_mended(f"{table.title}: {what}", table.spot_of(row)))
+                        break
+    return notes
+
+
+def _mended(message: str, spot: Spot) -> Trouble:
+    return Trouble("IMP028", f"{message}, as the profile says", spot, "compare with the page", "note")
 
 
 def mend(document: Document, profile: Profile) -> None:

@@ -63,7 +63,8 @@ def run(
     document, tables = sources.read(manual, words, progress, jobs, pages)
     interpretation = None
     if words.has_rules or document.needs_rules:
-        interpretation = interpret.interpret(tables, words, document.troubles)
+        notes = repairs.mend_tables(tables, words)
+        interpretation = interpret.interpret(tables, words, [*document.troubles, *notes])
         found = interpretation.survey
     else:
         repairs.mend(document, words)

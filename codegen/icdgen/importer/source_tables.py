@@ -47,6 +47,7 @@ class SourceTable:
     before: list[str] = field(default_factory=list)
     boxes: list[Box] = field(default_factory=list)
     sheet: str = ""  # of a spreadsheet
+    run: int = 1  # which run of ascending labels it is in: parts of a document may number their tables anew
 
     @property
     def page(self) -> int | None:
@@ -127,6 +128,7 @@ class SourceTable:
             page=self.page,
             line=self.line,
             order=self.number - 1,
+            run=self.run,
             boxes=list(self.boxes),
             section=self.headings[-1] if self.headings else "",
         )
@@ -161,7 +163,7 @@ def _rows(table: Table) -> list[SourceRow]:
     printed = [(_printed(row), row.page, row.line) for row in table.head]
     if table.header is not None:
         titles = table.header.printed or [PrintedRow(table.header.titles)]
-        printed += [(row, table.page, table.line) for row in titles]
+        printed += [(row, row.page or table.page, table.line) for row in titles]
     printed += [(_printed(row), row.page, row.line) for row in table.rows]
     edges = _columns([row for row, _, _ in printed])
     made: list[SourceRow] = []
@@ -223,6 +225,16 @@ def _join_above(cells: list[tuple[Cell, int]], row: PrintedRow, made: list[Sourc
         slot.cell.text = f"{slot.cell.text}\n{cell.text}".strip("\n")
         slot.cell.rows += 1
         cells.remove((cell, column))
+
+
+def count_runs(tables: list[SourceTable]) -> None:
+    """Tell each table in which run of ascending labels it stands."""
+    run, last = 1, -1
+    for table in tables:
+        if table.label is not None:
+            run += table.label <= last
+            last = table.label
+        table.run = run
 
 
 def kinds(tables: list[SourceTable]) -> list[list[SourceTable]]:

@@ -195,7 +195,7 @@ def test_head_rows_under_a_common_heading_are_one_heading(tmp_path):
     rules = RULE.replace(
         "head: Byte | Name | Type}", "head: Position | '*' | Name | Type}\n    head_rows: 2".replace("'", "")
     )
-    rules = rules.replace("{head: Position | * | Name | Type}", '{head: "Position | * | Name | Type"}')
+    rules = rules.replace("{head: Position | * | Name | Type}", "{head: Position | Name | Type}")
     rules = rules.replace("Byte: byte", "Position Byte: byte, Position Bit: bit")
     (tmp_path / "rules.yaml").write_text(NODE + rules, encoding="utf-8")
     _, trees = run.run(tmp_path / "tables", profile.load(tmp_path / "rules.yaml"), jobs=1)
@@ -222,3 +222,41 @@ def test_the_reference_describes_every_key_and_role():
     keys = {*schema.definition("rule")["properties"], *schema.definition("rule_conditions")["properties"], *ROLES}
     keys |= {key.rstrip("?") for key in schema.definition("rule")["properties"]["message"]["properties"]}
     assert [key for key in sorted(keys) if f"`{key}`" not in page] == []
+
+
+def test_a_rule_without_columns_reads_a_message_without_parameters(tmp_path):
+    rules = r"""rules:
+  - tables: {before: 'Motor'}
+    message: {before: '^{message} \({id}\)', row: '^Length \| {length}$', kind: telecommand}
+    ignore: [~.]
+"""
+    result, tree = read(tmp_path, HEADING + "Length\t0\n", rules)
+    assert [t.message for t in result.troubles if t.severity == "error"] == []
+    assert (tree["messages"][0]["name"], tree["messages"][0]["length"], "fields" in tree["messages"][0]) == (
+        "Motor state",
+        0,
+        False,
+    )
+    result, _ = read(tmp_path, HEADING + "Length\t6\n", rules)
+    assert "it has 6 bytes and no field" in found(result, "IMP034")[0] and result.failed
+
+
+def test_lists_name_the_groups_of_messages_and_what_can_be_logged(tmp_path):
+    text = "List of Pump Telemetry\nID\tName\tLength\nState\t\t\n33\tMotor state\t1\n34\tTank\t2\n"
+    text += "Motor state (0x21)\nByte\tName\tType\n0\tMode\tu8\nLogs\nMask\tFrame\n00 02\t33\n"
+    rules = RULE + r"""  - what: list
+    tables: {head: ID | Name | Length}
+    message: {before: '^List of {node} Telemetry', kind: telemetry}
+    columns: {ID: id, Name: message, Length: length}
+    group_rows: true
+  - what: loggable
+    tables: {head: Mask | Frame}
+    columns: {Mask: mask, Frame: id}
+"""
+    (tmp_path / "motor.txt").write_text(text, encoding="utf-8")
+    (tmp_path / "rules.yaml").write_text(NODE + rules, encoding="utf-8")
+    _, trees = run.run(tmp_path / "motor.txt", profile.load(tmp_path / "rules.yaml"), jobs=1)
+    (tree,) = trees.values()
+    assert (tree["node"]["name"], tree["messages"][0]["group"]) == ("pump", "State")
+    assert tree["loggable"] == [{"bit": 9, "id": 33}]
+    assert [one["name"] for one in tree["missing"]] == ["Tank"]

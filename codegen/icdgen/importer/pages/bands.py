@@ -50,7 +50,7 @@ class Band:
         """The row as the page shows it."""
         cells = zip(self.parts(), self.edges[1:], strict=True)
         texts = ["\n".join(unbroken(*_lines_of_cell(part, edge), known)) for part, edge in cells]
-        return PrintedRow(texts, tuple(self.edges), self.continues)
+        return PrintedRow(texts, tuple(self.edges), self.continues, self.page)
 
     def parts(self) -> list[list[Word]]:
         made: list[list[Word]] = [[] for _ in self.edges[1:]]

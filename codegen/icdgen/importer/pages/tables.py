@@ -180,6 +180,10 @@ class Builder:
                 if not self.header(draft, band, waiting):
                     draft.table.head += self.head(band, texts)
             elif not draft.table.rows and (whole := self.lower_half(draft, texts)):
+                upper = draft.table.header.printed[-1:]
+                for row in upper:
+                    row.texts = [f"{a}\n{b}".strip("\n") for a, b in zip(row.texts, texts, strict=True)]
+                whole.printed = upper
                 draft.table.header = whole
             elif headings.repeats(texts, draft.table.header, self.profile):
                 if len(band.edges) == len(draft.edges or ()):
@@ -235,7 +239,7 @@ class Builder:
                 return False
             above, found, rest = split
             draft.table.head += [Row([line.text], band.page) for line in above]
-            printed = [PrintedRow(found.titles, tuple(band.edges))]
+            printed = [PrintedRow(found.titles, tuple(band.edges), page=band.page)]
             if rest.words:
                 waiting.insert(0, rest)
         found.printed = printed

@@ -17,7 +17,7 @@ _SAID = ("kind", "length")
 def attach(parts: list[Part], messages: list[Part], order: Order, notes: Notes) -> None:
     """Give enumerations, lookup tables and bits to the fields that their `of` names."""
     for part in parts:
-        if part.rule.what not in ("enumeration", "lookup", "bits"):
+        if part.rule.what not in ("enumeration", "lookup", "bits") or part.given.get("enumeration"):
             continue
         name = normalised(part.given.get("of", ""))
         hosts = _hosts(name, part, parts, messages)

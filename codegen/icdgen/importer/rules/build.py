@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 
 from icdgen.importer.profile import Profile
-from icdgen.importer.rules import attach
+from icdgen.importer.rules import attach, lists
 from icdgen.importer.rules.bit_order import Order
 from icdgen.importer.rules.fields import Draft, joined_parts
 from icdgen.importer.rules.language import KINDS, normalised
@@ -37,6 +37,11 @@ class Builder:
             message = self.message(part)
             made.append(Found(message.table, "message", message))
         made += self.enums_found
+        made += [
+            lists.enumeration_of(part)
+            for part in parts
+            if part.rule.what == "enumeration" and part.given.get("enumeration")
+        ]
         return sorted(made, key=lambda found: found.table.order or 0), self.notes
 
     def place(self, part: Part) -> None:
@@ -46,28 +51,24 @@ class Builder:
         part.drafts = joined_parts(part.drafts, self.order, is_register, length, self.notes, part.rule)
 
     def continued(self, parts: list[Part]) -> list[Part]:
-        """The messages, those of one rule, id and kind put together whose fields do not overlap: a table that goes on."""
+        """The messages, those put together that one rule reads from tables that follow each other with the same id and kind."""
         made: list[Part] = []
-        by_id: dict[tuple[str | None, ...], Part] = {}
+        last: Part | None = None
         for part in parts:
-            ids = tuple(part.given.get(role) for role in ("id", "set_id", "get_id"))
-            key = (part.rule.name, part.given.get("kind"), *ids)
-            first = by_id.get(key) if any(ids) else None
-            if first is None:
-                by_id[key] = part
+            before, last = last, part
+            if before is None or not _is_same_message(before, part):
                 made.append(part)
-            elif _overlap(first.drafts, part.drafts):
+            elif _overlap(made[-1].drafts, part.drafts):
                 self.notes.error(
                     "IMP105",
-                    f"{part.where}: table {first.table.number} describes a message of the same id, and "
-                    "fields of both overlap",
+                    f"{part.where}: table {before.table.number} describes a message of the same id, and fields of both overlap",
                     part.table.spot,
                     "correct the pattern of the id, or read each by its own rule",
                     part.rule.place,
                 )
                 made.append(part)
             else:
-                first.drafts = sorted([*first.drafts, *part.drafts], key=lambda draft: draft.at)
+                made[-1].drafts = sorted([*made[-1].drafts, *part.drafts], key=lambda draft: draft.at)
         return made
 
     def message(self, part: Part) -> ReadMessage:
@@ -86,6 +87,7 @@ class Builder:
         made = ReadMessage(normalised(part.name), kind, table, names=[normalised(part.name)] if part.name else [])
         made.is_by_rule = True
         made.summary = part.given.get("message_text", "")
+        made.group = part.given.get("section", "")
         for role in ("id", "set_id", "get_id", "length"):
             text = part.given.get(role)
             value = part.number(role)
@@ -156,7 +158,7 @@ class Builder:
             made.type = "uint"
         if draft.members:
             made.enum = self.enumeration(draft, part)
-        elif draft.kind == "enum":
+        elif draft.kind == "enum" and (draft.described.enum_table is None and not draft.described.enum_title):
             self.notes.error(
                 "IMP050",
                 f"{part.where}, field `{draft.name}`: nothing gives its values",
@@ -218,6 +220,13 @@ class Builder:
         whole = ReadField(name, start, 8 * size, "struct", drafts[0].described.__class__(), drafts[0].spot)
         whole.facts = facts | ({"up_to": int(bound)} if bound and not counted.isdigit() else {})
         made.fields.append(whole)
+
+
+def _is_same_message(first: Part, second: Part) -> bool:
+    keys = ("kind", "id", "set_id", "get_id")
+    same = all(first.given.get(key) == second.given.get(key) for key in keys)
+    has_id = any(first.given.get(key) for key in keys[1:])
+    return first.rule is second.rule and first.table is not second.table and same and has_id
 
 
 def _overlap(first: list[Draft], second: list[Draft]) -> bool:

@@ -122,7 +122,7 @@ class FieldReader:
                 "is it an array? `set: [{where: {name: ...}, bits: 16, count: 3}]`, or `type: bytes`",
             )
             return None
-        made = Draft(name, at, bits, kind, self.described(roles, numbers, where, spot), spot, roles, count)
+        made = Draft(name, at, bits, kind, self.described(roles, kind, where, spot), spot, roles, count)
         self.facts(made, numbers, where, spot)
         self.next = made.end
         return made
@@ -222,10 +222,12 @@ class FieldReader:
             return None
         return element or printed.bits, count
 
-    def described(self, roles: Roles, numbers: dict[str, int], where: str, spot: Spot) -> Described:
+    def described(self, roles: Roles, kind: str, where: str, spot: Spot) -> Described:
         """Unit, formula and description."""
         text = roles.get("text")
-        made = descriptions.read(text, self.profile) if self.profile.reads_descriptions else Described(rest=text)
+        made = Described(rest=text)
+        if self.profile.reads_descriptions:
+            made = descriptions.read(text, self.profile, is_enum=kind == "enum")
         for problem in made.problems:
             self.notes.warn("IMP040", f"{where}: {problem}: `{text[-160:]}`", spot, "read the page")
         unit = tidy_unit(roles.get("unit")).strip("()")

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from icdgen.importer.document import Spot, Trouble
 from icdgen.importer.profile import Profile
-from icdgen.importer.rules import attach, build
+from icdgen.importer.rules import attach, build, lists
 from icdgen.importer.rules.bit_order import Order
 from icdgen.importer.rules.cells import Roles, read_roles
 from icdgen.importer.rules.fields import FieldReader
@@ -16,8 +16,8 @@ from icdgen.importer.rules.notes import Notes
 from icdgen.importer.rules.parts import Part
 from icdgen.importer.rules.rows import read_rows
 from icdgen.importer.rules.rule import Rule
-from icdgen.importer.rules.selection import Choice, choose
-from icdgen.importer.source_tables import SourceTable, kinds, texts
+from icdgen.importer.rules.selection import Choice, choose, why_not
+from icdgen.importer.source_tables import SourceTable, count_runs, kinds, texts
 from icdgen.importer.understand.survey import BACKGROUND, UNKNOWN, Found, Survey
 
 _HEX = re.compile(r"\b(?:0[xX][0-9A-Fa-f]+|[0-9A-Fa-f]*[0-9][0-9A-Fa-f]*[hH])\b")
@@ -44,12 +44,14 @@ class _Interpreter:
         self.notes = Notes()
         self.parts: list[Part] = []
         self.attributes: dict[int, dict[str, str]] = {}
+        self.found: list[Found] = []
         words = (word.strip(".,;:()[]") for table in tables for text in texts(table) for word in text.split())
         self.known = frozenset(words)
         node = profile.data["node"]
         self.order = Order(node.get("byte_order", "little"), node.get("bit_order", "lsb0"))
 
     def run(self, extra: list[Trouble]) -> Interpretation:
+        count_runs(self.tables)
         choices = choose(self.profile.rules, self.tables)
         for choice in choices:
             for rule in choice.rules:
@@ -63,7 +65,7 @@ class _Interpreter:
         notes.finish(self.profile.rules)
         survey.troubles += notes.troubles
         things: dict[int | None, list[Found]] = {}
-        for found in made:
+        for found in [*self.found, *made]:
             things.setdefault(found.table.order, []).append(found)
         for choice in choices:
             table = choice.table
@@ -78,8 +80,19 @@ class _Interpreter:
     def read(self, rule: Rule, table: SourceTable) -> None:
         """Add the parts that a rule reads from a table."""
         titles, rows = read_rows(rule, table, self.notes)
+        if not rule.columns and not rule.lines:
+            rows = []  # the table describes a message without parameters
         given = self.around(rule, table)
         self.attributes[table.number] = given
+        if rule.what in ("list", "loggable"):
+            listed = read_roles(rule, table, titles, rows, self.known, self.notes)
+            is_list = rule.what == "list"
+            self.found.append(
+                lists.list_of(rule, table, given, listed, self.notes)
+                if is_list
+                else lists.log_of(rule, table, listed, self.notes)
+            )
+            return
         message = {role: text for role, text in given.items() if role in MESSAGE_ROLES}
         shared = {role: text for role, text in given.items() if role not in MESSAGE_ROLES}
         reader = FieldReader(rule, table, self.profile, self.order, self.notes)
@@ -115,6 +128,7 @@ class _Interpreter:
                 )
             else:
                 part.pairs.append((value, name))
+                part.texts.append(roles.get("text"))
             return
         draft = reader.read(roles)
         if draft is not None:
@@ -155,7 +169,9 @@ class _Interpreter:
             "heading": lambda: table.headings[::-1],
             "before": lambda: table.before[::-1],
             "sheet": lambda: [table.sheet],
-            "row": lambda: [" | ".join(cell_text(c.text, self.known) for c in row.cells) for row in table.rows],
+            "row": lambda: [
+                " | ".join(filter(None, (cell_text(c.text, self.known) for c in row.cells))) for row in table.rows
+            ],
         }[source]()
         return [normalised(text) for text in found]
 
@@ -180,7 +196,7 @@ class _Interpreter:
         for rule in self.profile.rules:
             if rule.name in used:
                 continue
-            taken = [c for c in choices if not any(other is rule for other, _ in c.reasons) and c.rules]
+            taken = [c for c in choices if c.rules and not why_not(rule, c.table)]
             why = f"; {len(taken)} tables go to rules before it" if taken else ""
             self.notes.error(
                 "IMP101",

@@ -62,6 +62,10 @@ MESSAGE_ROLES = {
     "length": "length in bytes",
     "of": "name of the field to " "which an enumeration, a lookup table or bits belong",
     "message_text": "description of the message",
+    "section": "group heading of the message in a list",
+    "node": "name of the node that a list is about",
+    "enumeration": "name of an enumeration to which descriptions refer",
+    "mask": "mask of bytes in hexadecimal of which one bit selects a frame for a log",
 }
 ROLES = PLACE_ROLES | VALUE_ROLES | TEXT_ROLES | MESSAGE_ROLES
 INTEGERS = frozenset({*PLACE_ROLES, "value", "id", "set_id", "get_id", "length", "up_to"} - {"part"})

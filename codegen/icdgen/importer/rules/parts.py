@@ -19,6 +19,7 @@ class Part:
     given: dict[str, str]  # roles of the message
     drafts: list[Draft] = field(default_factory=list)
     pairs: list[tuple[int, str]] = field(default_factory=list)  # values with members, or with points
+    texts: list[str] = field(default_factory=list)  # descriptions of the members
 
     @property
     def name(self) -> str:

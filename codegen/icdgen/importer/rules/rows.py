@@ -110,6 +110,7 @@ def _transposed(table: SourceTable, grid: list[list[Slot]], head: int) -> tuple[
 
 def _operated(rule: Rule, rows: list[DataRow], notes: Notes) -> list[DataRow]:
     made: list[DataRow] = []
+    section = ""
     for row in rows:
         if not any(text.strip() for text in row.values.values()):
             continue
@@ -118,6 +119,12 @@ def _operated(rule: Rule, rows: list[DataRow], notes: Notes) -> list[DataRow]:
         if rule.skip is not None and rule.skip.search(row.text):
             notes.drop(rule, "skip", row.text)
             continue
+        if rule.group_rows:
+            filled = [normalised(text) for text in row.values.values() if text.strip()]
+            if len(filled) == 1 and normalised(next(iter(row.values.values()))):
+                section = filled[0]
+                continue
+            row.roles["section"] = section
         if made and rule.join and all(_goes_on(made[-1], row, title) for title in rule.join):
             _append(made[-1], row)
             continue
@@ -145,9 +152,14 @@ def _goes_on(above: DataRow, row: DataRow, title: str) -> bool:
 
 
 def _append(above: DataRow, row: DataRow) -> None:
-    """Put the cells of a row below those of the row above; a cell that spans both stands there already."""
+    """Put the cells of a row below those of the row above.
+
+    A cell that spans both rows stands there already, and so does the rest of a cell that a page break repeats.
+    """
     for title, text in row.values.items():
         if text.strip() and row.cells.get(title) is not above.cells.get(title):
+            if len(text) > 12 and normalised(above.values.get(title, "")).endswith(normalised(text)):
+                continue
             above.values[title] = f"{above.values.get(title, '')}\n{text}".strip("\n")
     above.cells = {title: cell for title, cell in above.cells.items() if cell is row.cells.get(title)} | {
         title: cell for title, cell in above.cells.items() if title not in row.cells

@@ -14,7 +14,6 @@ from icdgen.suggest import close_to
 
 CODE = "IMP001"
 SOURCES = ("caption", "heading", "before", "row", "sheet")  # texts in which `message` looks for roles
-WHAT = ("message", "registers", "index", "enumeration", "lookup", "bits", "ignore")
 _MERGED = ("tables", "message", "columns", "each", "map")  # keys of which `like` takes over single entries
 
 
@@ -78,6 +77,7 @@ class Rule:
     transpose: bool = False
     also: bool = False
     is_unit_wide: bool = False
+    group_rows: bool = False
     origin: int = 0
     base: int = 10
 
@@ -139,6 +139,7 @@ class _Reader:
         made.head_rows, made.transpose = tree.get("head_rows", 1), tree.get("transpose", False)
         made.also, made.origin, made.base = tree.get("also", False), tree.get("origin", 0), tree.get("base", 10)
         made.is_unit_wide = tree.get("width") == "unit"
+        made.group_rows = tree.get("group_rows", False)
         self.conditions(made, tree["tables"])
         self.message(made, tree.get("message") or Map(place))
         for key in ("columns", "lines"):
@@ -165,6 +166,7 @@ class _Reader:
         for key in ("join", "fill", "glue", "ignore"):
             getattr(made, key).extend(str(text) for text in tree.get(key, ()))
         self.together(made, tree)
+        self.belongs(made)
         return made
 
     def conditions(self, made: Rule, tree: Map) -> None:
@@ -192,10 +194,11 @@ class _Reader:
         kind = made.literals.get("kind")
         if kind is not None and kind not in KINDS:
             self.add(f"`{kind}` is no kind of message", tree.at("kind"), f"write {', '.join(KINDS)}")
-        if (
-            made.what in ("enumeration", "lookup", "bits")
-            and not {"of"} & set(made.literals)
-            and not any("of" in pattern.roles for patterns in made.sources.values() for pattern in patterns)
+
+    def belongs(self, made: Rule) -> None:
+        """Check that a table of values or bits says to which field it belongs."""
+        if made.what in ("enumeration", "lookup", "bits") and not any(
+            role in ("of", "enumeration") for role in roles_of_message(made)
         ):
             self.add(
                 f"nothing says to which field the {made.what} belongs",
@@ -244,7 +247,14 @@ class _Reader:
                     f"`{used[0]}` has no effect in a rule that ignores its tables", tree.key_at(used[0]), "remove it"
                 )
             return
-        if not (made.columns or made.lines):
+        named = [c for c in (*made.columns, *made.lines) if c.key != "*" and not all(t.isdigit() for t in c.titles)]
+        if made.head in ("", "none") and named:
+            self.add(
+                f"`{named[0].key}` is a heading, and `tables` does not say in which row headings stand",
+                named[0].place,
+                "add `head: A | B`, or name columns by their numbers",
+            )
+        if not (made.columns or made.lines or made.ignore):
             self.add(f"the rule `{made.name}` gives no column a role", made.place, "add `columns:`")
         if made.melt is not None and not any(column.key == "*" for column in made.columns):
             self.add("`melt` needs the pattern of the cells", tree.key_at("melt"), 'add `"*": name` to `columns`')

@@ -24,10 +24,10 @@ class Choice:
 
 
 def texts_of(table: SourceTable, transpose: bool) -> list[list[str]]:
-    """The texts of the table by row and column, or by column and row."""
-    rows = [[normalised(slot.text) for slot in row] for row in table.grid()]
+    """The texts of the cells of each row, or of each column for a table whose headings stand on the left."""
     if not transpose:
-        return rows
+        return [[normalised(slot.text) for slot in row if slot.is_origin] for row in table.grid()]
+    rows = [[normalised(slot.text) for slot in row] for row in table.grid()]
     width = max(map(len, rows), default=0)
     padded = [row + [""] * (width - len(row)) for row in rows]
     return [list(column) for column in zip(*padded, strict=True)]

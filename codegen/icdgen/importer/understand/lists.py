@@ -82,7 +82,7 @@ def log(table: Table, troubles: list[Trouble]) -> ReadLog:
     """The frames that can be logged, by the bit of the mask."""
     made = ReadLog([])
     for entry in entries(table, troubles):
-        bit = _bit(entry.get("mask")) if entry.get("mask") else number(entry.get("bit"))
+        bit = bit_of_mask(entry.get("mask")) if entry.get("mask") else number(entry.get("bit"))
         frame = numbers.whole(entry.get("id"), "the id", table.title, entry.spot, troubles)
         if bit is None:
             text = entry.get("mask") or entry.get("bit")
@@ -93,8 +93,8 @@ def log(table: Table, troubles: list[Trouble]) -> ReadLog:
     return made
 
 
-def _bit(text: str) -> int | None:
-    """The number of the one bit in a mask of bytes, the first byte holding the lowest bits."""
+def bit_of_mask(text: str) -> int | None:
+    """The number of the one bit in a mask of bytes whose first byte has the lowest bits; None if it is no such mask."""
     if not _MASK.match(text.strip()):
         return None
     data = bytes.fromhex(text.strip().removeprefix("0x").replace(" ", ""))

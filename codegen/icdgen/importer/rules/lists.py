@@ -1,0 +1,88 @@
+"""Tables that list messages or the frames of logs, and enumerations that descriptions refer to by name."""
+
+from __future__ import annotations
+
+from icdgen.importer.rules.cells import Roles
+from icdgen.importer.rules.language import normalised, whole_number
+from icdgen.importer.rules.notes import Notes
+from icdgen.importer.rules.parts import Part
+from icdgen.importer.rules.rule import Rule
+from icdgen.importer.source_tables import SourceTable
+from icdgen.importer.understand.lists import bit_of_mask
+from icdgen.importer.understand.model import Listed, LogBit, ReadEnum, ReadList, ReadLog, ReadMember
+from icdgen.importer.understand.survey import Found
+
+_IDS = ("id", "set_id", "get_id")
+
+
+def list_of(rule: Rule, table: SourceTable, given: dict[str, str], rows: list[Roles], notes: Notes) -> Found:
+    """Return the list of messages that a table is."""
+    kind = given.get("kind", "")
+    made = ReadList(kind, normalised(given.get("node", "")), [])
+    for roles in rows:
+        spot = table.spot_of(roles.row.source)
+        numbers = {role: _number(rule, table, roles, role, notes) for role in (*_IDS, "length")}
+        name = roles.get("message")
+        if not name or all(numbers[role] is None for role in _IDS):
+            lacks = "name" if not name else "id"
+            notes.error(
+                "IMP103",
+                f"{table.title}: the row `{roles.row.text[:80]}` gives no {lacks}",
+                spot,
+                "give columns the roles `message` and `id`, or drop the row with `skip`",
+                rule.place,
+            )
+            continue
+        made.rows.append(
+            Listed(
+                kind,
+                name,
+                numbers["length"],
+                numbers["id"],
+                numbers["set_id"],
+                numbers["get_id"],
+                roles.get("section"),
+                spot,
+            )
+        )
+    return Found(table.as_table(), "list", made)
+
+
+def log_of(rule: Rule, table: SourceTable, rows: list[Roles], notes: Notes) -> Found:
+    """Return the frames that can be logged, by the bit of the mask."""
+    made = ReadLog([])
+    for roles in rows:
+        bit = bit_of_mask(roles.get("mask")) if roles.get("mask") else whole_number(roles.get("bit") or "?")
+        frame = _number(rule, table, roles, "id", notes)
+        if bit is None or frame is None:
+            notes.error(
+                "IMP103",
+                f"{table.title}: the row `{roles.row.text[:80]}` gives no mask of one bit and no id of a frame",
+                table.spot_of(roles.row.source),
+                "give columns the roles `mask` or `bit`, and `id`",
+                rule.place,
+            )
+            continue
+        made.bits.append(LogBit(bit, frame, roles.get("message")))
+    return Found(table.as_table(), "loggable frames", made)
+
+
+def enumeration_of(part: Part) -> Found:
+    """Return the enumeration that a table prints under a name of its own."""
+    members = [ReadMember(value, name, text) for (value, name), text in zip(part.pairs, part.texts, strict=True)]
+    table = part.table.as_table()
+    return Found(table, "enumeration", ReadEnum(normalised(part.given["enumeration"]), members, table))
+
+
+def _number(rule: Rule, table: SourceTable, roles: Roles, role: str, notes: Notes) -> int | None:
+    text = roles.get(role)
+    value = whole_number(text, rule.base) if text else None
+    if text and value is None:
+        notes.error(
+            "IMP023",
+            f"{table.title}: `{role}` is `{text[:40]}`, which is no number",
+            table.spot_of(roles.row.source),
+            "correct the pattern or the table file",
+            rule.place,
+        )
+    return value
