@@ -66,7 +66,7 @@ def converted(write, icd, known, path, head=None) -> str:
 
 @pytest.fixture
 def log(icd, known, everything, write):
-    path, entries = write(everything, COUNT, b"cut off")
+    path, entries = write(everything, COUNT, b"cut")
     return open_source(icd, known.node, path), entries
 
 

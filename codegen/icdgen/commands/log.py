@@ -49,6 +49,9 @@ def log(
     files. Of a log a row is an entry; of a recording it is a message. A column is a field: `frame__field_unit`, holding physical
     values and names of members; MESSAGEs, by id or name, are the only ones that are wanted. Without --out the conversion goes to
     standard output (not that to Parquet). What is cut off, damaged or not known is left out, and reported.
+
+    A log is checked by the times of its entries: damaged ranges are left out with the entry before them, time jumps (the clock was
+    set, the device restarted) are kept. Exit status: 0 converted or listed, 1 likewise, but part of a log is damaged, 2 misuse.
     """
     from icdgen.logfile.log import open_log
 
@@ -64,11 +67,12 @@ def log(
         with _progress(file.name, found.steps(None)) as done:
             text = found.listing(tables.width_of(sys.stdout), done)
         click.echo(text, nl=False)
-        return
+        sys.exit(found.is_damaged(None))
     with _progress(file.name, found.steps(head)) as done:
         for note in found.prepare(head, done):
             click.echo(f"icdgen: {file}: {note}", err=True)
         _convert(found, form, out, head, done)
+    sys.exit(found.is_damaged(head))
 
 
 def _taken_apart(icd: Icd, words: Sequence[str], name: str | None) -> tuple[Node, Path, list[Message]]:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from icdgen.describe.numbers import byte_count
 from icdgen.logfile.recording import Recording, Tally
-from icdgen.logfile.rows import time_text
-from icdgen.logfile.source import Source
+from icdgen.logfile.source import Source, time_text
 from icdgen.tables import Column, clean, render
 
 _NAMES = ("frame", "message")
@@ -33,9 +32,8 @@ def to_text(source: Source, width: int | None) -> str:
     plan, entries = source.plan, source.entries
     lines = [f"{source.path}: log of {plan.node.name}, {source.size:,} bytes"]
     span = f"{entries:,} entr{'y' if entries == 1 else 'ies'} of {plan.entry_bytes} bytes"
-    if entries:
-        times = [time_text(source.time(source.entry(number))) for number in (0, entries - 1)]
-        span += f", {times[0]}" + (f" to {times[1]}" if entries > 1 else "")
+    if times := source.first_and_last():
+        span += f", {time_text(times[0])}" + (f" to {time_text(times[1])}" if entries > 1 else "")
     lines += [span, f"mask {source.mask.hex(' ')}"]
     rows = []
     for slot in plan.slots:
@@ -44,4 +42,4 @@ def to_text(source: Source, width: int | None) -> str:
         rows.append((str(slot.bit), id, slot.name or "(not assigned)", str(slot.length), str(fields)))
     text = "".join(clean(line) + "\n" for line in lines)
     text += "\n" + render(_COLUMNS, rows, width) if rows else "\nThe mask selects no frame.\n"
-    return text + "".join(f"\nnote: {note}\n" for note in source.notes())
+    return text + "".join(f"\nnote: {note}\n" for note in source.notes(source.integrity))

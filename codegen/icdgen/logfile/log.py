@@ -13,6 +13,7 @@ from icdgen.errors import UserError
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.logfile import listing, parquet, sheet_parquet
 from icdgen.logfile.columns import TIME
+from icdgen.logfile.integrity import Integrity
 from icdgen.logfile.recording import Recording, key
 from icdgen.logfile.rows import Done, Value, rows
 from icdgen.logfile.sheet import Sheet
@@ -35,6 +36,9 @@ class Log(Protocol):
 
     def prepare(self, head: int | None, done: Done) -> list[str]:
         """Notes about what is wrong with it."""
+
+    def is_damaged(self, head: int | None) -> bool:
+        """Whether entries are left out because the file is damaged."""
 
     def rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
         """Its rows."""
@@ -73,11 +77,16 @@ class _Entries:
         return listing.to_text(self.source, width)
 
     def steps(self, head: int | None) -> int:
-        entries = self.source.entries if head is None else min(head, self.source.entries)
-        return entries * self.source.plan.entry_bytes
+        return self._integrity(head).entries * self.source.plan.entry_bytes
 
     def prepare(self, head: int | None, done: Done) -> list[str]:
-        return self.source.notes()
+        return self.source.notes(self._integrity(head))
+
+    def is_damaged(self, head: int | None) -> bool:
+        return bool(self._integrity(head).damages)
+
+    def _integrity(self, head: int | None) -> Integrity:
+        return self.source.integrity if head is None else self.source.survey(head)
 
     def rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
         return rows(self.source, head, done)
@@ -107,6 +116,9 @@ class _Recorded:
         tally = self.recording.survey(head, done)
         self.sheet = Sheet(self.recording, self.recording.chosen & tally.messages.keys())
         return tally.notes()
+
+    def is_damaged(self, head: int | None) -> bool:
+        return False  # noise on a line is normal: it is counted, and damages no message that is taken
 
     def rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
         return self.sheet.rows(head, done)

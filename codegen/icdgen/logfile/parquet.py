@@ -16,6 +16,7 @@ from icdgen.errors import UserError
 from icdgen.icd.model import Node
 from icdgen.logfile.columns import TIME, Column, Plan
 from icdgen.logfile.source import Source
+from icdgen.logfile.strided import numbers_at
 
 if TYPE_CHECKING:
     import numpy as np
@@ -98,8 +99,8 @@ class Decoder:
         import pyarrow as pa
 
         plan, count = self.plan, len(data) // self.plan.entry_bytes
-        seconds = _whole(data, plan.entry_bytes, *plan.seconds, plan.order == "little")
-        rest = _whole(data, plan.entry_bytes, *plan.milliseconds, plan.order == "little")
+        seconds = numbers_at(data, plan.entry_bytes, *plan.seconds, plan.order == "little")
+        rest = numbers_at(data, plan.entry_bytes, *plan.milliseconds, plan.order == "little")
         time = pa.array(seconds.astype(np.int64) * 1000 + rest, pa.int64()).cast(self.schema.field(0).type)
         arrays = [time, *(reader.read(data, count) for reader in self.columns)]
         return pa.RecordBatch.from_arrays(arrays, schema=self.schema)
@@ -198,17 +199,17 @@ class ColumnReader:
         assert field
         if field.at % 8 == 0 and field.bits in (8, 16, 32, 64):
             little = column.byte_order == "little"
-            return _whole(data, self.stride, column.at, field.bits // 8, little, "i" if field.signed else "u")
+            return numbers_at(data, self.stride, column.at, field.bits // 8, little, "i" if field.signed else "u")
         if len(column.pieces) == 1:
             (piece,) = column.pieces
-            value = _whole(data, self.stride, piece.byte, 1, True) & piece.mask
+            value = numbers_at(data, self.stride, piece.byte, 1, True) & piece.mask
             if column.kind == "bool":
                 return value
             value = value >> piece.shift
         else:
             value = np.zeros(len(data) // self.stride, np.uint64)
             for piece in column.pieces:
-                part = (_whole(data, self.stride, piece.byte, 1, True) & piece.mask) >> piece.shift
+                part = (numbers_at(data, self.stride, piece.byte, 1, True) & piece.mask) >> piece.shift
                 value |= part.astype(np.uint64) << np.uint64(piece.at)
         if field.signed:
             up = np.int64(64 - field.bits)
@@ -233,18 +234,3 @@ class ColumnReader:
             return value
         different, where = np.unique(raw, return_inverse=True)
         return np.array([(int(one) * a + b) / d for one in different], np.float64)[where]
-
-
-def _whole(data: bytes, stride: int, at: int, size: int, little: bool, kind: str = "u") -> np.ndarray:
-    """A number of whole bytes in every entry; not a copy where numpy has the size."""
-    import numpy as np
-
-    count = len(data) // stride
-    if size in (1, 2, 4, 8):
-        return np.ndarray((count,), f"{'<' if little else '>'}{kind}{size}", data, at, (stride,))
-    value = np.zeros(count, np.uint64)
-    for number in range(size):
-        byte = np.ndarray((count,), np.uint8, data, at + number, (stride,))
-        shift = 8 * (number if little else size - 1 - number)
-        value |= byte.astype(np.uint64) << np.uint64(shift)
-    return value

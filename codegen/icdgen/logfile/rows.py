@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 import struct
 from collections.abc import Callable, Iterator
-from datetime import UTC, datetime, timedelta
 from functools import lru_cache
 
 from icdgen import codec
 from icdgen.logfile.columns import Column
-from icdgen.logfile.source import Source
+from icdgen.logfile.source import Source, time_text
 
 Value = int | float | str | bool | None  # None: it is not there
 Done = Callable[[int], None]  # is told how many bytes have been read
-_EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 
 def rows(source: Source, head: int | None, done: Done) -> Iterator[list[Value]]:
@@ -25,11 +23,6 @@ def rows(source: Source, head: int | None, done: Done) -> Iterator[list[Value]]:
             entry = piece[at : at + size]
             yield [time_text(source.time(entry)), *(read(entry) for read in readers)]
         done(len(piece))
-
-
-def time_text(milliseconds: int) -> str:
-    """ISO 8601 in UTC."""
-    return (_EPOCH + timedelta(milliseconds=milliseconds)).isoformat(timespec="milliseconds")[:-6] + "Z"
 
 
 def reader(column: Column) -> Callable[[bytes], Value]:

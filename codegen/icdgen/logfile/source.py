@@ -4,21 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+from functools import cached_property
 from pathlib import Path
 
 from icdgen.errors import UserError, unreadable
 from icdgen.icd.model import Icd, Node
 from icdgen.logfile.columns import Plan, plan
+from icdgen.logfile.integrity import Damage, Integrity, LogSurvey, TimeJump
 from icdgen.protocol import facts
 from icdgen.values.find import find_node
 
-_SAMPLE = 64  # entries by which it is judged whether this is a log
-_PIECE = 1 << 18  # bytes of them that are read at once, about
+_MOST_NOTES = 8  # damaged ranges or time jumps that are named one by one
+_EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
+_PIECE = 1 << 18  # bytes of entries that are read at once, about
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Source:
-    """``entries`` whole ones, after them ``truncated`` bytes of one that was cut off."""
+    """A log file and its header. Entries are those that `icdgen.logfile.integrity` finds whole."""
 
     path: Path
     mask: bytes
@@ -26,28 +30,39 @@ class Source:
     size: int
     plan: Plan
 
-    @property
-    def entries(self) -> int:
-        return (self.size - self.header_bytes) // self.plan.entry_bytes
+    @cached_property
+    def integrity(self) -> Integrity:
+        """Entries, damage and clock jumps of the complete file. Raises `icdgen.errors.UserError`."""
+        return self.survey(None)
+
+    def survey(self, head: int | None) -> Integrity:
+        """Entries, damage and clock jumps up to the first ``head`` entries. Raises `icdgen.errors.UserError`."""
+        try:
+            with self.path.open("rb") as file:
+                return LogSurvey(file, self.size, self.header_bytes, self.plan).run(head)
+        except OSError as error:
+            raise unreadable(self.path, error) from None
 
     @property
-    def truncated(self) -> int:
-        return (self.size - self.header_bytes) % self.plan.entry_bytes
+    def entries(self) -> int:
+        return self.integrity.entries
 
     def pieces(self, head: int | None, size: int = _PIECE) -> Iterator[bytes]:
         """The entries, about ``size`` bytes at once; ``head``: only so many. Raises `icdgen.errors.UserError`."""
-        left = self.entries if head is None else min(head, self.entries)
+        integrity = self.integrity if head is None else self.survey(head)
         some, one = max(1, size // self.plan.entry_bytes), self.plan.entry_bytes
         try:
             with self.path.open("rb") as file:
-                file.seek(self.header_bytes)
-                while left:
-                    data = file.read(min(some, left) * one)
-                    whole = len(data) // one
-                    if not whole:
-                        return  # it has become shorter meanwhile
-                    yield data[: whole * one]
-                    left -= whole
+                for span in integrity.spans:
+                    file.seek(span.start)
+                    left = span.entries
+                    while left:
+                        data = file.read(min(some, left) * one)
+                        whole = len(data) // one
+                        if not whole:
+                            return  # it has become shorter meanwhile
+                        yield data[: whole * one]
+                        left -= whole
         except OSError as error:
             raise unreadable(self.path, error) from None
 
@@ -57,31 +72,60 @@ class Source:
         (at, size), (after, rest) = self.plan.seconds, self.plan.milliseconds
         return int.from_bytes(entry[at : at + size], order) * 1000 + int.from_bytes(entry[after : after + rest], order)
 
-    def entry(self, number: int) -> bytes:
-        """One entry. Raises `icdgen.errors.UserError`."""
+    def first_and_last(self) -> tuple[int, int] | None:
+        """Times of the first and the last entry; None without entries. Raises `icdgen.errors.UserError`."""
+        spans = [span for span in self.integrity.spans if span.entries]
+        if not spans:
+            return None
+        last = spans[-1].start + (spans[-1].entries - 1) * self.plan.entry_bytes
         try:
             with self.path.open("rb") as file:
-                file.seek(self.header_bytes + number * self.plan.entry_bytes)
-                return file.read(self.plan.entry_bytes)
+                times = []
+                for start in (spans[0].start, last):
+                    file.seek(start)
+                    times.append(self.time(file.read(self.plan.entry_bytes)))
         except OSError as error:
             raise unreadable(self.path, error) from None
+        return times[0], times[1]
 
-    def notes(self) -> list[str]:
-        """What is wrong with it. Raises `icdgen.errors.UserError`."""
-        rest = [f"the last {self.truncated} bytes belong to no whole entry"] if self.truncated else []
-        return self._doubts() + rest
+    def notes(self, integrity: Integrity) -> list[str]:
+        """Report damage, clock jumps, an incomplete last entry, and what a log of this node would not have."""
+        notes = [f"{doubt}; is this a log of {self.plan.node.name}?" for doubt in self._doubts(integrity)]
+        notes += _summary([_damage_text(damage) for damage in integrity.damages], "damaged range")
+        notes += _summary([_jump_text(jump) for jump in integrity.jumps], "time jump")
+        if integrity.truncated:
+            notes.append(f"the last {integrity.truncated} bytes belong to no whole entry")
+        return notes
 
-    def _doubts(self) -> list[str]:
-        """What a log of this node would not have: any file of some length can be read as one."""
-        found = []
+    def _doubts(self, integrity: Integrity) -> Iterator[str]:
+        """Any file of some length can be read as a log: reasons to doubt that it is one."""
         unknown = sum(slot.id is None for slot in self.plan.slots)
         if unknown:
-            found.append(f"the mask selects {unknown} bit{'s' * (unknown > 1)} that no frame has")
-        if self.entries and not self.plan.slots:
-            found.append("the mask selects no frame")
-        if self.entries > 1 and self.time(self.entry(self.entries - 1)) < self.time(self.entry(0)):
-            found.append("the last entry is older than the first")
-        return [f"{doubt}; is this a log of {self.plan.node.name}?" for doubt in found]
+            yield f"the mask selects {unknown} bit{'s' * (unknown > 1)} that no frame has"
+        if integrity.entries and not self.plan.slots:
+            yield "the mask selects no frame"
+
+
+def _damage_text(damage: Damage) -> str:
+    rows = "about 1 row is" if damage.rows == 1 else f"about {damage.rows:,} rows are"
+    size = damage.end - damage.start
+    return f"damaged: bytes {damage.start:,} to {damage.end - 1:,} ({size:,} bytes); {rows} left out"
+
+
+def _jump_text(jump: TimeJump) -> str:
+    times = f"{time_text(jump.before)} to {time_text(jump.after)}"
+    return f"time jump at byte {jump.at:,}: {times}; its rows are converted"
+
+
+def _summary(texts: list[str], what: str) -> list[str]:
+    """The first texts, and how many more there are."""
+    rest = len(texts) - _MOST_NOTES
+    return texts[:_MOST_NOTES] + ([f"and {rest:,} more {what}{'s' * (rest > 1)}"] if rest > 0 else [])
+
+
+def time_text(milliseconds: int) -> str:
+    """ISO 8601 in UTC."""
+    return (_EPOCH + timedelta(milliseconds=milliseconds)).isoformat(timespec="milliseconds")[:-6] + "Z"
 
 
 def node_of(icd: Icd, name: str | None) -> Node:
@@ -115,16 +159,7 @@ def open_source(icd: Icd, node: Node, path: Path) -> Source:
         raise UserError(f"{path} is no log: it has {size} bytes, the header alone has {header}", "is it whole?")
     mask = head[known.log_file.mask_at : known.log_file.mask_at + known.mask.size]
     found = Source(path, mask, header, size, plan(icd, known, mask))
-    if why := _impossible(found):
+    if size >= header + found.plan.entry_bytes and not found.survey(1).spans:
+        why = "its entries have no times, their milliseconds are above 999"
         raise UserError(f"{path} is no log of {node.name}: {why}", "name a log file as it was downloaded, or --node")
     return found
-
-
-def _impossible(source: Source) -> str:
-    """Why the file can be no log, however damaged. Raises `icdgen.errors.UserError`."""
-    at, size = source.plan.milliseconds
-    order = source.plan.order
-    some = b"".join(source.pieces(_SAMPLE))
-    entries = range(0, len(some), source.plan.entry_bytes)
-    wrong = sum(int.from_bytes(some[one + at : one + at + size], order) >= 1000 for one in entries)
-    return "its entries have no times, their milliseconds are above 999" if wrong * 2 > len(entries) else ""

@@ -1,0 +1,382 @@
+"""Damage and clock jumps of a telemetry log, found by the times of its entries.
+
+Entries of a log have no sync word and no checksum. Their times are the only redundancy: milliseconds below 1000, and seconds that
+rise by little from one entry to the next. `LogSurvey` reads the file once and returns the spans of whole entries, the ranges of
+bytes that belong to none, and the places where the clock was set. `icdgen.logfile.source` gives the spans to the converters.
+
+Limits: a change of data bytes that leaves all times in place cannot be detected, nor can a loss of exactly as many bytes as bring
+another copy of the time, in the data, to the place of the time. The first entry after a damaged range may have a wrong time if the
+lowest byte of its time was damaged. Damage within the very first time of a file shows only by what follows.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise, takewhile
+from statistics import median
+from typing import BinaryIO
+
+from icdgen.logfile.columns import Plan
+from icdgen.logfile.strided import numbers_at
+
+MINUTE, DAY, MONTH, YEAR = 60_000, 86_400_000, 30 * 86_400_000, 366 * 86_400_000  # ms
+YEAR_1990 = 631_152_000_000  # ms: an earlier time may be a counter
+LATEST_SECOND = 253_402_300_799  # the last one of the year 9999
+STEPS_IN_LIMIT = 5  # an entry that comes later than so many usual steps is looked at closely
+LEARNED_ENTRIES = 64  # from which the usual step is taken
+COMPARED_ENTRIES = 8  # from which the places of other times in an entry are taken
+FIRST_CHUNK, LAST_CHUNK = 16, 1 << 20  # entries, bytes
+WINDOW = 1 << 16  # bytes that are searched at once
+NEVER = math.inf
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """Whole entries, one after the other, from byte ``start`` of the file."""
+
+    start: int
+    entries: int
+
+
+@dataclass(frozen=True, slots=True)
+class Damage:
+    """Bytes ``start`` to ``end`` (exclusive) that are left out, and about how many entries that is."""
+
+    start: int
+    end: int
+    rows: int
+
+
+@dataclass(frozen=True, slots=True)
+class TimeJump:
+    """The entry at byte ``at`` continues in another time. Times are milliseconds since 1970."""
+
+    at: int
+    before: int
+    after: int
+
+
+@dataclass(slots=True)
+class Integrity:
+    """What a log consists of. ``truncated``: bytes of the last entry, which is incomplete."""
+
+    spans: list[Span] = field(default_factory=list)
+    damages: list[Damage] = field(default_factory=list)
+    jumps: list[TimeJump] = field(default_factory=list)
+    truncated: int = 0
+
+    @property
+    def entries(self) -> int:
+        return sum(span.entries for span in self.spans)
+
+
+class LogSurvey:
+    """Finds the whole entries of an open log of ``size`` bytes, whose entries begin at ``begin``."""
+
+    def __init__(self, file: BinaryIO, size: int, begin: int, plan: Plan) -> None:
+        self.file, self.size, self.begin, self.plan = file, size, begin, plan
+        self.entry_bytes = plan.entry_bytes
+        self.time_end = max(at + size for at, size in (plan.seconds, plan.milliseconds))
+        self.step = 0.0  # usual milliseconds from an entry to the next
+        self.limit = float(MINUTE)  # a longer step is looked at closely
+        self.other_times: list[int] = []  # bytes of an entry at which its data hold the present time as well
+
+    def run(self, most: int | None = None) -> Integrity:
+        """Read the file up to ``most`` whole entries. There is no span if nothing in it looks like entries."""
+        result, size = Integrity(), self.entry_bytes
+        start = self._anchor()
+        if start is None:
+            return result
+        if start > self.begin:
+            result.damages.append(self._damage(self.begin, start))
+        run = start  # where the present time base begins
+        while True:
+            self._learn(run)
+            broken = self._first_break(run)
+            if most is not None and result.entries + (broken - start) // size >= most:
+                result.spans.append(Span(start, most - result.entries))
+                return result
+            if broken + size > self.size and self._ends_well(broken):
+                result.spans.append(Span(start, (broken - start) // size))
+                result.truncated = self.size - broken
+                return result
+            keep, resume = self._resolve(run, broken)
+            if keep == resume:
+                before, after = self._time(broken - size), self._time(broken)
+                assert before is not None and after is not None
+                result.jumps.append(TimeJump(broken, before, after))
+                run = broken
+                continue
+            result.spans.append(Span(start, max(0, keep - start) // size))
+            result.damages.append(self._damage(max(keep, start), resume))
+            if resume >= self.size:
+                return result
+            start = run = resume
+
+    def _damage(self, start: int, end: int) -> Damage:
+        return Damage(start, end, max(1, round((end - start) / self.entry_bytes)))
+
+    def _read(self, at: int, size: int) -> bytes:
+        self.file.seek(at)
+        return self.file.read(size)
+
+    def _time(self, at: int, needed: int | None = None) -> int | None:
+        """Milliseconds since 1970 if byte ``at`` were the start of an entry; None if that cannot be."""
+        if at < 0 or at + (self.entry_bytes if needed is None else needed) > self.size:
+            return None
+        time = self._times(self._read(at, self.time_end), 1, 1)
+        return int(time[0]) if len(time) and time[0] >= 0 else None
+
+    def _times(self, data: bytes, stride: int, count: int) -> Sequence[int]:
+        """Times of ``count`` possible entries every ``stride`` bytes; -1 where milliseconds or seconds are out of range."""
+        (seconds_at, seconds_size), (rest_at, rest_size) = self.plan.seconds, self.plan.milliseconds
+        little = self.plan.order == "little"
+        count = min(count, (len(data) - self.time_end) // stride + 1)
+        if count < FIRST_CHUNK or not _has_numpy():
+            times = []
+            for at in range(0, count * stride, stride):
+                rest = int.from_bytes(data[at + rest_at : at + rest_at + rest_size], self.plan.order)
+                seconds = int.from_bytes(data[at + seconds_at : at + seconds_at + seconds_size], self.plan.order)
+                times.append(seconds * 1000 + rest if rest < 1000 and seconds <= LATEST_SECOND else -1)
+            return times
+        import numpy as np
+
+        whole = numbers_at(data, stride, seconds_at, seconds_size, little, count=count)
+        parts = numbers_at(data, stride, rest_at, rest_size, little, count=count)
+        milliseconds = whole.astype(np.int64) * 1000 + parts.astype(np.int64)
+        found: Sequence[int] = np.where((parts < 1000) & (whole <= LATEST_SECOND), milliseconds, -1)  # type: ignore[assignment]
+        return found
+
+    def _anchor(self) -> int | None:
+        """Return the first byte at which entries begin, normally the first one behind the header."""
+        begin, size = self.begin, self.entry_bytes
+        if begin + size > self.size:
+            return begin
+        first = self._time(begin)
+        is_clock = first is not None and self._is_clock(begin)
+        second = self._time(begin + size)
+        is_trusted = first is not None and first >= YEAR_1990 and second is not None and abs(second - first) <= DAY
+        for low in range(begin + 1, self.size - 3 * size + 1, WINDOW):
+            fresh = [at for at in self._candidates(low, WINDOW) if self._rises(at, MONTH)]
+            # Data may hold counters and times too. Prefer what makes the file end with a whole entry, and what goes on from the
+            # first entry.
+            recent = [at for at in fresh if (self._time(at) or 0) >= YEAR_1990]
+            following = [at for at in recent if first is not None and 0 <= (self._time(at) or 0) - first <= MONTH]
+            pool = recent or fresh
+            near = [at for at in pool if at < pool[0] + size]
+            ending = [at for at in near if (self.size - at) % size == 0]
+            steadier = [at for at in ending if self._unsteadiness(at) < self._unsteadiness(begin)]
+            if is_trusted and not steadier:
+                return begin
+            if is_clock and not any((self._time(at) or 0) >= YEAR_1990 for at in ending):
+                return begin
+            if near:
+                start = (ending or following or near)[0]
+                self._learn(start)
+                # A clock that is set within the first entries leaves them in place.
+                return begin if (start - begin) % size == 0 and first is not None else self._regular(start)
+        if is_clock or is_trusted:
+            return begin
+        # Too few entries to compare: believe the positions that the header gives, if most of them are times.
+        aligned = range(begin, min(self.size - size, begin + LEARNED_ENTRIES * size) + 1, size)
+        timed = [at for at in aligned if self._time(at) is not None]
+        return timed[0] if len(timed) * 2 >= len(aligned) else None
+
+    def _learn(self, at: int) -> None:
+        """Take the usual step, and the places of other times, from the entries that begin at ``at``."""
+        size = self.entry_bytes
+        data = self._read(at, LEARNED_ENTRIES * size)
+        count = len(data) // size
+        times = [int(time) for time in self._times(data, size, count)]
+        # What comes behind a break is another time, or damage.
+        chain = takewhile(lambda pair: pair[0] >= 0 and 0 <= pair[1] - pair[0] <= MONTH, pairwise(times))
+        steps = [after - before for before, after in chain if after > before]
+        if steps:
+            self.step = float(median(steps))
+            self.limit = max(float(MINUTE), STEPS_IN_LIMIT * self.step)
+        regular = takewhile(lambda pair: pair[0] >= 0 and abs(pair[1] - pair[0]) <= self.limit, pairwise(times))
+        count = 1 + sum(1 for _ in regular)
+        if count > 1:
+            places = set(range(1, size))
+            for number in range(min(count - 1, COMPARED_ENTRIES)):
+                here = self._times(data[number * size :], 1, size)
+                places = {at for at in places if here[at] >= 0 and abs(here[at] - times[number]) <= self.limit}
+            self.other_times = sorted(places)
+
+    def _first_break(self, at: int) -> int:
+        """Return the first entry behind ``at`` whose time does not follow that of its predecessor, or the end of whole entries."""
+        size, position, previous = self.entry_bytes, at + self.entry_bytes, self._time(at)
+        amount = FIRST_CHUNK * size
+        if previous is None:
+            return at
+        while position + size <= self.size:
+            data = self._read(position, max(size, amount // size * size))
+            count = len(data) // size
+            if not count:
+                break  # the file has become shorter meanwhile
+            times = self._times(data, size, count)
+            index = _first_irregular(previous, times, self.limit)
+            if index is not None:
+                return position + index * size
+            previous, position, amount = int(times[-1]), position + count * size, min(2 * amount, LAST_CHUNK)
+        return position
+
+    def _ends_well(self, end: int) -> bool:
+        """Whether the bytes behind the last whole entry are the beginning of the next one."""
+        rest, last = self.size - end, end - self.entry_bytes
+        if not rest or last < self.begin:
+            return True
+        if rest >= self.time_end and self._time(end, self.time_end) is None:
+            return False
+        # Bytes were lost in the last entry if a whole one ends at the end of the file.
+        return self._search(last + 1, end, self._time(last)) is None
+
+    def _resolve(self, run: int, broken: int) -> tuple[int, int]:
+        """Return where to stop before the entry at ``broken`` and where to resume; the same place twice: the clock jumped.
+
+        The entry before damage is left out too: its data may be damaged already.
+        """
+        size = self.entry_bytes
+        before, previous = self._time(broken - 2 * size) if broken - 2 * size >= run else None, self._time(
+            broken - size
+        )
+        here, next_, second = (self._time(broken + number * size) for number in range(3))
+        lead = self._deviation(before, previous) if before is not None else 0.0
+        lead = min(lead, self.limit)
+        follow = self._deviation(next_, second) if broken + 3 * size <= self.size else 0.0
+        jump = lead + self._deviation(here, next_) + follow
+        only_here = lead + self._deviation(previous, next_, 2) + follow
+        only_previous = self._deviation(before, here, 2) + self._deviation(here, next_) + follow
+        is_restart = here is not None and 0 < here < DAY
+        if min(only_here, only_previous) < NEVER and not is_restart:
+            if jump <= min(only_here, only_previous):
+                return broken, broken
+            if only_here < only_previous:
+                return broken - size, broken + size
+            return broken - 2 * size, broken
+        resume = self._search(broken - size + 1, broken + 3 * size, previous, is_aligned=False)
+        if resume is not None:
+            return broken - size, resume
+        is_clock = bool(here or next_) and self._is_clock(broken)  # zeros are erased or lost memory
+        if is_clock and (here != next_ or next_ != second):
+            return broken, broken
+        low = broken - size + 1
+        while low + size <= self.size:
+            resume = self._search(low, low + WINDOW, previous, broken - size)
+            if resume is None and not is_clock:
+                fresh = (at for at in self._candidates(low, WINDOW) if self._rises(at, self.limit))
+                resume = next((at for at in fresh if self._has_other_times(at)), None)
+            if resume is not None:
+                return broken - size, resume
+            low += WINDOW
+        return (broken, broken) if is_clock else (broken - size, self.size)
+
+    def _deviation(self, before: int | None, after: int | None, entries: int = 1) -> float:
+        """Milliseconds by which the step over so many entries differs from the usual one."""
+        if before is None or after is None or abs(after - before) > entries * self.limit:
+            return NEVER
+        return abs(after - before - entries * self.step)
+
+    def _is_clock(self, at: int) -> bool:
+        """Whether the next two entries, as far as there are any, go on from the one at ``at``, be it after a pause."""
+        times = [self._time(at + number * self.entry_bytes) for number in range(3)]
+        there = [time for number, time in enumerate(times) if at + (number + 1) * self.entry_bytes <= self.size]
+        if len(there) == 1:
+            return there[0] is not None and (self.size - at) % self.entry_bytes == 0
+        for before, after in pairwise(there):
+            if (
+                before is None
+                or after is None
+                or not (0 <= after - before <= YEAR or abs(after - before) <= self.limit)
+            ):
+                return False
+        return True
+
+    def _rises(self, at: int, limit: float) -> bool:
+        """Whether two more entries follow the one at ``at``, each a little later."""
+        times = [self._time(at + number * self.entry_bytes) for number in range(3)]
+        pairs = pairwise(times)
+        return all(a is not None and b is not None and 0 < b - a <= limit for a, b in pairs)
+
+    def _unsteadiness(self, at: int) -> float:
+        """How much the first two steps of the entries from ``at`` differ, from 0 to 1; more if there are none."""
+        first, second, third = (self._time(at + number * self.entry_bytes) for number in range(3))
+        if first is None or second is None or third is None or not first <= second <= third:
+            return NEVER
+        return abs((third - second) - (second - first)) / max(third - first, 1)
+
+    def _candidates(self, low: int, length: int) -> list[int]:
+        """Bytes at which an entry could begin, by its time alone."""
+        count = min(length, self.size - self.entry_bytes - low + 1)
+        if count <= 0:
+            return []
+        times = self._times(self._read(low, count + self.time_end - 1), 1, count)
+        return [low + index for index, time in enumerate(times) if time >= 0]
+
+    def _search(
+        self, low: int, high: int, previous: int | None, origin: int | None = None, is_aligned: bool = True
+    ) -> int | None:
+        """Return the first byte from ``low`` below ``high`` at which entries go on from the time ``previous``.
+
+        ``origin``: start of the last entry, default ``low``. ``is_aligned``: also where entries stand if no byte is missing.
+        """
+        if previous is None:
+            return None
+        size, origin = self.entry_bytes, low if origin is None else origin
+        count = min(high, self.size - size + 1) - low
+        if count <= 0:
+            return None
+        times = self._times(self._read(low, count + self.time_end - 1), 1, count)
+        for index, time in enumerate(times):
+            at = low + index
+            if not is_aligned and (at - low + 1) % size == 0:
+                continue
+            if not 0 <= time - previous <= self.limit * (2 + (at - origin) / size):
+                continue
+            following = [self._time(at + number * size) for number in (1, 2) if at + (number + 1) * size <= self.size]
+            chain = [int(time), *following]
+            steps = pairwise(chain)
+            if all(self._deviation(a, b) < NEVER for a, b in steps) and self._has_other_times(at):
+                return self._regular(at)
+        return None
+
+    def _regular(self, at: int) -> int:
+        """Return ``at``, or the entry after it if the lowest byte of the time at ``at`` is damaged: its step is an unusual one."""
+        first, second, third = (self._time(at + number * self.entry_bytes) for number in range(3))
+        is_odd = self._deviation(first, second) > self.step / 2 >= self._deviation(second, third)
+        return at + self.entry_bytes if is_odd else at
+
+    def _has_other_times(self, at: int) -> bool:
+        """Whether entries from ``at`` hold further times where those before did: else ``at`` is one of these places."""
+        size = self.entry_bytes
+        for place in self.other_times:
+            starts = [start for start in (at, at + size, at + 2 * size) if start + place + self.time_end <= self.size]
+            pairs = [(self._time(start, self.time_end), self._time(start + place, self.time_end)) for start in starts]
+            if pairs and not any(a is not None and b is not None and abs(b - a) <= self.limit for a, b in pairs):
+                return False
+        return True
+
+
+def _has_numpy() -> bool:
+    try:
+        import numpy  # noqa: F401
+    except ImportError:
+        return False
+    return True
+
+
+def _first_irregular(previous: int, times: Sequence[int], limit: float) -> int | None:
+    """Index of the first time that is none, or before its predecessor, or more than ``limit`` after it."""
+    if isinstance(times, list):
+        for index, time in enumerate(times):
+            if time < 0 or not 0 <= time - previous <= limit:
+                return index
+            previous = time
+        return None
+    import numpy as np
+
+    steps = np.diff(times, prepend=previous)
+    irregular = (np.asarray(times) < 0) | (steps < 0) | (steps > limit)
+    return int(irregular.argmax()) if irregular.any() else None

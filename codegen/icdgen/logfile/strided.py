@@ -1,0 +1,28 @@
+"""Numbers that repeat at a fixed distance in bytes, as arrays of numpy."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+
+
+def numbers_at(
+    data: bytes, stride: int, at: int, size: int, little: bool, kind: str = "u", count: int | None = None
+) -> np.ndarray:
+    """Return the number of ``size`` bytes at ``at`` and every ``stride`` bytes after it, by default one for each whole stride.
+
+    The array is a view of ``data`` where numpy has a type of that size.
+    """
+    import numpy as np
+
+    count = len(data) // stride if count is None else count
+    if size in (1, 2, 4, 8):
+        return np.ndarray((count,), f"{'<' if little else '>'}{kind}{size}", data, at, (stride,))
+    value = np.zeros(count, np.uint64)
+    for number in range(size):
+        byte = np.ndarray((count,), np.uint8, data, at + number, (stride,))
+        shift = 8 * (number if little else size - 1 - number)
+        value |= byte.astype(np.uint64) << np.uint64(shift)
+    return value
