@@ -73,6 +73,9 @@ ABOUT_FILES = frozenset({"IMP002", "IMP003", "IMP005"})
 @click.option(
     "--explain", "table", type=int, metavar="TABLE", help="Say which rule read a table and why others did not."
 )
+@click.option(
+    "--workbench", is_flag=True, help="Serve a page on this machine on which the rules of --profile are written."
+)
 @click.option("--pages", type=PAGES, help="Read these pages of a PDF only: 12 or 20-35.")
 @format_option("text", "json")
 @click.option("--jobs", type=click.IntRange(1, 64), help="Processes that read pages (default: one a core).")
@@ -88,6 +91,7 @@ def import_(
     explore: bool,
     folder: Path | None,
     table: int | None,
+    workbench: bool,
     pages: tuple[int, int] | None,
     form: str,
     jobs: int | None,
@@ -114,6 +118,9 @@ def import_(
         _define(definitions, out, update, dry_run, form)
         return
     (manual,) = files
+    if workbench:
+        _workbench(manual, words, out, pages, jobs, form)
+        return
     try:
         vocabulary = profile.load(profile.find(words))
         with _progress() as progress:
@@ -203,6 +210,30 @@ def _define(files: list[tuple[Path, Reader]], out: Path, update: bool, dry_run: 
         if not trees:
             say("no ICD is written: no message can be held")
     sys.exit(1 if not trees or any(read.failed for read in reads) or has_errors(checked) else 0)
+
+
+def _workbench(
+    manual: Path, words: str | None, out: Path, pages: tuple[int, int] | None, jobs: int | None, form: str
+) -> None:
+    """Serve the workbench until it is interrupted. Raises `UserError` for a profile that is shipped, or has no rules."""
+    from icdgen.importer import profile, sources
+    from icdgen.importer.workbench import server
+    from icdgen.importer.workbench.session import Session
+
+    path = Path(words or "profile.yaml")
+    try:
+        vocabulary = profile.load(path if path.exists() else None)
+        if path.exists() and not vocabulary.has_rules:
+            raise UserError(f"the profile {path} has no rules", "add `rules: []`, or name a new file with --profile")
+        with _progress() as progress:
+            document, tables = sources.read(manual, vocabulary, progress, jobs, pages)
+    except Findings as error:
+        _refuse(error, manual, form)
+        sys.exit(1)
+    with server.serve(Session(document, tables, path, out)) as running:
+        say(f"{manual}: {len(tables)} tables; open http://{server.HOST}:{running.server_port}/ (Ctrl-C ends it)")
+        with suppress(KeyboardInterrupt):
+            running.serve_forever()
 
 
 def _explanation(result: Result, number: int) -> str:

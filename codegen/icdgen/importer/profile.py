@@ -209,10 +209,14 @@ def find(name: str | None) -> Path | None:
 
 def load(path: Path | None = None) -> Profile:
     """The profile that comes with icdgen, with ``path`` laid over it. Raises `Findings` for a profile that is wrong."""
-    base = plain(source.read(DEFAULT))
     if path is None:
-        return Profile(base)
-    tree = source.read(path)
+        return Profile(plain(source.read(DEFAULT)))
+    return of_tree(source.read(path))
+
+
+def of_tree(tree: Map) -> Profile:
+    """The profile that comes with icdgen, with the tree of a profile laid over it. Raises `Findings` for one that is wrong."""
+    base = plain(source.read(DEFAULT))
     _check(tree)
     own = plain(tree)
     rules = read_rules(tree["rules"]) if "rules" in tree else []

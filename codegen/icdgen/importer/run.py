@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -61,18 +62,27 @@ def run(
     """Reads a manual. Raises `Findings` for a file that cannot be read; one that holds nothing to import gives no tree
     and the finding IMP004. ``pages``: the first and the last one to read of a PDF."""
     document, tables = sources.read(manual, words, progress, jobs, pages)
-    interpretation = None
     if words.has_rules or document.needs_rules:
-        notes = repairs.mend_tables(tables, words)
-        interpretation = interpret.interpret(tables, words, [*document.troubles, *notes])
-        found = interpretation.survey
-    else:
-        repairs.mend(document, words)
-        found = survey.survey(document, words)
+        return apply_rules(document, tables, words, prose)
+    repairs.mend(document, words)
+    found = survey.survey(document, words)
     trees = assemble.assemble(document, found, words, prose)
     if not trees:
-        found.troubles.append(_nothing(document, found) if interpretation is None else _nothing_by_rules(words))
-    return Result(document, found, tables=tables, interpretation=interpretation), trees
+        found.troubles.append(_nothing(document, found))
+    return Result(document, found, tables=tables), trees
+
+
+def apply_rules(
+    document: Document, tables: list[SourceTable], words: profile.Profile, prose: bool = False
+) -> tuple[Result, dict[str, dict[str, Any]]]:
+    """Read the tables of a document by the rules of a profile. The tables themselves are not changed."""
+    tables = copy.deepcopy(tables)
+    notes = repairs.mend_tables(tables, words)
+    interpretation = interpret.interpret(tables, words, [*document.troubles, *notes])
+    trees = assemble.assemble(document, interpretation.survey, words, prose)
+    if not trees:
+        interpretation.survey.troubles.append(_nothing_by_rules(words))
+    return Result(document, interpretation.survey, tables=tables, interpretation=interpretation), trees
 
 
 def _nothing_by_rules(words: profile.Profile) -> Trouble:

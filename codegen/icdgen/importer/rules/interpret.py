@@ -31,6 +31,7 @@ class Interpretation:
     parts: list[Part]
     survey: Survey
     attributes: dict[int, dict[str, str]]  # number of the table -> roles that texts around it give
+    rules: list[Rule]
 
 
 def interpret(tables: list[SourceTable], profile: Profile, extra: list[Trouble] | None = None) -> Interpretation:
@@ -73,7 +74,7 @@ class _Interpreter:
             own = things.get(table.number - 1)
             survey.found += own or [Found(table.as_table(), _what(choice, ignored), None)]
         self.report_unread(choices, survey)
-        return Interpretation(choices, self.parts, survey, self.attributes)
+        return Interpretation(choices, self.parts, survey, self.attributes, self.profile.rules)
 
     # --- one table -------------------------------------------------------------------------------------------------
 

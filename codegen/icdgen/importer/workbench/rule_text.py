@@ -1,0 +1,126 @@
+"""Rules within the text of a profile: one rule is replaced or added, everything else keeps its place and its comments."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from icdgen.icd import source
+from icdgen.icd.located import Map, Seq
+
+ORDER = (
+    "rule", "like", "tables", "what", "message", "columns", "lines", "melt", "each", "map", "set", "skip", "stop", "keep", "join",
+    "fill", "glue", "ignore", "head_rows", "group_rows", "transpose", "also", "width", "origin", "base",
+)  # fmt: skip
+NEW = "profile: 1\nnode: {byte_order: little, bit_order: lsb0}\nrules: []\n"
+_PLAIN = re.compile(r"[A-Za-z_(][\w (|)./+-]*[\w)]|[A-Za-z]")
+_WORDS = {"y", "n", "yes", "no", "on", "off", "true", "false", "null"}
+_INDENT = "  "
+
+
+def text_of_rule(rule: dict[str, Any]) -> str:
+    """Return the lines of a rule as an entry of `rules:`, in the order of the reference."""
+    keys = [key for key in ORDER if key in rule] + [key for key in rule if key not in ORDER]
+    lines: list[str] = []
+    for key in keys:
+        value = rule[key]
+        if isinstance(value, dict) and (len(_flow(value)) > 90 or (key in ("columns", "lines") and len(value) > 3)):
+            lines.append(f"{key}:")
+            lines += [f"  {_scalar(str(name))}: {_flow(entry)}" for name, entry in value.items()]
+        else:
+            lines.append(f"{key}: {_flow(value)}")
+    return "".join(f"{_INDENT}{'- ' if index == 0 else '  '}{line}\n" for index, line in enumerate(lines))
+
+
+def _flow(value: Any) -> str:
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{_scalar(str(key))}: {_flow(entry)}" for key, entry in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_flow, value)) + "]"
+    return _scalar(value)
+
+
+def _scalar(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (int, float)):
+        return str(value)
+    text = str(value)
+    if _PLAIN.fullmatch(text) and text.casefold() not in _WORDS:
+        return text
+    return "'" + text.replace("'", "''").replace("\n", " ") + "'"
+
+
+def with_rule(text: str, index: int | None, rule: dict[str, Any] | None) -> str:
+    """Return the text with a rule replaced (``index``), added behind the others (no index), or removed (no rule).
+
+    Raises `Findings` if the text is no YAML.
+    """
+    block = text_of_rule(rule) if rule is not None else ""
+    tree = source.parse(text.encode("utf-8"), "profile")
+    rules = tree.get("rules")
+    lines = text.splitlines(keepends=True)
+    if lines and not lines[-1].endswith("\n"):
+        lines[-1] += "\n"
+    if not isinstance(rules, Seq):
+        return "".join(lines) + f"rules:\n{block}"
+    if not rules or tree.key_at("rules").line == rules.item_at(0).line:  # in one line, as `[]` or `[{...}]`
+        first = tree.key_at("rules").line - 1
+        others = [text_of_rule(_plain(entry)) for entry in rules]
+        others[index if index is not None else len(others) : (index + 1) if index is not None else len(others)] = [
+            block
+        ]
+        lines[first : first + 1] = ["rules:\n" if any(others) else "rules: []\n", *others]
+        return "".join(lines)
+    starts = [rules.item_at(i).line - 1 for i in range(len(rules))]
+    behind = [place.line - 1 for key in tree if (place := tree.key_at(key)).line - 1 > starts[-1]]
+    ends = [*starts[1:], min(behind, default=len(lines))]
+    if index is None:
+        end = _last_line(lines, starts[-1], ends[-1])
+        lines[end:end] = [block]
+    else:
+        lines[starts[index] : _last_line(lines, starts[index], ends[index])] = [block]
+        if len(rules) == 1 and rule is None:
+            lines[tree.key_at("rules").line - 1] = "rules: []\n"
+    return "".join(lines)
+
+
+def _last_line(lines: list[str], start: int, end: int) -> int:
+    """The line behind a rule: blank lines and comments in front of the next one belong to that."""
+    while end > start + 1 and (not lines[end - 1].strip() or lines[end - 1].lstrip().startswith("#")):
+        end -= 1
+    return end
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Map):
+        return {key: _plain(entry) for key, entry in value.items()}
+    return [_plain(entry) for entry in value] if isinstance(value, Seq) else value
+
+
+def with_node(text: str, node: dict[str, Any]) -> str:
+    """Return the text with another `node:` section. Raises `Findings` if the text is no YAML."""
+    tree = source.parse(text.encode("utf-8"), "profile")
+    lines = text.splitlines(keepends=True)
+    line = f"node: {_flow(node)}\n"
+    if "node" not in tree:
+        first = tree.key_at("profile").line if "profile" in tree else 0
+        return "".join([*lines[:first], line, *lines[first:]])
+    start = tree.key_at("node").line - 1
+    behind = [place.line - 1 for key in tree if (place := tree.key_at(key)).line - 1 > start]
+    end = _last_line(lines, start, min(behind, default=len(lines)))
+    return "".join([*lines[:start], line, *lines[end:]])
+
+
+def rules_of(text: str) -> list[dict[str, Any]]:
+    """Return the rules of a profile as plain mappings. Raises `Findings` if the text is no YAML."""
+    tree = source.parse(text.encode("utf-8"), "profile")
+    rules = tree.get("rules")
+    return [_plain(rule) for rule in rules] if isinstance(rules, Seq) else []
+
+
+def parse_rule(text: str) -> dict[str, Any]:
+    """Return the rule that a person wrote as YAML, with or without the dash of a list. Raises `Findings`."""
+    stripped = re.sub(r"\A(\s*)-(?= )", r"\1 ", text)
+    tree = source.parse(stripped.encode("utf-8"), "rule")
+    return {key: _plain(value) for key, value in tree.items()}

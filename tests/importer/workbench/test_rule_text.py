@@ -1,0 +1,103 @@
+"""The workbench changes one rule of a profile; everything else keeps its text and its comments."""
+
+from __future__ import annotations
+
+import pytest
+
+from icdgen.importer import profile
+from icdgen.importer.workbench import rule_text
+
+PROFILE = """# Of the motor.
+profile: 1
+node: {byte_order: little}  # as the manual says
+rules:
+  # telemetry
+  - rule: state
+    tables: {head: Byte | Name}   # two columns
+    columns: {Byte: byte, Name: name}
+
+  # the rest
+  - {what: ignore, tables: {head: Pin}}
+types: {word: {type: uint, bits: 16}}  # two bytes
+"""
+NEW = {"tables": {"head": "A | B"}, "columns": {"A": "byte", "B": r"^{name} \(x\)$"}, "width": "unit"}
+
+
+def test_a_rule_is_added_behind_the_others():
+    text = rule_text.with_rule(PROFILE, None, NEW)
+    assert text.replace(rule_text.text_of_rule(NEW), "") == PROFILE
+    assert rule_text.rules_of(text)[2] == NEW
+    assert text.index("A | B") < text.index("types:")
+
+
+@pytest.mark.parametrize("index", [0, 1])
+def test_a_rule_is_replaced_and_comments_around_it_stay(index):
+    text = rule_text.with_rule(PROFILE, index, NEW)
+    assert rule_text.rules_of(text)[index] == NEW
+    assert rule_text.rules_of(text)[1 - index] == rule_text.rules_of(PROFILE)[1 - index]
+    for comment in ("# Of the motor.", "# as the manual says", "  # telemetry", "  # the rest", "# two bytes"):
+        assert comment in text
+
+
+def test_rules_are_removed_down_to_none():
+    text = rule_text.with_rule(rule_text.with_rule(PROFILE, 0, None), 0, None)
+    assert rule_text.rules_of(text) == []
+    assert rule_text.rules_of(rule_text.with_rule(text, None, NEW)) == [NEW]
+
+
+@pytest.mark.parametrize(
+    "start", ["profile: 1\n", rule_text.NEW, "profile: 1\nrules: [{what: ignore, tables: {head: Pin}}]"]
+)
+def test_the_first_rule_finds_its_place(start):
+    text = rule_text.with_rule(start, None, NEW)
+    assert rule_text.rules_of(text)[-1] == NEW
+    assert len(rule_text.rules_of(text)) == len(rule_text.rules_of(start)) + 1
+
+
+def test_the_node_is_replaced_or_added():
+    text = rule_text.with_node(PROFILE, {"byte_order": "big", "id_bits": 16})
+    assert "node: {byte_order: big, id_bits: 16}\n" in text and "# telemetry" in text
+    assert (
+        rule_text.with_node("profile: 1\nrules: []\n", {"byte_order": "big"})
+        == "profile: 1\nnode: {byte_order: big}\nrules: []\n"
+    )
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        "a: b",
+        "- x",
+        "it's",
+        "#x",
+        "yes",
+        "~",
+        "1",
+        "0x20",
+        "{id}",
+        r"^\d+ \| {id}$",
+        "[a]",
+        'a"b',
+        " x",
+        "&a",
+        "*",
+        "!t",
+        "%",
+    ],
+)
+def test_every_text_comes_back_as_it_was(value, tmp_path):
+    rule = {"tables": {"head": value}, "what": "ignore", "skip": value}
+    (tmp_path / "p.yaml").write_text(rule_text.with_rule(rule_text.NEW, None, rule), encoding="utf-8")
+    assert rule_text.rules_of((tmp_path / "p.yaml").read_text(encoding="utf-8")) == [rule]
+
+
+def test_shipped_rules_survive_being_written(tmp_path):
+    from tests.conftest import ROOT
+
+    text = (ROOT / "icd" / "profiles" / "cubeadcs.yaml").read_text(encoding="utf-8")
+    again = text
+    for index, rule in enumerate(rule_text.rules_of(text)):
+        again = rule_text.with_rule(again, index, rule)
+    assert rule_text.rules_of(again) == rule_text.rules_of(text)
+    (tmp_path / "p.yaml").write_text(again, encoding="utf-8")
+    assert len(profile.load(tmp_path / "p.yaml").rules) == len(rule_text.rules_of(text))

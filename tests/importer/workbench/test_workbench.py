@@ -1,0 +1,230 @@
+"""A person writes a profile in the workbench, with the keyboard alone, and gets an ICD without findings."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import urllib.error
+import urllib.request
+
+import pytest
+import yaml
+
+from icdgen.importer import profile, sources
+from icdgen.importer.workbench import server
+from icdgen.importer.workbench.session import Session
+from icdgen.loading import load
+from tests.importer.rules.drawing import draw, heading, table, text
+
+NAMES = ("chromium", "chromium-browser", "google-chrome")
+
+
+def manual(path):
+    """Two messages of one kind and a table of pins."""
+    return draw(path, [
+        heading("4 Telemetry"), heading("4.1 Motor state (0x21)", 2), text("Sent once a second."),
+        table([["Byte", "Name", "Unit", "Remarks"], ["0", "Mode", "", "see below"], ["1-2", "Speed", "rpm", ""]]),
+        heading("4.2 Supply (0x22)", 2), text("Sent on request."),
+        table([["Byte", "Name", "Unit", "Remarks"], ["0-1", "Voltage", "mV", ""], ["2-3", "Current", "mA", ""]]),
+        heading("5 Pins"), table([["Pin", "Function"], ["1", "GND"], ["2", "VCC"]]),
+    ])  # fmt: skip
+
+
+@pytest.fixture
+def session(tmp_path):
+    manual(tmp_path / "motor.pdf")
+    document, tables = sources.read(tmp_path / "motor.pdf", profile.load(), jobs=1)
+    return Session(document, tables, tmp_path / "rules.yaml", tmp_path / "icd")
+
+
+@pytest.fixture
+def address(session):
+    with server.serve(session) as running:
+        thread = threading.Thread(target=running.serve_forever, daemon=True)
+        thread.start()
+        yield f"http://{server.HOST}:{running.server_port}"
+        running.shutdown()
+        thread.join()
+
+
+def ask(address, path, data=None, headers=None):
+    body = None if data is None else json.dumps(data).encode()
+    request = urllib.request.Request(address + path, body, headers or {"X-Icdgen": "1"})
+    with urllib.request.urlopen(request) as answer:
+        return json.loads(answer.read()) if "json" in answer.headers["Content-Type"] else answer.read()
+
+
+RULE = {
+    "tables": {"head": "Byte | Name | Unit"},
+    "message": {"heading": r"^[\d.]+ {message} \({id}\)$", "kind": "telemetry"},
+    "columns": {"Byte": "^{byte}(?:-{last_byte})?$", "Name": "name", "Unit": "unit", "Remarks": "text"},
+    "each": {"type": "uint"},
+    "width": "unit",
+}
+
+
+def test_a_rule_gives_fields_and_findings_of_all_tables_of_its_kind_at_once(address):
+    state = ask(address, "/api/state")
+    assert [(kind["titles"], kind["tables"]) for kind in state["kinds"]] == [
+        (["Byte", "Name", "Unit", "Remarks"], [1, 2]),
+        (["Pin", "Function"], [3]),
+    ]
+    assert [one["rules"] for one in state["tables"]] == [[], [], []]
+    state = ask(address, "/api/rule", {"index": None, "rule": RULE})["state"]
+    assert [(one["rules"], one["fields"], one["messages"]) for one in state["tables"]] == [
+        ([0], 2, ["Motor state"]), ([0], 2, ["Supply"]), ([], 0, []),
+    ]  # fmt: skip
+    assert [one["code"] for one in state["findings"] if one["severity"] == "warning"] == ["IMP100"]
+    (message,) = ask(address, "/api/table/1")["messages"]
+    assert [(f["at"], f["bits"], f["name"], f["unit"]) for f in message["fields"]] == [
+        (0, 8, "Mode", ""),
+        (8, 16, "Speed", "rpm"),
+    ]
+
+
+def test_a_profile_that_is_wrong_is_shown_and_not_applied(address):
+    ask(address, "/api/rule", {"index": None, "rule": RULE})
+    wrong = {**RULE, "columns": {**RULE["columns"], "Name": "nam"}}
+    state = ask(address, "/api/rule", {"index": 0, "rule": wrong})["state"]
+    assert "did you mean the role `name`?" in state["errors"][0]["help"]
+    assert state["tables"][0]["fields"] == 2
+    refused = ask(address, "/api/rule-text", {"index": 0, "text": "tables: {head: ["})["refused"]
+    assert "not YAML" in refused[0]["message"]
+    state = ask(address, "/api/rule", {"index": 0, "rule": RULE})["state"]
+    assert state["errors"] == []
+
+
+def test_pages_of_other_sites_change_nothing(address, session):
+    before = session.text
+    for headers in ({"X-Other": "1"}, {"X-Icdgen": "1", "Host": "example.org"}):
+        with pytest.raises(urllib.error.HTTPError) as refused:
+            ask(address, "/api/rule", {"index": None, "rule": RULE}, headers)
+        assert refused.value.code == 403
+    for path, data in (("/api/rule", {"rule": 1}), ("/api/nothing", {}), ("/api/rule", [])):
+        with pytest.raises(urllib.error.HTTPError) as refused:
+            ask(address, path, data)
+        assert refused.value.code == 400
+    for path in ("/api/table/9", "/picture/9", "/page.py", "/../session.py"):
+        with pytest.raises(urllib.error.HTTPError) as refused:
+            ask(address, path)
+        assert refused.value.code == 404
+    assert session.text == before
+    assert ask(address, "/picture/1").startswith(b"\x89PNG")
+
+
+@pytest.fixture
+def page(address):
+    program = next((path for name in NAMES if (path := shutil.which(name))), None)
+    if program is None:
+        pytest.skip("no Chromium: scripts/test installs it")
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        made = browser.new_page(viewport={"width": 1600, "height": 900})
+        problems: list[str] = []
+        made.on("pageerror", lambda error: problems.append(str(error)))
+        made.on("console", lambda message: problems.append(message.text) if message.type == "error" else None)
+        made.goto(address)
+        made.get_by_role("heading", name="table 1").wait_for()
+        yield made
+        assert problems == []
+        browser.close()
+
+
+def tab_to(page, label: str) -> None:
+    """Press Tab until the control of this name has the focus: it must be reachable so."""
+    script = """() => { const one = document.activeElement;
+        return one.getAttribute("aria-label") || one.labels?.[0]?.textContent.trim() || one.textContent.trim(); }"""
+    for _ in range(120):
+        page.keyboard.press("Tab")
+        name = page.evaluate(script)
+        if name and name.startswith(label):
+            return
+    raise AssertionError(f"Tab does not lead to `{label}`")
+
+
+def test_a_profile_is_written_with_the_keyboard_alone(page, session, tmp_path):
+    tab_to(page, "Byte order")
+    page.keyboard.press("b")  # big
+    tab_to(page, "Make a rule for this kind")
+    page.keyboard.press("Enter")
+    page.get_by_label("These tables are").wait_for()
+    for label, value in (
+        ("Type of all fields", "uint"),
+        ("Kind", "telemetry"),
+        ("From a heading", r"^[\d.]+ {message} \({id}\)$"),
+    ):
+        tab_to(page, label)
+        page.keyboard.type(value)
+    tab_to(page, "a position alone is one unit")
+    page.keyboard.press("Space")
+    for label, value in (("Role of Byte", "^{byte}(?:-{last_byte})?$"), ("Role of Remarks", "text")):
+        tab_to(page, label)
+        page.keyboard.press("Control+a")
+        page.keyboard.type(value)
+    page.keyboard.press("Tab")
+    page.get_by_role("status").filter(has_text="0 errors, 1 warnings").wait_for()
+    assert page.locator("table.fields").inner_text().split("\n")[1].split("\t")[:4] == ["0", "8", "Mode", "uint"]
+    tab_to(page, "?3 ")  # the table of pins, which has no rule
+    page.keyboard.press("Enter")
+    page.get_by_role("heading", name="table 3").wait_for()
+    tab_to(page, "Ignore this kind")
+    page.keyboard.press("Enter")
+    page.get_by_role("status").filter(has_text="0 errors, 0 warnings").wait_for()
+    page.keyboard.press("Control+s")
+    page.get_by_role("status").filter(has_text="no findings").wait_for()
+
+    written = yaml.safe_load((tmp_path / "rules.yaml").read_text(encoding="utf-8"))
+    assert written["node"] == {"byte_order": "big", "bit_order": "lsb0"}
+    assert [rule.get("what", "message") for rule in written["rules"]] == ["message", "ignore"]
+    loaded = load([tmp_path / "icd" / "motor.yaml"])
+    assert loaded.findings == []
+    state, supply = loaded.icd.nodes[0].messages
+    assert [(f.name, f.at, f.bits) for f in state.fields] == [("Mode", 0, 8), ("Speed", 8, 16)]
+    assert (supply.name, supply.ids, supply.length) == ("Supply", (0x22,), 4)
+
+
+def test_the_picture_of_the_page_shows_the_tables_and_leads_to_them(page):
+    page.get_by_label("show table 2").first.click()
+    page.get_by_role("heading", name="table 2").wait_for()
+    outline = page.get_by_label("show table 2").first.bounding_box()
+    image = page.get_by_alt_text("page 1").bounding_box()
+    assert image["x"] < outline["x"] and outline["y"] + outline["height"] < image["y"] + image["height"]
+    assert outline["width"] > 0.2 * image["width"]
+    assert page.get_by_label("show table 2").first.get_attribute("aria-current") == "true"
+
+
+def test_the_rule_as_yaml_says_what_the_page_has_no_control_for(page):
+    page.get_by_role("button", name="Make a rule for this kind").click()
+    page.get_by_text("The rule as YAML").click()
+    rule = page.get_by_label("The rule as YAML")
+    rule.fill(rule.input_value() + "    set: [{where: {name: ^Speed$}, type: int}]\n")
+    page.get_by_role("button", name="Apply").click()
+    page.wait_for_function("document.getElementById('yaml').value.includes(\"set: [{where: {name: '^Speed$'}\")")
+    rule.fill("tables: {head: [")
+    page.get_by_role("button", name="Apply").click()
+    page.get_by_role("alert").filter(has_text="not YAML").wait_for()
+
+
+def test_the_command_serves_the_page_until_it_is_interrupted(tmp_path):
+    manual(tmp_path / "motor.pdf")
+    command = [sys.executable, "-m", "icdgen", "import", "motor.pdf", "--profile", "mine.yaml", "--workbench"]
+    with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+        line = running.stdout.readline()
+        address = re.search("http://[0-9.:]+", line)
+        assert line.startswith("motor.pdf: 3 tables; open http://127.0.0.1:") and address
+        assert len(ask(address[0], "/api/state")["tables"]) == 3
+        running.send_signal(signal.SIGINT)
+        assert running.wait(20) == 0
+        assert running.stderr.read() == ""
+    assert not (tmp_path / "mine.yaml").exists()
+    (tmp_path / "words.yaml").write_text("profile: 1\ncaptions: [Listing]\n", encoding="utf-8")
+    command[-2] = "words.yaml"
+    refused = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert refused.returncode == 2 and "the profile words.yaml has no rules" in refused.stderr
