@@ -18,24 +18,21 @@ PROGRAMS = {"c": "imu.c", "python": "imu.py", "rust": "imu.rs"}
 _MARK = re.compile(r"\s*(?:/\*|//|#) \[(?P<key>\w*)\](?: \*/)?\s*")
 
 BEGIN = """\
-# The API in each language
+# API in each language
 
-The same in every language, named by the same rule. The message is one of an ICD made for this page, [imu.yaml](api/imu.yaml), for
-it has a field of each kind; what is generated from the shipped ICDs looks the same. Each cell is taken from a program that a test
-builds and runs, [imu.c](api/imu.c), [imu.py](api/imu.py) and [imu.rs](api/imu.rs), and the page is made of them by
-`python -m scripts.api_page`.
+The generated API in C, Python and Rust, side by side. Names follow one rule in all languages. The messages are those of
+[imu.yaml](api/imu.yaml), an ICD with a field of each kind. Each cell is taken from a program that a test builds and runs:
+[imu.c](api/imu.c), [imu.py](api/imu.py), [imu.rs](api/imu.rs). `python -m scripts.api_page` generates this page.
 
-Messages hold raw values; physical values are computed on demand. A divided field is its parts, which are fields like any other.
-Setting a physical value refuses what the field cannot hold, and a raw one is looked at when the message is written; the limits of
-the ICD are data, which `allows` asks, since only the device knows when they hold. What is refused is a status in C
-(`ICD_ERROR_RANGE`), an exception in Python (`RangeError`) and a `Result` in Rust (`Error::Range`). The
-JavaScript of the documentation site reads and writes the same values, and is no library.
+Messages have raw values; physical values are computed when they are read. A split field is replaced by its parts. Setting
+a physical value rejects what the field cannot represent; raw values are checked when the message is encoded. Limits of the
+ICD are data for `allows`, because only the device knows when they apply. An error is a status in C (`ICD_ERROR_RANGE`), an
+exception in Python (`RangeError`) and a `Result` in Rust (`Error::Range`).
 """
 END = """
-A program in each language shows the same at work: [C](../guides/driver-in-c.md), [Rust](../guides/rust.md),
-[Python](../guides/python.md); [the wire layer](wire.md) describes buses, files and logs. In C an
-event of a message that was not asked for, or of another node, is refused by `imu_receive_state` with `ICD_ERROR_UNKNOWN_ID`; in
-Rust another node's message does not compile.
+Complete programs: [C](../guides/driver-in-c.md), [Rust](../guides/rust.md), [Python](../guides/python.md).
+[Wire layer](wire.md) describes buses, files and logs. In C, `imu_receive_state` rejects an event of another message or
+node with `ICD_ERROR_UNKNOWN_ID`; in Rust, a message of another node does not compile.
 """
 
 

@@ -11,42 +11,42 @@ from tests.features.measure import Cell
 
 PAGE = documents.DOCS / "reference" / "features.md"
 OUTPUTS = {
-    "codec": ("codec", "the reference codec reads frames otherwise"),
+    "codec": ("codec", "the reference codec reads frames differently"),
     "c": (
         "C",
-        "other code is generated, and the conformance run builds and asks what it makes of an ICD that has the feature",
+        "the generated code differs, and the conformance run compiles it and compares it with the reference codec",
     ),
-    "python": ("Python", "the same"),
-    "rust": ("Rust", "the same"),
-    "javascript": ("JavaScript", "the same, of the decoder on the documentation site"),
-    "vectors": ("vectors", "the golden vectors are others"),
+    "python": ("Python", "as for C"),
+    "rust": ("Rust", "as for C"),
+    "javascript": ("JavaScript", "as for C, for the decoder of the documentation site"),
+    "vectors": ("vectors", "the golden vectors differ"),
     "random": ("random", "random ICDs of the conformance run have it"),
-    "mutation": ("mutation", "there are mutants of it, which the golden vectors must notice"),
-    "fuzz": ("fuzz", "the ICDs on which the fuzz harnesses are run in the tests have it"),
-    "fmt": ("fmt", "`icdgen fmt` lays the example out, and it means the same"),
-    "check": ("check", "`icdgen check` finds the fault if it is said wrongly"),
-    "diff": ("diff", "`icdgen diff` tells of the change"),
+    "mutation": ("mutation", "there are mutants of it, which the golden vectors must detect"),
+    "fuzz": ("fuzz", "the ICDs of the fuzz harnesses have it"),
+    "fmt": ("fmt", "`icdgen fmt` formats the example and keeps its meaning"),
+    "check": ("check", "`icdgen check` reports an error if the feature is used wrongly"),
+    "diff": ("diff", "`icdgen diff` reports the change"),
     "show": ("show", "`icdgen show` prints something else"),
-    "decode": ("decode", "`icdgen decode` prints something else of the same frames"),
-    "encode": ("encode", "`icdgen encode` makes, or says, something else of the same values"),
-    "site": ("site", "the pages of the documentation site are others"),
+    "decode": ("decode", "`icdgen decode` prints something else for the same frames"),
+    "encode": ("encode", "`icdgen encode` prints something else for the same values"),
+    "site": ("site", "the pages of the documentation site differ"),
     "simulator": (
         "simulator",
-        "a simulated device, set to the same values and sent the same telecommands, answers something else",
+        "a simulated device with the same values and telecommands responds differently",
     ),
-    "log": ("log", "a log of the same bytes, converted to CSV, says something else"),
-    "numpy": ("numpy", "`decode_many` and `decode_table` of the generated Python give other columns"),
-    "arrow": ("Arrow", "the same log, converted to Parquet, says something else"),
-    "xtce": ("XTCE", "the file for ground systems says something else, which comes back if it is imported"),
+    "log": ("log", "a log of the same bytes, converted to CSV, differs"),
+    "numpy": ("numpy", "`decode_many` and `decode_table` of the generated Python return other columns"),
+    "arrow": ("Arrow", "the same log, converted to Parquet, differs"),
+    "xtce": ("XTCE", "the file for ground systems differs, and the feature is kept when it is imported again"),
 }
 
 _BEGIN = """\
 # Features and outputs
 
-What the [format](icd-format.md) can say, and whether each output knows it. The table is measured by `python -m tests.features`,
-and a test fails if an output lacks a feature without a reason, or has one that it is said to lack. Each feature is tried on its
-example in the documents: an output has it (✓) if it works on the example, and says something else when the example says that
-feature otherwise.
+Features of the [ICD format](icd-format.md), and which output supports each. `python -m tests.features` measures the
+table. Each feature is tried on its example in the documents. An output supports the feature (✓) if it accepts the example
+and its result changes when the example uses the feature differently. A number refers to the reason below the table why
+an output does not support the feature or does not need it. A test fails if the table is not true.
 """
 
 
@@ -62,7 +62,7 @@ def page(rows: Mapping[str, tuple[Feature, dict[str, Cell]]]) -> str:
         )
     lines += ["", *(f"{number}. {reason[0].upper()}{reason[1:]}." for number, reason in enumerate(reasons, 1))]
     lines += ["", f"Not measured yet: {', '.join(unmeasured()).lower()}."] if unmeasured() else []
-    lines += ["", "| output | what is asked of it |", "|---|---|"]
+    lines += ["", "| output | how support is measured |", "|---|---|"]
     lines += [f"| {head} | {asked} |" for head, asked in OUTPUTS.values()]
     return "\n".join(lines) + "\n"
 
