@@ -64,7 +64,7 @@ def test_its_rust_does_what_it_says(made, tmp_path):
         ("imu.py", "# []\n", "", "does not end"),
         (
             "rows.yaml",
-            "key: single, does: read it in single precision, without:",
+            "key: single, does: read the value in single precision, without:",
             "key: single, does: it, or:",
             "[single]",
         ),
