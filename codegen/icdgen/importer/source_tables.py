@@ -167,10 +167,23 @@ def _rows(table: Table) -> list[SourceRow]:
     printed += [(_printed(row), row.page, row.line) for row in table.rows]
     edges = _columns([row for row, _, _ in printed])
     made: list[SourceRow] = []
+    above: dict[int, Cell] = {}  # first column of a cell of the row above -> the cell
     for row, page, line in printed:
-        cells = _placed(row, edges)
-        _join_above(cells, row, made)
-        made.append(SourceRow([cell for cell, _ in cells], page, line))
+        placed = _placed(row, edges)
+        is_open = row.continues if len(row.continues) == len(placed) else (False,) * len(placed)
+        cells: list[Cell] = []
+        here: dict[int, Cell] = {}
+        for (cell, column), goes_on in zip(placed, is_open, strict=True):
+            upper = above.get(column)
+            if goes_on and upper is not None and upper.columns == cell.columns:
+                upper.text = f"{upper.text}\n{cell.text}".strip("\n")
+                upper.rows += 1
+                here[column] = upper
+            else:
+                cells.append(cell)
+                here[column] = cell
+        above = here
+        made.append(SourceRow(cells, page, line))
     return made
 
 
@@ -210,21 +223,6 @@ def _placed(row: PrintedRow, edges: list[float]) -> list[tuple[Cell, int]]:
         elif text and made:
             made[-1][0].text = f"{made[-1][0].text}\n{text}".strip("\n")
     return made
-
-
-def _join_above(cells: list[tuple[Cell, int]], row: PrintedRow, made: list[SourceRow]) -> None:
-    """Take the cells out of ``cells`` that have no rule above them, and lengthen those above, if they are as wide."""
-    if not made or not any(row.continues) or len(row.continues) != len(cells):
-        return
-    open_cells = [place for place, is_open in zip(cells, row.continues, strict=True) if is_open]
-    above = SourceTable(0, made).grid()[-1]
-    for cell, column in open_cells:
-        slot = above[column] if column < len(above) else None
-        if slot is None or slot.column != column or slot.cell.columns != cell.columns:
-            continue
-        slot.cell.text = f"{slot.cell.text}\n{cell.text}".strip("\n")
-        slot.cell.rows += 1
-        cells.remove((cell, column))
 
 
 def count_runs(tables: list[SourceTable]) -> None:
