@@ -7,6 +7,7 @@ from pathlib import Path
 from icdgen.importer import reading, source_tables, table_files
 from icdgen.importer.document import Document
 from icdgen.importer.profile import Profile
+from icdgen.importer.reading import c_structs
 from icdgen.importer.source_tables import SourceTable
 from icdgen.importer.understand import byte_lines
 
@@ -23,6 +24,8 @@ def read(
         tables = table_files.read(path)
         return table_files.document_of(path), tables
     document = reading.read(path, profile, progress, jobs, pages)
+    if profile.has_rules:
+        c_structs.in_document(document)
     byte_lines.tables(document)
     document.count_tables()
     return document, source_tables.from_document(document)

@@ -38,6 +38,10 @@ def read(
     kind = _kind(path, start)
     if pages is not None:
         raise UserError(f"{name} has no pages", "leave --pages out")
+    if kind == "c":
+        from icdgen.importer.reading import c_structs
+
+        return c_structs.read_header(path)
     if kind in ("csv", "xlsx"):
         from icdgen.importer.reading import spreadsheet
 
@@ -63,7 +67,7 @@ def _kind(path: Path, start: bytes) -> str:
         return {".xlsx": "xlsx", ".xlsm": "xlsx", ".docx": "docx"}.get(suffix, "")
     if suffix in (".html", ".htm", ".xhtml") or start.lstrip()[:15].lower().startswith((b"<!doctype html", b"<html")):
         return "html"
-    return {".csv": "csv", ".md": "markdown", ".markdown": "markdown"}.get(suffix, "")
+    return {".csv": "csv", ".md": "markdown", ".markdown": "markdown", ".h": "c", ".c": "c"}.get(suffix, "")
 
 
 def _refused(name: str, message: str, help: str) -> Findings:

@@ -1,0 +1,453 @@
+"""Structs and enumerations of C -> tables: of header files, and of `typedef struct` in the text of documents.
+
+A struct is a table with the columns `COLUMNS`, so that rules read it like any other: its caption is the name of the struct, the
+texts before it are the comment above it and `sizeof N`. Positions are those of the System V ABI for little-endian machines, which
+gcc and clang follow: bit fields from the least significant bit, members aligned to their size unless the struct is packed.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from icdgen.diagnostics import Finding, Findings, Place
+from icdgen.errors import UserError
+from icdgen.importer.document import Block, Cell, Document, Heading, SourceRow, Spot, Table, Text, Trouble
+from icdgen.importer.words import plain
+
+CODE = "IMP002"
+COLUMNS = ("Byte", "Bit", "Bits", "Type", "Name", "Count", "Members", "Comment")
+MOST_ELEMENTS = 64  # of an array of structs, each of which is a group of fields
+_SIZES = {
+    "_Bool": ("bool", 8), "char": ("char", 8), "signed char": ("int", 8), "unsigned char": ("uint", 8), "short": ("int", 16),
+    "unsigned short": ("uint", 16), "int": ("int", 32), "unsigned int": ("uint", 32), "long long": ("int", 64),
+    "unsigned long long": ("uint", 64), "float": ("float", 32), "double": ("float", 64),
+}  # fmt: skip
+_STANDARD = {
+    "uint8_t": "unsigned char", "uint16_t": "unsigned short", "uint32_t": "unsigned int", "uint64_t": "unsigned long long",
+    "int8_t": "signed char", "int16_t": "short", "int32_t": "int", "int64_t": "long long",
+    "bool": "_Bool",
+}  # fmt: skip
+_PRELUDE = " ".join(f"typedef {base} {name};" for name, base in _STANDARD.items())
+_PACKED = r"(?:__attribute__\s*\(\(\s*(?:__)?packed(?:__)?\s*\)\)|\b__packed\b|\b__PACKED\b|\bPACKED\b)"
+_BEGINS = re.compile(
+    rf"\b(?:typedef\s+)?(?:{_PACKED}\s*)?(?:struct|enum|union)\b[^;{{}}()=]*(?:{_PACKED})?[^;{{}}()=]*\{{"
+)
+_TYPEDEF = re.compile(r"\btypedef\s+[\w\s]+?\s\w+\s*;")
+_COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*|\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*'", re.S)
+_DEFINE = re.compile(
+    r"^[ \t]*#[ \t]*define[ \t]+(\w+)[ \t]+\(?[ \t]*(0[xX][0-9a-fA-F]+|[0-9]+)[uUlL]*[ \t]*\)?[ \t]*$", re.M
+)
+_DIRECTIVE = re.compile(r"^[ \t]*#(?:[^\n\\]|\\.|\\\n)*", re.M)
+_PRAGMA = re.compile(r"#\s*pragma\s+pack\s*\(\s*(?:(push)\s*,?\s*)?([0-9]+)?\s*(pop)?\s*\)")
+
+
+class Unreadable(Exception):
+    """A struct that cannot be a table, with the reason and a remedy."""
+
+    def __init__(self, message: str, help: str) -> None:
+        super().__init__(message)
+        self.message, self.help = message, help
+
+
+@dataclass
+class Member:
+    """A member of a struct at its place; ``bit`` is set for bit fields, ``count`` for arrays."""
+
+    byte: int
+    bits: int
+    kind: str
+    name: str
+    bit: int | None = None
+    count: int = 0
+    members: str = ""
+    line: int | None = None
+
+
+@dataclass
+class Layout:
+    """The members of a struct, its size and its alignment in bytes, and where padding stands."""
+
+    members: list[Member] = field(default_factory=list)
+    size: int = 0
+    alignment: int = 1
+    padding: list[str] = field(default_factory=list)
+
+
+def read_header(path: Path) -> Document:
+    """Return the document of a header file. Raises `Findings` if it is no C, `UserError` without pycparser."""
+    try:
+        text = path.read_bytes().decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise Findings(
+            [Finding(CODE, f"the file is not UTF-8: {error.reason}", Place(str(path)), "save it as UTF-8")]
+        ) from None
+    document = Document(str(path), needs_rules=True)
+    try:
+        document.blocks, document.troubles = read_structs(text)
+    except Unreadable as error:
+        line = re.match(r"line ([0-9]+): ", error.message)
+        place = Place(str(path), int(line[1])) if line else Place(str(path))
+        raise Findings([Finding(CODE, error.message, place, error.help)]) from None
+    return document
+
+
+def in_document(document: Document) -> None:
+    """Put the tables of structs that a document prints as text behind their lines; those that are no C stay text."""
+    made: list[Block] = []
+    waiting: list[Text] = []
+    for block in document.blocks:
+        made.append(block)
+        begins = isinstance(block, Text) and re.match(r"(?:typedef\s+)?(?:\w+\s+)?struct\b[^;]*$", block.text.strip())
+        if isinstance(block, Text) and (waiting or begins):
+            waiting.append(block)
+            text = "\n".join(line.text for line in waiting)
+            if "}" in block.text and text.count("{") == text.count("}") and block.text.rstrip().endswith(";"):
+                try:
+                    tables, troubles = read_structs(text)
+                except (Unreadable, UserError):
+                    tables, troubles = [], []
+                for table in tables:
+                    if isinstance(table, Table):
+                        table.page, table.line = waiting[0].page, waiting[0].line
+                        for row in table.source_rows:
+                            row.page, row.line = waiting[0].page, None
+                        made.append(table)
+                document.troubles += [t._replace(spot=Spot(waiting[0].page, waiting[0].line)) for t in troubles]
+                waiting = []
+        elif isinstance(block, (Table, Heading)):
+            waiting = []
+    document.blocks = made
+
+
+def read_structs(text: str) -> tuple[list[Block], list[Trouble]]:
+    """Return the structs and enumerations of a text in C as blocks. Raises `Unreadable`, and `UserError` without pycparser."""
+    try:
+        from pycparser import c_ast, c_parser
+    except ImportError:
+        raise UserError("reading structs in C needs pycparser", "pip install 'icdgen[import]'") from None
+    source = _Source(text)
+    try:
+        tree = c_parser.CParser().parse(f"{_PRELUDE}\n#line 1\n{source.code}", "text")
+    except c_parser.ParseError as error:
+        match = re.match(r"[^:]*:([0-9]+):[0-9]+: (.*)", str(error))
+        line, reason = (
+            (int(match[1]), match[2]) if match else (_wrong_line(source, c_parser), str(error).partition(": ")[2])
+        )
+        message = f"line {line}: this is no C that can be read: {reason}"
+        raise Unreadable(message, "declare its types in the same file, and take out macros") from None
+    reader = _Reader(source, c_ast)
+    for declaration in tree.ext:
+        if (
+            declaration.coord is not None
+            and declaration.coord.file == "text"
+            and getattr(declaration, "name", "") in _STANDARD
+        ):
+            continue
+        reader.declaration(declaration)
+    return reader.blocks, reader.troubles
+
+
+def _wrong_line(source: _Source, c_parser: Any) -> int:
+    """The line of the first declaration that the parser refuses, where it does not tell the line."""
+    for line, code in source.beginnings:
+        try:
+            c_parser.CParser().parse(f"{_PRELUDE}\n{code}", "text")
+        except c_parser.ParseError:
+            return line
+    return 1
+
+
+class _Source:
+    """A text in C with its comments, constants and packing taken out; the lines keep their numbers."""
+
+    def __init__(self, text: str) -> None:
+        self.comments: dict[int, str] = {}  # line on which a comment ends -> its text
+        self.alone: set[int] = set()  # of these, those without code in front of them
+        code = _COMMENT.sub(self._comment(text), text)
+        constants = {match[1]: match[2] for match in _DEFINE.finditer(code)}
+        self.packed: set[int] = set()  # lines of structs that are packed
+        pragmas = [(code.count("\n", 0, m.start()) + 1, m) for m in _PRAGMA.finditer(code)]
+        code = _DIRECTIVE.sub(lambda m: "\n" * m[0].count("\n"), code)
+        if constants:
+            words = "|".join(map(re.escape, constants))
+            code = re.sub(rf"\b(?:{words})\b", lambda m: constants[m[0]], code)
+        self.code = self._declarations(code, pragmas)
+
+    def _comment(self, text: str) -> Any:
+        def take(match: re.Match[str]) -> str:
+            if match[0][0] in "\"'":
+                return match[0]
+            line = text.count("\n", 0, match.end()) + 1
+            words = re.sub(r"^[/*!<\s]+|[*/\s]+$", "", match[0])
+            words = plain(re.sub(r"\n\s*\*+", "\n", words))
+            first = text.count("\n", 0, match.start()) + 1
+            begin = text.rfind("\n", 0, match.start()) + 1
+            is_alone = not text[begin : match.start()].strip()
+            if is_alone and line - 1 in self.alone and match[0].startswith("//"):
+                words = f"{self.comments[line - 1]} {words}"
+            self.comments[line if is_alone else first] = words
+            if is_alone:
+                self.alone.add(line)
+            return " " + "\n" * match[0].count("\n")
+
+        return take
+
+    def _declarations(self, code: str, pragmas: list[tuple[int, re.Match[str]]]) -> str:
+        """The struct, enum and typedef declarations, everything else made blank."""
+        kept = [(match.start(), match.end()) for match in _TYPEDEF.finditer(code)]
+        at = 0
+        while (match := _BEGINS.search(code, at)) is not None:
+            depth, end = 1, match.end()
+            while end < len(code) and depth:
+                depth += {"{": 1, "}": -1}.get(code[end], 0)
+                end += 1
+            semicolon = code.find(";", end)
+            end = semicolon + 1 if semicolon >= 0 else len(code)
+            line = code.count("\n", 0, match.start()) + 1
+            pack = next((m for number, m in reversed(pragmas) if number < line), None)
+            if re.search(_PACKED, code[match.start() : end]) or (pack is not None and pack[2] == "1" and not pack[3]):
+                self.packed |= set(range(line, code.count("\n", 0, end) + 2))
+            kept.append((match.start(), end))
+            at = end
+        made, last = [], 0
+        self.beginnings: list[tuple[int, str]] = []  # line of each declaration, and the code up to its end
+        for start, end in sorted(kept):
+            if start < last:
+                continue
+            made += ["\n" * code.count("\n", last, start), " " + re.sub(_PACKED, " ", code[start:end])]
+            last = end
+            self.beginnings.append((code.count("\n", 0, start) + 1, "".join(made)))
+        return "".join(made) + "\n"
+
+    def above(self, line: int) -> str:
+        """The comment that ends on the line above."""
+        return self.comments.get(line - 1, "") if line - 1 in self.alone else ""
+
+    def beside(self, line: int | None) -> str:
+        """The comment behind a member, or alone above it."""
+        if line is None:
+            return ""
+        return (self.comments.get(line, "") if line not in self.alone else "") or self.above(line)
+
+
+class _Reader:
+    """Makes tables of the declarations of a file; ``ast`` is pycparser's module of nodes."""
+
+    def __init__(self, source: _Source, ast: Any) -> None:
+        self.source, self.ast = source, ast
+        self.blocks: list[Block] = []
+        self.troubles: list[Trouble] = []
+        self.typedefs: dict[str, Any] = {}
+        self.structs: dict[str, Any] = {}
+        self.enums: dict[str, list[tuple[int, str]]] = {}
+        self.values: dict[str, int] = {}  # of enumerators, which may size arrays
+
+    def declaration(self, node: Any) -> None:
+        """Take a declaration into account; a struct with members becomes a table."""
+        if isinstance(node, self.ast.Typedef):
+            self.typedefs[node.name] = node.type
+        inner = (
+            node.type.type
+            if isinstance(getattr(node, "type", None), self.ast.TypeDecl)
+            else getattr(node, "type", None)
+        )
+        name = getattr(node, "name", None) or getattr(inner, "name", None) or ""
+        if isinstance(inner, self.ast.Enum) and inner.values is not None:
+            self.enum(inner, name)
+        elif isinstance(inner, self.ast.Struct) and inner.decls is not None:
+            if inner.name:
+                self.structs[inner.name] = inner
+            self.struct(inner, name)
+
+    def enum(self, node: Any, name: str) -> None:
+        value, members = -1, []
+        for one in node.values.enumerators:
+            value = self.number(one.value) if one.value is not None else value + 1
+            members.append((value, one.name))
+            self.values[one.name] = value
+        for key in filter(None, (name, node.name)):
+            self.enums[key] = members
+        rows = [["Value", "Name", "Comment"]]
+        rows += [
+            [str(v), n, self.source.beside(one.coord.line)]
+            for (v, n), one in zip(members, node.values.enumerators, strict=True)
+        ]
+        self.add(f"enum {name}", node.coord.line, rows, [])
+
+    def struct(self, node: Any, name: str) -> None:
+        line = node.coord.line
+        try:
+            layout = self.layout(node)
+        except Unreadable as error:
+            self.troubles.append(
+                Trouble("IMP037", f"struct `{name}`: {error.message}", Spot(line=line), error.help, "error")
+            )
+            return
+        if layout.padding:
+            self.troubles.append(
+                Trouble("IMP038", f"struct `{name}` is not packed: padding stands {', '.join(layout.padding)}", Spot(line=line),
+                        "if it is sent as it lies in memory, this depends on the compiler; else mark it as packed")
+            )  # fmt: skip
+        rows = [list(COLUMNS)]
+        for one in layout.members:
+            count, bit = str(one.count) if one.count else "", "" if one.bit is None else str(one.bit)
+            comment = self.source.beside(one.line)
+            rows.append([str(one.byte), bit, str(one.bits), one.kind, one.name, count, one.members, comment])
+        self.add(name, line, rows, [f"sizeof {layout.size}"])
+
+    def add(self, caption: str, line: int, rows: list[list[str]], texts: list[str]) -> None:
+        above = self.source.above(line)
+        self.blocks += [Text(text, line=line) for text in (above, *texts) if text]
+        self.blocks.append(
+            Table(caption=caption, line=line, source_rows=[SourceRow(list(map(Cell, row)), line=line) for row in rows])
+        )
+
+    # --- layout ----------------------------------------------------------------------------------------------------
+
+    def layout(self, node: Any) -> Layout:
+        """The places of the members. Raises `Unreadable` for what is no sequence of bytes."""
+        if node.decls is None:
+            inner = self.structs.get(node.name)
+            if inner is None:
+                raise Unreadable(f"struct `{node.name}` is not declared", "add its declaration in front of this one")
+            node = inner
+        made = Layout()
+        is_packed = node.coord.line in self.source.packed
+        at = 0  # bits used so far
+        for one in node.decls:
+            if one.bitsize is not None:
+                kind, size = self.scalar(one.type)
+                width = self.number(one.bitsize)
+                # A bit field of a struct that is not packed crosses no boundary of its type (System V ABI, "Bit-Fields").
+                crosses = at // size != (at + width - 1) // size if width else True
+                if width == 0 or (crosses and not is_packed):
+                    at = self.aligned(at, size, made, one.name or "")
+                if one.name and width:
+                    kind = "int" if kind == "int" else "uint"
+                    made.members.append(Member(at // 8, width, kind, one.name, at % 8, line=one.coord.line))
+                    made.alignment = max(made.alignment, 1 if is_packed else size // 8)
+                at += width
+                continue
+            members, size, alignment = self.member(one)
+            alignment = 1 if is_packed else alignment
+            at = self.aligned(at, 8 * alignment, made, one.name or "an inner struct")
+            made.alignment = max(made.alignment, alignment)
+            for inner_member in members:
+                inner_member.byte += at // 8
+            made.members += members
+            at += 8 * size
+        made.size = self.aligned(at, 8 * made.alignment, made, "") // 8
+        return made
+
+    def aligned(self, at: int, boundary: int, made: Layout, name: str) -> int:
+        """The next multiple of a number of bits; whole bytes on the way are noted as padding."""
+        padding = -at % boundary
+        if padding >= 8:
+            where = f"in front of `{name}`" if name else "at the end"
+            made.padding.append(f"{where} ({padding // 8} byte{'s' if padding >= 16 else ''})")
+        return at + padding
+
+    def member(self, one: Any) -> tuple[list[Member], int, int]:
+        """The members that a declaration gives, counted from its own beginning, its size and its alignment in bytes."""
+        kind, counts = one.type, []
+        while isinstance(kind, self.ast.ArrayDecl):
+            if kind.dim is None:
+                raise Unreadable(f"`{one.name}` has no size", "write its size, or describe it in the ICD by hand")
+            counts.append(self.number(kind.dim))
+            kind = kind.type
+        if isinstance(kind, self.ast.PtrDecl):
+            raise Unreadable(f"`{one.name}` is a pointer", "a struct with pointers is no frame")
+        inner = self.resolved(kind)
+        if isinstance(inner, (self.ast.Struct, self.ast.Union)):
+            if isinstance(inner, self.ast.Union):
+                raise Unreadable(
+                    f"`{one.name or 'a member'}` is a union", "take one of its members in a copy of the header"
+                )
+            layout = self.layout(inner)
+            total = 1
+            for count in counts:
+                total *= count
+            if total > MOST_ELEMENTS:
+                raise Unreadable(f"`{one.name}` has {total} elements", f"arrays of structs may have {MOST_ELEMENTS}")
+            made = []
+            for index in range(total):
+                prefix = f"{one.name}[{index}]." if counts else f"{one.name}." if one.name else ""
+                made += [
+                    Member(
+                        m.byte + index * layout.size,
+                        m.bits,
+                        m.kind,
+                        prefix + m.name,
+                        m.bit,
+                        m.count,
+                        m.members,
+                        one.coord.line,
+                    )
+                    for m in layout.members
+                ]
+            return made, layout.size * total, layout.alignment
+        name, size = self.scalar(kind)
+        count = 1
+        for n in counts:
+            count *= n
+        members = "; ".join(f"{value}: {label}" for value, label in self.members_of(kind))
+        shown = name if name in ("char", "bool", "enum") else f"{name}{size}"
+        shown = f"uint{size}" if name in ("bool", "enum") else shown
+        place = Member(0, size, shown, one.name, None, count if counts else 0, members, one.coord.line)
+        return [place], size // 8 * count, size // 8
+
+    def resolved(self, kind: Any) -> Any:
+        """The type behind typedefs."""
+        inner = kind.type if isinstance(kind, self.ast.TypeDecl) else kind
+        while isinstance(inner, self.ast.IdentifierType) and len(inner.names) == 1 and inner.names[0] in self.typedefs:
+            found = self.typedefs[inner.names[0]]
+            inner = found.type if isinstance(found, self.ast.TypeDecl) else found
+        return inner
+
+    def scalar(self, kind: Any) -> tuple[str, int]:
+        """Kind and size in bits of a number. Raises `Unreadable` for types whose size no standard states."""
+        inner = self.resolved(kind)
+        if isinstance(inner, self.ast.Enum):
+            return "enum", 32
+        if not isinstance(inner, self.ast.IdentifierType):
+            raise Unreadable("a member is neither a number nor a struct", "describe it in the ICD by hand")
+        names = [_STANDARD.get(name, name) for name in inner.names]
+        spelled = " ".join(names)
+        words = [word for word in spelled.split() if word not in ("int", "signed", "unsigned")]
+        sign = (
+            "unsigned "
+            if "unsigned" in spelled.split()
+            else "signed " if words == ["char"] and "signed" in spelled.split() else ""
+        )
+        key = (sign + " ".join(words or ["int"])).strip()
+        if key not in _SIZES:
+            raise Unreadable(
+                f"the size of the type `{spelled}` depends on the compiler", "write one of fixed size, such as uint32_t"
+            )
+        return _SIZES[key]
+
+    def members_of(self, kind: Any) -> Iterator[tuple[int, str]]:
+        """The enumerators of an enumeration, by its tag or the name of its typedef."""
+        inner = kind.type if isinstance(kind, self.ast.TypeDecl) else kind
+        names = list(inner.names) if isinstance(inner, self.ast.IdentifierType) else []
+        resolved = self.resolved(kind)
+        if isinstance(resolved, self.ast.Enum):
+            names.append(resolved.name)
+        yield from next((self.enums[name] for name in names if name in self.enums), [])
+
+    def number(self, node: Any) -> int:
+        """The value of a constant expression. Raises `Unreadable`."""
+        if isinstance(node, self.ast.Constant):
+            return int(node.value.rstrip("uUlL"), 0)
+        if isinstance(node, self.ast.ID) and node.name in self.values:
+            return self.values[node.name]
+        if isinstance(node, self.ast.UnaryOp) and node.op == "-":
+            return -self.number(node.expr)
+        if isinstance(node, self.ast.BinaryOp) and node.op in ("+", "-", "*", "<<"):
+            left, right = self.number(node.left), self.number(node.right)
+            return {"+": left + right, "-": left - right, "*": left * right, "<<": left << min(right, 64)}[node.op]
+        raise Unreadable("a size or value is no constant that can be computed", "write it as a number")

@@ -1,0 +1,169 @@
+"""Structs in C, of headers and of documents, are tables that rules read; their layout is what gcc makes of them."""
+
+from __future__ import annotations
+
+import random
+import shutil
+import subprocess
+
+import pytest
+
+from icdgen.diagnostics import Findings
+from icdgen.importer import profile, run, sources
+from icdgen.importer.reading import c_structs
+from tests.importer.rules.drawing import draw, heading, text
+from tests.importer.rules.test_rules import NODE, fields
+
+HEADER = """/* The link of the motor. */
+#ifndef MOTOR_H
+#define MOTOR_H
+#include <stdint.h>
+#define CHANNELS 3  // of the converter
+
+enum mode { IDLE, RUN = 4, FAULT };
+typedef struct { int16_t x, y; } __attribute__((packed)) vector_t;
+
+/** State of the motor, id 0x21 */
+typedef struct __attribute__((packed)) {
+    uint8_t mode : 3;          /**< what it does */
+    uint8_t : 1;
+    uint8_t fault : 4;
+    uint16_t speed;            // rpm
+    int32_t position[CHANNELS];
+    char name[8];
+    vector_t field[2];
+    float current;             /* "A; not mA" */
+} motor_state_t;
+
+void motor_send(const motor_state_t *state);
+static inline int motor_twice(int a) { return 2 * a; }
+#endif
+"""
+RULES = NODE + r"""types: {char: {type: text}}
+rules:
+  - tables: {head: Byte | Bit | Bits | Type | Name, before: id 0x}
+    message: {caption: '^{message}_t$', before: ['id {id}$', '^sizeof {length}$'], kind: telemetry}
+    columns: {Byte: byte, Bit: bit, Bits: bits, Type: type, Name: name, Count: count, Members: members, Comment: text}
+  - {what: ignore, tables: {head: '~.'}}
+"""
+FIELDS = [
+    (0, 3, "mode"), (4, 4, "fault"), (8, 16, "speed"), (24, 32, "position"), (120, 64, "name"), (184, 16, "field[0].x"),
+    (200, 16, "field[0].y"), (216, 16, "field[1].x"), (232, 16, "field[1].y"), (248, 32, "current"),
+]  # fmt: skip
+
+
+def test_a_rule_reads_the_structs_of_a_header(tmp_path):
+    (tmp_path / "motor.h").write_text(HEADER, encoding="utf-8")
+    (tmp_path / "rules.yaml").write_text(RULES, encoding="utf-8")
+    result, trees = run.run(tmp_path / "motor.h", profile.load(tmp_path / "rules.yaml"), prose=True)
+    assert [t.message for t in result.troubles if t.severity == "error"] == []
+    (message,) = trees["motor"]["messages"]
+    assert (message["name"], message["id"], message["length"]) == ("motor_state", 0x21, 35)
+    assert fields(trees["motor"]) == FIELDS
+    by_name = {field["name"]: field for field in message["fields"]}
+    assert (by_name["position"]["count"], by_name["position"]["type"], by_name["name"]["type"]) == (3, "int", "text")
+    assert (by_name["current"]["type"], by_name["speed"]["summary"], by_name["current"]["summary"]) == (
+        "float",
+        "rpm",
+        '"A; not mA"',
+    )
+
+
+def test_a_rule_reads_the_structs_that_a_document_prints(tmp_path):
+    lines = [
+        "typedef __packed struct",
+        "{",
+        "  uint8_t robot_id;",
+        "  uint16_t level : 5;",
+        "  uint16_t rest : 11;",
+        "  float speed;",
+        "} robot_t;",
+    ]
+    draw(tmp_path / "motor.pdf", [heading("4.1 Robot (0x0201)", 2), *(text(line) for line in lines), text("The end.")])
+    rules = NODE + r"""rules:
+  - tables: {head: Byte | Bit}
+    message: {heading: '^[\d.]+ {message} \({id}\)$', kind: telemetry}
+    columns: {Byte: byte, Bit: bit, Bits: bits, Type: type, Name: name, Count: count, Members: members, Comment: text}
+"""
+    (tmp_path / "rules.yaml").write_text(rules, encoding="utf-8")
+    result, trees = run.run(tmp_path / "motor.pdf", profile.load(tmp_path / "rules.yaml"), jobs=1)
+    assert [t.message for t in result.troubles if t.severity == "error"] == []
+    assert fields(trees["motor"]) == [(0, 8, "robot_id"), (8, 5, "level"), (13, 11, "rest"), (24, 32, "speed")]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("struct a { uint8_t *p; };", "struct `a`: `p` is a pointer"),
+        ("struct a { long n; };", "the size of the type `long` depends on the compiler"),
+        ("struct a { union { int i; float f; } u; };", "struct `a`: `u` is a union"),
+        ("struct a { uint8_t n; uint8_t data[]; };", "`data` has no size"),
+        ("struct a { struct b { int8_t x; } b[100]; };", "`b` has 100 elements"),
+    ],
+)
+def test_what_is_no_frame_is_an_error(tmp_path, text, message):
+    (tmp_path / "a.h").write_text(text, encoding="utf-8")
+    document, _ = sources.read(tmp_path / "a.h", profile.load())
+    errors = [t for t in document.troubles if t.severity == "error"]
+    assert len(errors) == 1 and message in errors[0].message and errors[0].help
+
+
+def test_padding_is_a_warning_and_a_header_that_is_no_c_a_finding(tmp_path):
+    (tmp_path / "a.h").write_text("struct a { uint8_t n; uint32_t m; uint16_t k; };", encoding="utf-8")
+    document, (table,) = sources.read(tmp_path / "a.h", profile.load())
+    assert "padding stands in front of `m` (3 bytes), at the end (2 bytes)" in document.troubles[0].message
+    assert table.before == ["sizeof 12"]
+    (tmp_path / "a.h").write_text("\nstruct a {\n  unknown_t x;\n};", encoding="utf-8")
+    with pytest.raises(Findings) as caught:
+        sources.read(tmp_path / "a.h", profile.load())
+    assert caught.value.findings[0].place.line == 2
+
+
+def made_up(random: random.Random) -> str:
+    """A struct of random members, packed or not."""
+    types = ["uint8_t", "int8_t", "uint16_t", "int16_t", "uint32_t", "uint64_t", "float", "double"]
+    members = []
+    for index in range(random.randint(1, 9)):
+        kind = random.choice(types)
+        if random.random() < 0.5 and kind.startswith("uint"):
+            bits = int(kind[4:-2])
+            members.append(f"{kind} m{index} : {random.randint(1, bits)};")
+            if random.random() < 0.15:
+                members.append(f"{kind} : {random.choice([0, 1, 3])};")
+        else:
+            members.append(f"{kind} m{index}{random.choice(['', '', '[3]'])};")
+    packed = random.choice(["", "__attribute__((packed)) "])
+    return f"struct {packed}made {{ {' '.join(members)} }};"
+
+
+@pytest.mark.skipif(shutil.which("gcc") is None, reason="no gcc")
+def test_the_layout_is_that_of_gcc(tmp_path):
+    structs = [made_up(random.Random(seed)) for seed in range(60)]
+    code = ["#include <stdint.h>", "#include <stdio.h>", "#include <string.h>"]
+    for index, struct in enumerate(structs):
+        code.append(struct.replace("made {", f"made{index} {{"))
+    code.append("int main(void) {")
+    expected = []
+    for index, struct in enumerate(structs):
+        (table,) = [block for block in c_structs.read_structs(struct)[0] if hasattr(block, "source_rows")]
+        rows = [[cell.text for cell in row.cells] for row in table.source_rows[1:]]
+        (size,) = [block.text for block in c_structs.read_structs(struct)[0] if not hasattr(block, "source_rows")]
+        code.append(f"{{ static union {{ struct made{index} s; uint8_t b[sizeof(struct made{index})]; }} u;")
+        code.append('printf("sizeof %zu\\n", sizeof u.s);')
+        expected.append(size)
+        for byte, bit, bits, kind, name, count, _, _ in rows:
+            first = 8 * int(byte) + int(bit or 0)
+            size_in_bits = int(bits) * int(count or 1)
+            value = "1" if "float" in kind or count else f"({kind.rstrip('0123456789')}64_t)-1"
+            code.append("memset(&u, 0, sizeof u);")
+            code.append(f"memset(&u.s.{name}, 255, sizeof u.s.{name});" if not bit else f"u.s.{name} = {value};")
+            code.append(
+                'for (size_t i = 0; i < 8 * sizeof u; i++) if (u.b[i / 8] >> i % 8 & 1) printf("%zu ", i); printf("\\n");'
+            )
+            expected.append(" ".join(map(str, range(first, first + size_in_bits))))
+        code.append("}")
+    code.append("return 0; }")
+    (tmp_path / "a.c").write_text("\n".join(code), encoding="utf-8")
+    subprocess.run(["gcc", "-w", "-o", "a", "a.c"], cwd=tmp_path, check=True)
+    got = subprocess.run([tmp_path / "a"], capture_output=True, text=True, check=True).stdout.splitlines()
+    assert [line.strip() for line in got] == expected
