@@ -3,7 +3,8 @@
  * What a search means: words, identifiers of any language, numbers, phrases such as `table 12`; exact names first, and where
  * nothing fits, what was probably meant.
  *
- * An entry of the index is kind, title, context, further words of its name, what is said about it, exact phrases, address.
+ * An entry of the index is kind, title, context, further words of its name, what is said about it, exact phrases, address,
+ * and then its aliases.
  */
 const icdgenFind = (() => {
   const RANKS = { node: 9, message: 9, enumeration: 5, protocol: 8, unit: 2.5, field: 1.5, guide: 1.2, member: 1, erratum: 0.8, note: 0.4 };
@@ -40,13 +41,14 @@ const icdgenFind = (() => {
       if (!vocabulary.has(word)) vocabulary.set(word, vocabulary.size);
       return vocabulary.get(word);
     });
-    const entries = rows.map(([kind, title, context, more, about, tags, url]) => ({
+    const entries = rows.map(([kind, title, context, more, about, tags, url, ...aliases]) => ({
       kind, title, context, url,
-      own: idsOf([...plainWords(title), ...wordsOf(more)]),
+      own: idsOf([...plainWords(title), ...wordsOf(more), ...aliases.flatMap(plainWords)]),
       named: new Set(idsOf(plainWords(more || title))),
       context_: idsOf(plainWords(context)),
       about: idsOf(plainWords(about)),
       names: [squashed(title), squashed(more)].filter(Boolean),
+      aliases: aliases.map(squashed).filter(Boolean),
       tags: new Set(tags ? tags.toLowerCase().split("|") : []),
     }));
     const words = [...vocabulary.keys()];
@@ -90,6 +92,7 @@ const icdgenFind = (() => {
     function exactness(entry, query) {
       if (entry.tags.has(query.plain)) return 120;
       if (!query.squashed) return 0;
+      if (entry.aliases.includes(query.squashed)) return 95; // below names of pages: an alias may be the name of something elsewhere
       if (entry.names.includes(query.squashed)) return PAGES.has(entry.kind) ? 100 : 2;
       return PAGES.has(entry.kind) && entry.names.some((name) => stem(name) === stem(query.squashed)) ? 90 : 0;
     }

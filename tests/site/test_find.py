@@ -15,6 +15,7 @@ from icdgen.site import make, write
 from tests.conftest import ROOT
 from tests.site.conftest import program
 
+P31U = ROOT / "examples" / "devices" / "p31u" / "p31u.yaml"
 SCRIPT = ROOT / "templates" / "html" / "find.js"
 ANGLES = "cubeacp/estimated_attitude_angles.html"
 ROLL = f"{ANGLES}#field-estimated_roll_angle"
@@ -150,9 +151,36 @@ def test_words_of_somebody_who_has_not_read_the_manual_lead_to_the_page_first(si
 
 
 def test_a_quantity_finds_the_fields_of_its_units(tmp_path):
-    write(make([ROOT / "examples" / "devices" / "p31u" / "p31u.yaml"]), tmp_path)
-    ((first, *_),) = found(tmp_path, ["battery voltage"])
+    without = tmp_path / "p31u.yaml"
+    without.write_text(P31U.read_text("utf-8").replace("aliases: [Battery Voltage], ", ""))
+    write(make([without]), tmp_path / "site")
+    ((first, *_),) = found(tmp_path / "site", ["battery voltage"])
     assert first == "p31u/housekeeping.html#field-power_battery"
+
+
+def test_an_alias_leads_to_what_has_it_before_names_that_have_its_words(tmp_path):
+    text = P31U.read_text("utf-8")
+    text = text.replace(
+        "  - name: Housekeeping\n", "  - name: Housekeeping\n    aliases: [State of Health, Battery Mode]\n"
+    )
+    text = text.replace("  - name: Tracking\n", "  - name: Tracking\n    aliases: [Operating Point]\n")
+    text = text.replace("name: Boot Cause, ", "name: Boot Cause, aliases: [Reason of Restart], ")
+    (tmp_path / "p31u.yaml").write_text(text)
+    write(make([tmp_path / "p31u.yaml"]), tmp_path / "site")
+    wanted = {
+        "state of health": "p31u/housekeeping.html",
+        "StateOfHealth": "p31u/housekeeping.html",
+        "stat of helth": "p31u/housekeeping.html",
+        "operating point": "p31u/enum-tracking.html",
+        "battery voltage": "p31u/housekeeping.html#field-power_battery",
+        "reason of restart": "p31u/housekeeping.html#field-basics_boot_cause",
+        "battery mode": "p31u/enum-battery_mode.html",  # a name comes before an alias
+    }
+    results = found(tmp_path / "site", list(wanted))
+    assert [(q, r[:2]) for (q, url), r in zip(wanted.items(), results, strict=True) if r[:1] != [url]] == []
+    page = (tmp_path / "site" / "p31u" / "housekeeping.html").read_text("utf-8")
+    assert "Also called State of Health, Battery Mode." in page and "Also called Reason of Restart" in page
+    assert "Also called Operating Point." in (tmp_path / "site" / "p31u" / "enum-tracking.html").read_text("utf-8")
 
 
 def test_what_is_nothing_finds_nothing(site):

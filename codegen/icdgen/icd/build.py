@@ -93,6 +93,7 @@ class Builder:
             "name": item["name"],
             "identifier": item.get("identifier"),
             "summary": item.get("summary", ""),
+            "aliases": tuple(item.get("aliases", ())),
             "errata": self.applied.about(item),
             "source": item,
         }
@@ -312,6 +313,7 @@ def derived_field(how: derived.Derivation, length: int, item: Map, unit: Unit | 
         unit=unit,
         formula=item["formula"],
         summary=item.get("summary", ""),
+        aliases=tuple(item.get("aliases", ())),
         view=True,
         derived=how,
         source=item,

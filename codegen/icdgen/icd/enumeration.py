@@ -18,6 +18,7 @@ class Member:
     identifier: str | None = None  # words to build identifiers from, if not the name's
     summary: str = ""
     to: int | None = None  # of a range the last value
+    aliases: tuple[str, ...] = ()  # other names by which people look for it
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
 
@@ -51,6 +52,7 @@ class Enum:
     summary: str = ""
     table: int | None = None
     node: str = ""  # name of the node that declares it
+    aliases: tuple[str, ...] = ()  # other names by which people look for it
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
 

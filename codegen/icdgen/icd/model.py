@@ -97,6 +97,7 @@ class Field:
     struct: Struct | None = None  # what a member of type "struct" is made of
     implied: bool = False  # it has no bits: the length of a frame tells its value; see `Tail`
     counts_from: int = 0  # the smallest value of one that counts an open end, and something before it
+    aliases: tuple[str, ...] = ()  # other names by which people look for it
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
 
@@ -201,6 +202,7 @@ class Struct:
     summary: str = ""
     table: int | None = None
     node: str = ""  # name of the node that declares it
+    aliases: tuple[str, ...] = ()  # other names by which people look for it
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
 
@@ -263,6 +265,7 @@ class Message:
     inner: tuple[Tail, ...] = ()  # what is open in front of the tail: elements that a frame lacks are not at its end
     may_end_early: str = ""  # "zeros": frames may be sent without the zeros that they end with; else empty
     node: str = ""  # name of the node that declares it
+    aliases: tuple[str, ...] = ()  # other names by which people look for it
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
 

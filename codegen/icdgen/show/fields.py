@@ -66,6 +66,8 @@ def remarks(
             yield f"behind {before[-1]}"
     if field.when:
         yield f"only there if {' and '.join(condition_text(one, message) for one in field.when)}"
+    if field.aliases:
+        yield f"also called {', '.join(field.aliases)}"
     if field.derived is not None:
         yield f"derived: {field.formula}"
     elif field.view:

@@ -81,6 +81,7 @@ def _message(message: Message) -> _Object:
     return _present(
         **_attributes(message),
         acknowledge=None if message.acknowledge else "reset" if message.expects_reset else False,
+        aliases=list(message.aliases),
         contains=[{"message": part.message, "offset": part.at} for part in message.contains],
         tail=_tail(message),
         inner=[_open_part(one, one.counter, one.begin) for one in message.inner],
@@ -114,6 +115,7 @@ def _field(field: Field) -> _Object:
     scale = field.scale
     return _present(
         **_attributes(field),
+        aliases=list(field.aliases),
         offset=field.at,
         enum=field.enum.name if field.enum else None,
         struct=field.struct.name if field.struct else None,
@@ -132,11 +134,12 @@ def _field(field: Field) -> _Object:
 
 def _derived(field: Field) -> _Object:
     found = {key: getattr(field, key) for key in ("name", "identifier", "formula", "summary")}
-    return _present(**found, unit=field.unit_symbol or None)
+    return _present(**found, aliases=list(field.aliases), unit=field.unit_symbol or None)
 
 
 def _row(one: Enum | Member | Loggable | Struct) -> _Object:
-    return _present(**_attributes(one), **_ids(one.errata))
+    aliases = list(one.aliases) if isinstance(one, (Enum, Member, Struct)) else []
+    return _present(**_attributes(one), aliases=aliases, **_ids(one.errata))
 
 
 def _errata(node: Node, is_note: bool) -> list[_Object]:

@@ -121,6 +121,7 @@ def _one(icd: Icd, node: Node, name: str, width: int | None, kind: str | None) -
 def _struct(struct: Struct, node: Node, width: int | None) -> str:
     facts = ["struct", count(struct.length, "byte"), f"table {struct.table}" if struct.table else ""]
     lines = [f"{node.name}: {struct.name}", "; ".join(filter(None, facts)), struct.summary]
+    lines += [f"Also called {', '.join(struct.aliases)}."] if struct.aliases else []
     return _lines(lines, width) + "\n" + field_table(struct, node, width)
 
 
@@ -140,6 +141,7 @@ def _message(icd: Icd, message: Message, width: int | None) -> str:
         ),
     ]
     lines = [f"{node.name}: {message.name}", "; ".join(filter(None, facts)), message.summary]
+    lines += [f"Also called {', '.join(message.aliases)}."] if message.aliases else []
     lines += [f"Dangerous: {message.hazard}"] if message.hazard else []
     lines += filter(None, [sharing(ids_of(icd, node), message)])
     lines += [f"From bit {part.at} it repeats {part.message}." for part in message.contains]
@@ -151,10 +153,11 @@ def _message(icd: Icd, message: Message, width: int | None) -> str:
 
 def _enum(enum: Enum, width: int | None) -> str:
     head = f"{enum.name} (enumeration" + (f", table {enum.table})" if enum.table else ")")
-    members = [(m.values, m.name, m.summary) for m in enum.members]
+    members = [(m.values, ", ".join((m.name, *m.aliases)), m.summary) for m in enum.members]
     table = render([Column("value", right=True, fixed=True), Column("name"), Column("meaning")], members, width)
     errata = "".join("\n" + _erratum(e, width) for e in errata_of_enum(enum))
-    return _lines([head, enum.summary], width) + table + errata
+    aliases = f"Also called {', '.join(enum.aliases)}." if enum.aliases else ""
+    return _lines([head, enum.summary, aliases], width) + table + errata
 
 
 def _count(node: Node) -> str:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from typing import Protocol, TypeVar
 
 from icdgen import naming
 from icdgen.describe.ids import id_text
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Field, Icd, Message, Node, Tail
-from icdgen.icd.paths import arrays_of
+from icdgen.icd.paths import arrays_of, name_of
 from icdgen.protocol.envelope import Stream
 from icdgen.suggest import close_words
 from icdgen.values.errors import Ambiguous, NotFound
@@ -28,6 +29,9 @@ class _HasName(Protocol):
 
     @property
     def identifier(self) -> str | None: ...
+
+    @property
+    def aliases(self) -> tuple[str, ...]: ...
 
 
 _Named = TypeVar("_Named", bound=_HasName)
@@ -125,7 +129,7 @@ def find_field(message: Message, key: str, vocabulary: tuple[str, ...] = ()) -> 
     if found:
         listed = ", ".join(f"`{f.name}`" for f in found)
         raise Ambiguous(f"`{key}` fits several fields: {listed}", "give more of the name")
-    help = _suggest(key, [f.name for f in message.fields]) or _list_fields(message)
+    help = _suggest_named(key, message.fields) or _list_fields(message)
     raise NotFound(f"{message.name} has no field `{key}`", help)
 
 
@@ -142,14 +146,18 @@ def open_part(message: Message, name: str) -> Tail | None:
 
 
 def by_name(items: Sequence[_Named], key: str, vocabulary: tuple[str, ...]) -> list[_Named]:
-    """Items of exactly this name, else of this name in any case, else of these words, however they are joined."""
+    """Items of exactly this name, else of this name in any case, else of these words, however they are joined, else of
+    an alias of these words."""
+    wanted = _joined(key, vocabulary)
     steps: list[Callable[[_Named], bool]] = [
         lambda item: item.name == key,
         lambda item: item.name.casefold() == key.strip().casefold(),
-        lambda item: _joined(key, vocabulary) in (_joined(n, vocabulary) for n in _names(item) if _is_indexed(key, n)),
+        *(
+            lambda item, names=names: wanted in (_joined(n, vocabulary) for n in names(item) if _is_indexed(key, n))
+            for names in (_names, _aliases)
+            if wanted
+        ),
     ]
-    if not _joined(key, vocabulary):
-        steps.pop()
     for matches in steps:
         found = [item for item in items if matches(item)]
         if found:
@@ -179,6 +187,17 @@ def _names(item: _HasName) -> Iterable[str]:
     return filter(None, (item.name, item.alias if isinstance(item, Field) else item.identifier))
 
 
+def _aliases(item: _HasName) -> Iterable[str]:
+    """Aliases of an item; of an element or a field of a struct with the path to it, and alone if no array is on the path."""
+    if not isinstance(item, Field) or not item.path:
+        return item.aliases
+    *before, last = item.path
+    alone = [replace(last, name=alias).text for alias in item.aliases]
+    head = name_of(tuple(before))
+    with_path = [f"{head}.{alias}" for alias in alone] if before else []
+    return with_path if any(step.count for step in before) else [*with_path, *alone]
+
+
 def _joined(text: str, vocabulary: tuple[str, ...]) -> str:
     return "".join(naming.words(text, vocabulary))
 
@@ -206,7 +225,7 @@ def _message_help(icd: Icd, node: Node, messages: Sequence[Message], key: str, k
     elsewhere = [n.name for n in icd.nodes if n is not node and by_name(n.messages, key, n.vocabulary)]
     if elsewhere:
         return f"it is a message of {' and '.join(elsewhere)}"
-    close = _suggest(key, [m.name for m in messages])
+    close = _suggest_named(key, messages)
     return close or f"`icdgen show {node.name}` lists what there is"
 
 
@@ -215,6 +234,13 @@ def _list_fields(message: Message) -> str:
     if len(names) > MOST_LISTED:
         return f"it has {len(names)} fields; `icdgen show` lists them"
     return f"fields: {', '.join(names)}" if names else "it has no fields at all"
+
+
+def _suggest_named(key: str, items: Sequence[_HasName]) -> str:
+    """Names near the key; an item whose alias is near is listed by its name."""
+    known = {alias: item.name for item in items for alias in _aliases(item)} | {item.name: item.name for item in items}
+    close = dict.fromkeys(known[text] for text in close_words(key, known))
+    return "did you mean " + " or ".join(f"`{name}`" for name in close) + "?" if close else ""
 
 
 def _suggest(key: str, names: Iterable[str]) -> str:

@@ -17,7 +17,7 @@ _MOST = 300  # characters of a text that is searched
 
 class Entry(NamedTuple):
     """``own``: the words of its identifier, where they are not those of the title; ``about``: what else is said of it;
-    ``phrases``: what means exactly this."""
+    ``phrases``: what means exactly this; ``aliases``: other names of it."""
 
     kind: str
     title: str
@@ -26,6 +26,7 @@ class Entry(NamedTuple):
     about: str
     phrases: tuple[str, ...]
     url: str
+    aliases: tuple[str, ...] = ()
 
 
 def entries(relations: Relations) -> Iterator[Entry]:
@@ -65,7 +66,12 @@ def entries(relations: Relations) -> Iterator[Entry]:
 def script(relations: Relations) -> str:
     """The index as a script, since a page opened from a folder may not fetch anything else."""
     rows = [
-        [*(texts.clip(part, _MOST) for part in one[:5]), texts.clip("|".join(one.phrases), _MOST), one.url]
+        [
+            *(texts.clip(part, _MOST) for part in one[:5]),
+            texts.clip("|".join(one.phrases), _MOST),
+            one.url,
+            *one.aliases,
+        ]
         for one in entries(relations)
     ]
     lines = ",\n".join(json.dumps(row, separators=(",", ":")) for row in rows)
@@ -87,14 +93,15 @@ def _of_message(relations: Relations, node: Node, message: Message) -> Iterator[
     buses = " ".join(bus for bus in texts.BUSES if bus in relations.icd.protocol_of(node))
     about = f"{speakers} {message.group} {buses} {message.summary}"
     context = f"{message.kind} {ids} · {node.title}"
-    yield Entry("message", message.name, context, own, about, tuple(phrases), links.message(message))
+    yield Entry("message", message.name, context, own, about, tuple(phrases), links.message(message), message.aliases)
     for name, field in relations.shown_fields(message):
         unit = (
             f"{field.unit.symbol} {field.unit.identifier.replace('_', ' ')} {field.unit.quantity}" if field.unit else ""
         )
         about = f"{node.name} {own} {unit} {field.summary}"
         context = f"{message.name} · {node.title}"
-        yield Entry("field", name, context, _words(field, node), about, (), links.field(message, field))
+        url = links.field(message, field)
+        yield Entry("field", name, context, _words(field, node), about, (), url, field.aliases)
 
 
 def _error_codes(relations: Relations, node: Node) -> set[str]:
@@ -106,13 +113,14 @@ def _error_codes(relations: Relations, node: Node) -> set[str]:
 def _of_enum(relations: Relations, node: Node, enum: Enum, is_error: bool) -> Iterator[Entry]:
     links, own = relations.links, " ".join(words(enum.identifier or enum.name, node.vocabulary)).lower()
     about = f"enum {node.name} {enum.summary}"
-    yield Entry("enumeration", enum.name, node.title, own, about, tuple(_table(enum.table)), links.enum(enum))
+    phrases = tuple(_table(enum.table))
+    yield Entry("enumeration", enum.name, node.title, own, about, phrases, links.enum(enum), enum.aliases)
     for member in enum.members:
         url = f"{links.enum(enum)}#{links.anchor(enum, str(member.value))}"
         context = f"{enum.name} = {member.values} · {node.title}"
         about = f"{node.name} {own} {member.summary}"
         phrases = (f"error {member.value}", f"error code {member.value}") if is_error else ()
-        yield Entry("member", member.name, context, _words(member, node), about, phrases, url)
+        yield Entry("member", member.name, context, _words(member, node), about, phrases, url, member.aliases)
 
 
 def _words(thing: Message | Field | Enum | Member, node: Node) -> str:

@@ -19,6 +19,10 @@ def summary_changed(pair: Pair, ctx: Context) -> Iterator[Found]:
         if old != new:
             verb = "is new" if not old else "is gone" if not new else "says otherwise"
             yield Found(f"the {key} of {quote(pair.new.name)} {verb}", (key,), old, new)
+    was, now = (", ".join(getattr(side, "aliases", ())) for side in (pair.old, pair.new))
+    if was != now:
+        text = f"{quote(pair.new.name)} is also called {now or 'nothing else'}, was {was or 'nothing else'}"
+        yield Found(text, ("aliases",), was, now)
 
 
 @rule("DIF402", "message", "enum", "node", severity="note")

@@ -161,6 +161,8 @@ class _Reader:
 
     def row(self, kind: Callable[..., Thing], item: Map, **more: object) -> Thing:
         """What has attributes that are shown as they are, and errata; ``more`` are the others."""
+        if "aliases" in item:
+            more["aliases"] = tuple(item["aliases"])
         return kind(**_as_it_is(kind, item), errata=self.about(item), source=item, **more)
 
     def enum(self, item: Map, node: str) -> model.Enum:

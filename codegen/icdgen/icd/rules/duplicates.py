@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Iterator
-from typing import TypeVar
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+from typing import TypeAlias, TypeVar
 
+from icdgen import naming
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
-from icdgen.icd.model import Enum, Member, Message, Node, Struct
+from icdgen.icd.model import Enum, Field, Member, Message, Node, Struct
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, quote
@@ -15,6 +16,7 @@ from icdgen.icd.trees import mappings
 from icdgen.icd.units import STANDARD
 
 T = TypeVar("T")
+Aliased: TypeAlias = Message | Field | Enum | Member | Struct
 PRINTED_TWICE = "if the manual prints the name twice, an erratum holds another"
 
 
@@ -114,6 +116,57 @@ def member_names(ctx: Context) -> Iterator[Fault]:
             message = f"{quote(second.name)} is already the name of {there}"
             help = "if the manual does say so, give each an `identifier:` of its own"
             yield Fault.at(second.source, "name", message, help)
+
+
+@rule("ICD074")
+def aliases(ctx: Context) -> Iterator[Fault]:
+    """Report aliases by which a look-up by name would not know what is meant."""
+    reported = set()
+    for node in ctx.icd.nodes:
+        scope = ctx.scope(node)
+        messages: list[Aliased] = [m for n in scope for m in n.messages]
+        types: list[Aliased] = [*(one for n in scope for one in n.enums), *(one for n in scope for one in n.structs)]
+        for items in (messages, types):
+            for fault in _ambiguous_aliases(items, node.vocabulary):
+                # A node that includes another meets the same aliases again.
+                if (key := (id(fault.owner), fault.message)) not in reported:
+                    reported.add(key)
+                    yield fault
+    for owner, node in ctx.owners:
+        yield from _ambiguous_aliases(owner.members, node.vocabulary)
+    for node in ctx.icd.nodes:
+        for enum in node.enums:
+            yield from _ambiguous_aliases(enum.members, node.vocabulary)
+
+
+def _ambiguous_aliases(items: Sequence[Aliased], vocabulary: tuple[str, ...]) -> Iterator[Fault]:
+    if not any(item.aliases for item in items):
+        return
+
+    def words(text: str) -> str:
+        return "".join(naming.words(text, vocabulary)) or text.casefold()
+
+    names = {words(text): item for item in reversed(items) for text in (item.name, item.identifier) if text}
+    before: dict[str, Aliased] = {}  # the things whose aliases were read already
+    for item in items:
+        for index, alias in enumerate(item.aliases):
+            key, place = words(alias), item.source["aliases"].item_at(index)
+            other = names.get(key) or before.get(key)
+            before.setdefault(key, item)
+            if other is None:
+                continue
+            text = f"the alias {quote(alias)} of {quote(item.name)} is "
+            if key in names and other is item:
+                text, help = f"{text}its own name", "remove the alias"
+            elif key in names:
+                there = line_of(other.source.at("name"), place)
+                text, help = f"{text}the name of something else, in {there}", "choose another alias"
+            elif other is item:
+                text, help = f"{text}listed twice", "remove one of them"
+            else:
+                there = line_of(other.source.at("aliases"), place)
+                text, help = f"{text}also an alias of {quote(other.name)}, in {there}", "keep one of them"
+            yield Fault(item.source, place, text, help)
 
 
 @rule("ICD057")

@@ -16,7 +16,7 @@ from icdgen.icd.rules.wording import line_of, quote
 from icdgen.icd.trees import mappings
 from icdgen.suggest import close_to
 
-_OF_MEMBERS = frozenset({"at", "name", "identifier", "struct", "count", "after", "up_to", "summary"})
+_OF_MEMBERS = frozenset({"at", "name", "identifier", "struct", "count", "after", "up_to", "summary", "aliases"})
 """Keys of a struct where it stands."""
 
 
