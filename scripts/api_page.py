@@ -20,19 +20,22 @@ _MARK = re.compile(r"\s*(?:/\*|//|#) \[(?P<key>\w*)\](?: \*/)?\s*")
 BEGIN = """\
 # API in each language
 
-The generated API in C, Python and Rust, side by side. Names follow one rule in all languages. The messages are those of
-[imu.yaml](api/imu.yaml), an ICD with a field of each kind. Each cell is taken from a program that a test builds and runs:
-[imu.c](api/imu.c), [imu.py](api/imu.py), [imu.rs](api/imu.rs). `python -m scripts.api_page` generates this page.
+The generated API in C, Python and Rust, side by side. Names follow one rule in all languages. The
+messages come from [imu.yaml](api/imu.yaml), an ICD with a field of each kind. Each cell is taken
+from a program that a test builds and runs: [imu.c](api/imu.c), [imu.py](api/imu.py),
+[imu.rs](api/imu.rs). `python -m scripts.api_page` generates this page.
 
-Messages have raw values; physical values are computed when they are read. A split field is replaced by its parts. Setting
-a physical value rejects what the field cannot represent; raw values are checked when the message is encoded. Limits of the
-ICD are data for `allows`, because only the device knows when they apply. An error is a status in C (`ICD_ERROR_RANGE`), an
-exception in Python (`RangeError`) and a `Result` in Rust (`Error::Range`).
+Messages have raw values; physical values are computed when they are read. A split field is
+replaced by its parts. Setting a physical value rejects what the field cannot represent; raw
+values are checked when the message is encoded. Limits of the ICD are data for `allows`, because
+only the device knows when they apply. An error is a status in C (`ICD_ERROR_RANGE`), an exception
+in Python (`RangeError`) and a `Result` in Rust (`Error::Range`).
 """
 END = """
-Complete programs: [C](../guides/driver-in-c.md), [Rust](../guides/rust.md), [Python](../guides/python.md).
-[Wire layer](wire.md) describes buses, files and logs. In C, `imu_receive_state` rejects an event of another message or
-node with `ICD_ERROR_UNKNOWN_ID`; in Rust, a message of another node does not compile.
+Complete programs: [C](../guides/driver-in-c.md), [Rust](../guides/rust.md),
+[Python](../guides/python.md). [Wire layer](wire.md) describes buses, files and logs. In C,
+`imu_receive_state` rejects an event of another message or node with `ICD_ERROR_UNKNOWN_ID`; in
+Rust, a message of another node does not compile.
 """
 
 

@@ -41,6 +41,17 @@ def test_every_link_leads_to_a_page_and_heading_that_exists(page):
     assert dead == []
 
 
+def test_a_source_line_has_at_most_100_characters_outside_tables_and_code():
+    pages = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *documents.pages()]
+    long = [
+        f"{page.relative_to(ROOT)}: {line[:60]}"
+        for page in pages
+        for line in prose(page).splitlines()
+        if len(line) > 100 and not line.startswith(("|", "    "))
+    ]
+    assert long == []
+
+
 def test_generated_reference_pages_are_current():
     old = [path.name for path, text in reference_pages.pages().items() if path.read_text("utf-8") != text]
     assert old == [], "run `python -m scripts.reference_pages`"

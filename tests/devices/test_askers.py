@@ -13,7 +13,7 @@ from tests.rust import harness as rust
 from tests.rust.tools import Toolchain, run
 
 ICD = icd_of([ROOT / "examples" / "links" / "ubx.yaml"])
-SHOWN = documents.text("reference/wire-framing").split("**Client.**")[1]
+SHOWN = documents.text("reference/wire-framing").split("## Client\n")[1]
 
 C = """
 #include "receiver.h"

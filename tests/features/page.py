@@ -43,9 +43,10 @@ OUTPUTS = {
 _BEGIN = """\
 # Features and outputs
 
-Features of the [ICD format](icd-format.md), and which output supports each. `python -m tests.features` measures the
-table. Each feature is tried on its example in the documents. An output supports the feature (✓) if it accepts the example
-and its result changes when the example uses the feature differently. A number refers to the reason below the table why
+Features of the [ICD format](icd-format.md), and which output supports each.
+`python -m tests.features` measures the table. Each feature is tried on its example in the
+documents. An output supports the feature (✓) if it accepts the example and its result changes
+when the example uses the feature differently. A number refers to the reason below the table why
 an output does not support the feature or does not need it. A test fails if the table is not true.
 """
 
