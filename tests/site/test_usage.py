@@ -7,6 +7,7 @@ import sys
 
 from icdgen import backends
 from icdgen.backends.html import usage
+from icdgen.backends.packages import Packages
 from icdgen.describe import describe
 from icdgen.render import Renderer
 from tests.conftest import ROOT
@@ -18,7 +19,12 @@ RENDER = Renderer.of(backends.get("html"))
 
 def snippets(icd, key: str) -> list[str]:
     messages = [message for node in describe(icd).nodes for message in node.messages]
-    return [one.text for message in messages for one in usage.snippets(message, RENDER) if one.key == key]
+    return [snippet(message, key) for message in messages]
+
+
+def snippet(message, key: str) -> str:
+    """The code of a message in a language, with the default names of packages."""
+    return next(one.text for one in usage.snippets(message, message, Packages(), RENDER) if one.key == key)
 
 
 def indented(text: str, prefix: str = "    ") -> str:
@@ -49,8 +55,7 @@ def test_the_python_of_every_message_runs(shipped, tmp_path):
     parts = ["sent = []", "def send(id, frame): sent.append((id, frame))"]
     for node in describe(shipped).nodes:
         for message in node.messages:
-            text = next(one.text for one in usage.snippets(message, RENDER) if one.key == "python")
-            parts += [f"buffer = bytes({message.model.length})", text]
+            parts += [f"buffer = bytes({message.model.length})", snippet(message, "python")]
     source = tmp_path / "usage.py"
     source.write_text("\n".join([*parts, "print(len(sent))"]), "utf-8")
     environment = {"PYTHONPATH": str(GENERATED / "python"), "PYTHONDONTWRITEBYTECODE": "1"}
