@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from icdgen.diagnostics import Findings
+from icdgen.diagnostics import Finding, Findings
 from icdgen.icd import schema, source
 from icdgen.icd.located import Map, plain
 from icdgen.importer.rules.language import TypeName
@@ -133,6 +133,12 @@ class Profile:
         return {"".join(name.casefold().split()): TypeName(t["type"], t.get("bits", 0)) for name, t in own.items()}
 
     @property
+    def orders(self) -> tuple[str, str]:
+        """Byte order and bit order in which rules read positions: those of the ICDs."""
+        node = self.data["node"] | (self.nodes[0].head if self.nodes else {})
+        return node.get("byte_order", "little"), node.get("bit_order", "lsb0")
+
+    @property
     def reads_descriptions(self) -> bool:
         """Whether rules look into descriptions for units, formulas and constants: if the profile states phrases."""
         return "phrases" in self.own or "variables" in self.own
@@ -219,8 +225,24 @@ def of_tree(tree: Map) -> Profile:
     base = plain(source.read(DEFAULT))
     _check(tree)
     own = plain(tree)
+    if "rules" in tree:
+        _check_orders(tree, base)
     rules = read_rules(tree["rules"]) if "rules" in tree else []
     return Profile(_laid_over(_without_moved(base, own), own), own, rules, "rules" in tree)
+
+
+def _check_orders(tree: Map, base: dict[str, Any]) -> None:
+    """Raise `Findings` if nodes of a profile with rules have different byte or bit orders.
+
+    Rules read positions before it is known to which node a table belongs, so that one order must hold for all.
+    """
+    shared = {**base["node"], **tree.get("node", {})}
+    for key in ("byte_order", "bit_order"):
+        stated = [node.get(key, shared.get(key)) for node in tree.get("nodes", ())]
+        if len(set(stated)) > 1:
+            message = f"the nodes have different values of `{key}`: {' and '.join(sorted(set(map(str, stated))))}"
+            help = "rules read all tables in one order: write a profile for each node"
+            raise Findings([Finding(CODE, message, tree.at("nodes"), help)])
 
 
 def _without_moved(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from icdgen.diagnostics import Findings
 from icdgen.importer import profile, run
 
 NODE = "profile: 1\nnode: {byte_order: little, bit_order: lsb0, id_bits: 16}\n"
@@ -156,6 +157,30 @@ def test_the_node_alone_says_how_registers_count(tmp_path, order, at):
     _, tree = read(tmp_path, HEADING + rows, rules, NODE.replace("lsb0", order))
     assert {f["name"]: f["at"] for f in tree["messages"][0]["fields"]}["Mode"] == at
     assert all("bit_order" not in f for f in tree["messages"][0]["fields"])
+
+
+@pytest.mark.parametrize(("order", "at"), [("lsb0", 4), ("msb0", 2)])
+def test_the_order_may_stand_under_nodes(tmp_path, order, at):
+    rules = r"""rules:
+  - what: registers
+    tables: {head: Bits | Name}
+    message: {before: '^{message} \({id}\)', kind: configuration}
+    columns: {Bits: '^{last_bit}:{bit}$', Name: name}
+    each: {type: uint}
+"""
+    nodes = f"nodes: [{{name: motor, byte_order: big, bit_order: {order}}}]\n"
+    _, tree = read(tmp_path, HEADING + "Bits\tName\n7:6\tRate\n5:4\tMode\n3:0\tGain\n", nodes + rules, NODE)
+    assert (tree["node"]["bit_order"], tree["node"]["byte_order"]) == (order, "big")
+    assert {f["name"]: f["at"] for f in tree["messages"][0]["fields"]}["Mode"] == at
+    assert all("bit_order" not in f for f in tree["messages"][0]["fields"])
+
+
+def test_nodes_of_different_orders_are_refused(tmp_path):
+    nodes = "nodes:\n  - {name: motor, byte_order: big}\n  - {name: tank, match: [Tank]}\n"
+    with pytest.raises(Findings) as caught:
+        read(tmp_path, HEADING, nodes + RULE)
+    (finding,) = caught.value.findings
+    assert "different values of `byte_order`: big and little" in finding.message and finding.place.line == 4
 
 
 def test_a_register_of_two_bytes_follows_the_byte_order_of_the_node(tmp_path):

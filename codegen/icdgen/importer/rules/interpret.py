@@ -48,8 +48,7 @@ class _Interpreter:
         self.found: list[Found] = []
         words = (word.strip(".,;:()[]") for table in tables for text in texts(table) for word in text.split())
         self.known = frozenset(words)
-        node = profile.data["node"]
-        self.order = Order(node.get("byte_order", "little"), node.get("bit_order", "lsb0"))
+        self.order = Order(*profile.orders)
 
     def run(self, extra: list[Trouble]) -> Interpretation:
         count_runs(self.tables)
