@@ -43,7 +43,18 @@ class Profile:
 
     @cached_property
     def headings(self) -> dict[str, dict[str, list[tuple[str, ...]]]]:
-        """Kind of table -> role -> the headings it may have, as folded words, longest first."""
+        """Kind of table -> role -> the headings it may have, as folded words, longest first.
+
+        The headings of a rule that the vocabulary does not know are a kind of their own: tables without vertical rules are
+        found by their headings.
+        """
+        return self._headings_of_vocabulary | {
+            f"rule {rule.name}": {title: [folded(title)] for title in (*rule.heading_titles, *rule.column_titles)}
+            for rule in self._rules_with_unknown_headings
+        }
+
+    @cached_property
+    def _headings_of_vocabulary(self) -> dict[str, dict[str, list[tuple[str, ...]]]]:
         return {
             kind: {
                 role: sorted({folded(text) for text in texts}, key=len, reverse=True)
@@ -52,6 +63,19 @@ class Profile:
             }
             for kind, roles in self.data["headings"].items()
         }
+
+    @cached_property
+    def _rules_with_unknown_headings(self) -> list[Rule]:
+        made = []
+        for rule in self.rules:
+            words = {folded(title) for title in (*rule.heading_titles, *rule.column_titles)}
+            is_known = False
+            for kind, roles in self._headings_of_vocabulary.items():
+                there = {role for role, texts in roles.items() if words.intersection(texts)}
+                is_known = is_known or all(there.intersection(group) for group in self._needs_of_vocabulary[kind])
+            if rule.heading_titles and not is_known:
+                made.append(rule)
+        return made
 
     @cached_property
     def known_headings(self) -> dict[str, frozenset[tuple[str, ...]]]:
@@ -69,6 +93,13 @@ class Profile:
     @cached_property
     def needs(self) -> dict[str, list[tuple[str, ...]]]:
         """Kind of table -> groups of roles, one of each group must be there."""
+        return self._needs_of_vocabulary | {
+            f"rule {rule.name}": [(title,) for title in rule.heading_titles]
+            for rule in self._rules_with_unknown_headings
+        }
+
+    @cached_property
+    def _needs_of_vocabulary(self) -> dict[str, list[tuple[str, ...]]]:
         return {
             kind: [tuple(one.split("|")) for one in roles.get("needs", ())]
             for kind, roles in self.data["headings"].items()

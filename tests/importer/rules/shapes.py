@@ -347,6 +347,33 @@ def _cell() -> list:
 
 
 @shape(
+    "headings that nobody knows and no vertical rules, captions below",
+    profile=BIG + r"""  - tables: {head: Quantity | Where | Breadth | Coding}
+    message: {caption: '^{message} \[{id}\]$', kind: telemetry}
+    columns: {Quantity: name, Where: byte, Breadth: bytes, Coding: type, Per step: '^{scale} {unit}$'}
+captions: [Listing]
+""",
+    messages={
+        "Fan": (0x91, 6, [(0, 16, "Speed of the fan"), (16, 16, "Current"), (32, 16, "Temperature")]),
+        "Supply": (0x92, 3, [(0, 16, "Voltage"), (16, 8, "Load")]),
+    },
+    facts={("Fan", "Current"): {"type": "int", "formula": "raw*10", "unit": "mA"}},
+)
+def _unknown() -> list:
+    head = ["Quantity", "Where", "Breadth", "Coding", "Per step"]
+    fan = [
+        ["Speed of the fan", "0", "2", "u16", "0.5 rpm"],
+        ["Current", "2", "2", "s16", "10 mA"],
+        ["Temperature", "4", "2", "s16", "0.1 C"],
+    ]
+    supply = [["Voltage", "0", "2", "u16", "1 mV"], ["Load", "2", "1", "u8", "1 %"]]
+    return [
+        heading("7 Reports"), text("These are sent on request."), open_table([head, *fan]), text("Listing 1: Fan [0x91]"),
+        text("And this one once a second."), open_table([head, *supply]), text("Listing 2: Supply [0x92]"),
+    ]  # fmt: skip
+
+
+@shape(
     "horizontal rules only, over two pages",
     profile=NODE + r"""  - tables: {head: Byte | Name | Type | Description}
     message: {caption: '^{message} \({id}\)$', kind: telemetry}

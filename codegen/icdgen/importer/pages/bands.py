@@ -97,8 +97,8 @@ def aligned(band: Band, edges: list[float]) -> Band:
 
 def rows(band: Band, header: Header, known: frozenset[str], torn: bool = False) -> list[Row]:
     """The rows of a band whose cells are those of ``header``. ``torn``: it may begin with the rest of a row."""
-    key = _key_column(header)
     found = lines(band.words)
+    key = _key_column(header) if header.kind in KEYS else _column_of_most_keys(found, band.edges)
     if header.kind == "list" and (groups := [i for i, line in enumerate(found) if _is_group(line, band.edges, key)]):
         return _around(band, found, groups, header, known)
     keyed = [i for i, line in enumerate(found) if is_key(_text_in(line, band.edges, key))]
@@ -112,8 +112,9 @@ def rows(band: Band, header: Header, known: frozenset[str], torn: bool = False) 
 
 def has_keys(band: Band, header: Header) -> bool:
     """Whether a line has a key in the key column and words in another one."""
-    key = _key_column(header)
-    for line in lines(band.words):
+    found = lines(band.words)
+    key = _key_column(header) if header.kind in KEYS else _column_of_most_keys(found, band.edges)
+    for line in found:
         columns = {index_of(w.centre, band.edges) for w in line.words}
         if len(columns) > 1 and is_key(_text_in(line, band.edges, key)):
             return True
@@ -122,6 +123,12 @@ def has_keys(band: Band, header: Header) -> bool:
 
 def _key_column(header: Header) -> int:
     return next((i for i, role in enumerate(header.roles) if role in KEYS[header.kind]), 0)
+
+
+def _column_of_most_keys(found: list[Line], edges: list[float]) -> int:
+    """The column in which most lines have a key; the first one if none has any."""
+    counts = [sum(is_key(_text_in(line, edges, column)) for line in found) for column in range(len(edges) - 1)]
+    return counts.index(max(counts)) if counts else 0
 
 
 def _is_group(line: Line, edges: list[float], key: int) -> bool:

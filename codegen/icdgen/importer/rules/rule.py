@@ -81,6 +81,19 @@ class Rule:
     origin: int = 0
     base: int = 10
 
+    @property
+    def heading_titles(self) -> list[str]:
+        """The headings that `head` names; empty if it has patterns, or a single heading, which many texts have."""
+        titles = [title.strip() for title in re.split(r"\s\|\s", self.head)] if self.head not in ("", "none") else []
+        is_plain = len(titles) > 1 and not any(title == "*" or title.startswith("~") for title in titles)
+        return titles if is_plain and not self.transpose else []
+
+    @property
+    def column_titles(self) -> list[str]:
+        """The headings that `columns`, `lines` and `ignore` name."""
+        named = [title for column in (*self.columns, *self.lines) for title in column.titles]
+        return [title for title in (*named, *self.ignore) if title != "*" and not title.startswith("~")]
+
 
 def read_rules(tree: Seq) -> list[Rule]:
     """Return the rules of a profile whose structure was checked. Raises `Findings` with everything that is wrong in them."""
