@@ -116,9 +116,9 @@ def test_wrapped_cells_are_joined_as_they_were_meant(parts, known, whole):
 
 @given(st.integers(0, 79))
 def test_a_mask_with_one_bit_is_that_bit(bit):
-    assert lists._bit((1 << bit).to_bytes(10, "little").hex(" ")) == bit
+    assert lists.bit_of_mask((1 << bit).to_bytes(10, "little").hex(" ")) == bit
 
 
 @pytest.mark.parametrize("mask", ["00 00", "03 00", "zz", "1"])
 def test_a_mask_with_none_or_several_bits_is_none(mask):
-    assert lists._bit(mask) is None
+    assert lists.bit_of_mask(mask) is None

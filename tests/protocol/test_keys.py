@@ -7,6 +7,7 @@ import yaml
 
 from icdgen import backends
 from icdgen.backends.html import site
+from icdgen.backends.packages import Packages
 from icdgen.diff.facts import facts as differences
 from icdgen.render import Renderer
 from tests.protocol import walk
@@ -49,4 +50,4 @@ def test_what_else_the_section_says_is_told_by_the_site_and_the_diff(key, source
 def page(icd):
     """The first page on how a node talks."""
     render = Renderer.of(backends.get("html"))
-    return next(text for path, text in site.files(icd, render) if path.name == "protocol.html")
+    return next(text for path, text in site.files(icd, render, Packages()) if path.name == "protocol.html")
