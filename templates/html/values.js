@@ -4,7 +4,7 @@ const icdgenValues = ((codec, frames) => {
   function parseRaw(field, text) {
     const word = text.trim();
     if (field.type === "bytes") return frames.parseHex(word);
-    if (!/^[-\u2212]?(?:0[xX][0-9A-Fa-f]+|[0-9]+)$/.test(word)) throw new Error(`${field.name} takes an integer, decimal or 0x`);
+    if (!/^[-\u2212]?(?:0[xX][0-9A-Fa-f]+|0[bB][01]+|[0-9]+)$/.test(word)) throw new Error(`${field.name} takes an integer: decimal, 0x or 0b`);
     const negative = /^[-\u2212]/.test(word);
     const size = BigInt(negative ? word.slice(1) : word);
     return negative ? -size : size;
@@ -23,21 +23,31 @@ const icdgenValues = ((codec, frames) => {
     if (field.derived) return "";
     if (field.type === "bytes") return frames.hex(value);
     if (field.type === "float") return `0x${value.toString(16).toUpperCase().padStart(field.bits / 4, "0")}`;
+    if (field.base) return inBase(value, ...field.base);
     return String(value);
+  }
+
+  /** A raw value that is displayed as a bit pattern. */
+  function inBase(value, prefix, base, width) {
+    return prefix + value.toString(base).toUpperCase().padStart(width, "0");
   }
 
   /** The physical value of a field that has one. */
   function physicalText(field, value) {
     if (field.text) return codec.text(value);
     if (field.curve) return rounded(field, codec.physical(field, value));
-    if (field.type === "float") return field.digits === undefined ? floatText(field, value) : rounded(field, codec.floatValue(field, value));
+    if (field.type === "float") return isRounded(field) ? rounded(field, codec.floatValue(field, value)) : floatText(field, value);
     const exact = codec.exact(field, value);
-    return field.decimals === undefined ? decimal(...exact) : rounded(field, codec.nearestDouble(...exact));
+    return isRounded(field) ? rounded(field, codec.nearestDouble(...exact)) : decimal(...exact);
+  }
+
+  function isRounded(field) {
+    return field.decimals !== undefined || field.digits !== undefined;
   }
 
   /** What people want to see of a value: its name, its physical value with unit, or the raw one. */
   function shortText(field, value, enums) {
-    if (field.type === "enum") return codec.memberName(enums[field.enum], value) ?? `${value}?`;
+    if (field.type === "enum") return codec.memberName(enums[field.enum], value) ?? `${rawText(field, value)}?`;
     if (field.text) return codec.text(value);
     if (field.type === "float" || field.scale || field.curve) return `${physicalText(field, value)}${field.unit ? ` ${field.unit}` : ""}`;
     return `${rawText(field, value)}${field.unit ? ` ${field.unit}` : ""}`;
@@ -60,8 +70,8 @@ const icdgenValues = ((codec, frames) => {
     if (field.digits !== undefined) return numberText(Number(number.toPrecision(field.digits)));
     if (Math.abs(number) >= 1e15) return numberText(number); // a double has no further digits
     const text = number.toFixed(field.decimals);
-    const short = text.includes(".") ? text.replace(/\.?0+$/, "") : text;
-    return short === "-0" ? "0" : short;
+    const short = text.includes(".") && !field.fixed ? text.replace(/\.?0+$/, "") : text;
+    return /[1-9]/.test(short) ? short : short.replace("-", "");
   }
 
   function numberText(number) {

@@ -3,18 +3,27 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
+from dataclasses import replace
 from fractions import Fraction
 from random import Random
+from typing import Any
 
+import jsonschema_rs
 import pytest
 
-from icdgen import codec
-from icdgen.backends.html.plan import message_plan
+from icdgen import backends, codec
+from icdgen.backends.html.plan import enum_plan, message_plan
 from icdgen.describe.display import number_text
-from icdgen.icd.model import Field
+from icdgen.diff.inputs import shown as shown_input
+from icdgen.icd import floats
+from icdgen.icd.model import Field, Icd
+from icdgen.show.machine import SCHEMA, to_json
+from icdgen.show.people import to_text
 from icdgen.values.entry import from_physical
 from icdgen.values.frame import Row
+from tests.conformance.build import renderer
 from tests.conftest import ROOT
 from tests.features.outputs import icd_of
 from tests.site.conftest import program
@@ -99,6 +108,22 @@ def test_a_value_that_is_shown_leads_back_to_its_raw_value(fields, name):
         assert from_physical(field, Row(field, raw).text) == raw
 
 
+def in_page(function: str, argument: object) -> Any:
+    """Return the result of a JavaScript function that uses `codec` and `values` of the site."""
+    folder = ROOT / "templates" / "html"
+    code = f"""
+        const load = (name) => require("node:path").join({json.dumps(str(folder))}, name);
+        globalThis.icdgenFrames = require(load("frames.js"));
+        const codec = (globalThis.icdgenCodec = require(load("codec.js")));
+        const fs = require("node:fs");
+        const values = new Function(`${{fs.readFileSync(load("values.js"), "utf8")}}; return icdgenValues;`)();
+        process.stdout.write(JSON.stringify({function}(JSON.parse(fs.readFileSync(0, "utf8")))));
+    """
+    done = subprocess.run([program("node"), "-e", code], input=json.dumps(argument), capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
 def test_the_page_shows_the_same_digits(tmp_path):
     icd = icd_of(SENSOR, tmp_path)
     message, source = icd.nodes[0].messages[0], Random(2)
@@ -107,22 +132,11 @@ def test_the_page_shows_the_same_digits(tmp_path):
     for frame in frames:
         raw = codec.decode(icd.nodes[0], message, frame)
         expected.append([Row(one, raw[one.name]).text for one in message.fields if one.has_formula])
-    folder = ROOT / "templates" / "html"
-    code = f"""
-        const load = (name) => require("node:path").join({json.dumps(str(folder))}, name);
-        globalThis.icdgenFrames = require(load("frames.js"));
-        const codec = (globalThis.icdgenCodec = require(load("codec.js")));
-        const fs = require("node:fs");
-        const values = new Function(`${{fs.readFileSync(load("values.js"), "utf8")}}; return icdgenValues;`)();
-        const [plan, frames] = JSON.parse(fs.readFileSync(0, "utf8"));
-        const shown = (frame) => codec.decode(plan, frame).map((raw, at) => [plan.fields[at], raw])
-          .filter(([field]) => field.scale || field.curve).map(([field, raw]) => values.physicalText(field, raw));
-        process.stdout.write(JSON.stringify(frames.map((hex) => shown(Uint8Array.from(Buffer.from(hex, "hex"))))));
-    """
-    given = json.dumps([message_plan(message, icd.nodes[0]), [frame.hex() for frame in frames]])
-    done = subprocess.run([program("node"), "-e", code], input=given, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    spelt = [[_as_python(one) for one in row] for row in json.loads(done.stdout)]
+    shown = """(([plan, frames]) => frames.map((hex) => codec.decode(plan, Uint8Array.from(Buffer.from(hex, "hex")))
+      .map((raw, at) => [plan.fields[at], raw]).filter(([field]) => field.scale || field.curve)
+      .map(([field, raw]) => values.physicalText(field, raw))))"""
+    on_page = in_page(shown, [message_plan(message, icd.nodes[0]), [frame.hex() for frame in frames]])
+    spelt = [[_as_python(one) for one in row] for row in on_page]
     assert spelt == [[_as_python(one) for one in row] for row in expected]
 
 
@@ -133,3 +147,114 @@ def _as_python(text: str) -> str:
 
 def test_an_exact_fraction_and_its_double_are_shown_alike(fields):
     assert number_text(fields["Thirds"], Fraction(2, 3)) == number_text(fields["Thirds"], 2 / 3) == "0.7"
+
+
+FORMATS = """\
+icdgen: 1
+node: {name: charger, title: Charger, byte_order: big, bit_order: msb0}
+enums:
+  - {name: Mode, members: [{value: 0, name: Idle}, {value: 1, name: Run}]}
+messages:
+  - name: State
+    kind: configuration
+    set_id: 1
+    get_id: 2
+    length: 30
+    fields:
+      - {at: 0, bits: 16, name: Voltage, type: uint, formula: raw/3, unit: V, display: {decimals: 2}}
+      - {at: 16, bits: 12, name: Faults, type: uint, display: hex}
+      - {at: 28, bits: 4, name: Outputs, type: uint, display: binary}
+      - {at: 32, bits: 32, name: Gain, type: float, display: {digits: 4}}
+      - {at: 64, bits: 64, name: Bias, type: float, display: {decimals: 1}}
+      - {at: 128, bits: 16, name: Whole, type: int, formula: raw*0.5, display: {decimals: 0}}
+      - {at: 144, bits: 8, name: Mode, type: enum, enum: Mode, display: hex}
+      - {at: 152, bits: 24, name: Pressure, type: uint, formula: "0.001*raw^2", display: {digits: 3}}
+      - {at: 176, bits: 64, name: Mask, type: uint, display: hex}
+    derived:
+      - {name: Power, formula: Voltage*Gain, display: {decimals: 3}}
+"""
+EXPECTED = [
+    ("Voltage", 65, "21.67"),
+    ("Voltage", 3, "1.00"),
+    ("Faults", 0x0F1, "0x0F1"),
+    ("Outputs", 5, "0b0101"),
+    ("Gain", 0.0234567, "0.02346"),
+    ("Gain", 123456.0, "123500"),
+    ("Bias", -0.04, "0.0"),
+    ("Bias", -1.25, "-1.3"),
+    ("Whole", 5, "3"),
+    ("Whole", -5, "-3"),
+    ("Mode", 1, "Run"),
+    ("Mode", 200, "unknown 0xC8"),
+    ("Pressure", 12345, "152000"),
+    ("Mask", 1 << 63, "0x8000000000000000"),
+    ("Power", 1.0, "1.000"),
+]
+
+
+@pytest.fixture(scope="module")
+def charger(tmp_path_factory):
+    return icd_of(FORMATS, tmp_path_factory.mktemp("charger"))
+
+
+def raw_of(field: Field, number: float) -> int:
+    return floats.bits_of(number, field.bits) if field.type == "float" else int(number)
+
+
+@pytest.mark.parametrize(("name", "number", "text"), EXPECTED)
+def test_a_value_is_displayed_in_the_format_that_its_field_states(charger, name, number, text):
+    field = next(one for one in charger.nodes[0].messages[0].fields if one.name == name)
+    assert Row(field, raw_of(field, number)).text == text
+
+
+def test_json_has_the_full_precision_whatever_the_display_format(charger):
+    fields = {one.name: one for one in charger.nodes[0].messages[0].fields}
+    assert Row(fields["Voltage"], 65).to_json()["physical"] == 65 / 3
+    assert Row(fields["Faults"], 0xF1).to_json()["value"] == 0xF1
+    assert Row(fields["Bias"], raw_of(fields["Bias"], -0.04)).to_json()["value"] == -0.04
+
+
+@pytest.mark.parametrize(("name", "number"), [("Faults", 0xF1), ("Outputs", 5), ("Mask", 1 << 63)])
+def test_a_displayed_bit_pattern_can_be_entered_again(charger, name, number):
+    field = next(one for one in charger.nodes[0].messages[0].fields if one.name == name)
+    assert from_physical(field, Row(field, number).text) == number
+
+
+def test_the_site_displays_values_in_the_format_of_their_fields(charger):
+    node = charger.nodes[0]
+    plan, fields = message_plan(node.messages[0], node), node.messages[0].fields
+    by_name = {one["name"]: one for one in plan["fields"]}
+    enums = {one.name: enum_plan(one) for one in node.enums}
+    cases = [
+        [by_name[field.name], str(raw_of(field, number))]
+        for name, number, _ in EXPECTED
+        for field in fields
+        if field.name == name
+    ]
+    function = "(([cases, enums]) => cases.map(([field, raw]) => values.shortText(field, BigInt(raw), enums)))"
+    shown = in_page(function, [cases, enums])
+    expected = [text + (" V" if name == "Voltage" else "") for name, _, text in EXPECTED]
+    assert shown == [text if text != "unknown 0xC8" else "0xC8?" for text in expected]
+
+
+def test_show_states_the_display_format_and_its_json_reads_back(charger, tmp_path):
+    tree = to_json(charger)
+    jsonschema_rs.validator_for(json.loads(SCHEMA.read_text("utf-8"))).validate(tree)
+    (message,) = tree["nodes"][0]["messages"]
+    assert [one.get("display") for one in message["fields"]][:4] == [{"decimals": 2}, "hex", "binary", {"digits": 4}]
+    assert message["derived"][0]["display"] == {"decimals": 3}
+    text = to_text(charger, ["charger", "State"])
+    assert "displayed with 2 decimals" in text and "displayed in hexadecimal" in text
+    shown = tmp_path / "charger.json"
+    shown.write_text(json.dumps(tree), "utf-8")
+    fields = shown_input.from_file(shown).icd.nodes[0].messages[0].fields
+    assert [one.display for one in fields] == [one.display for one in charger.nodes[0].messages[0].fields]
+
+
+def test_generated_code_does_not_depend_on_the_display_format(charger, tmp_path):
+    plain = icd_of(re.sub(r", display: (\{.*?\}|\w+)", "", FORMATS), tmp_path)
+    assert "display" not in json.dumps(to_json(plain))
+    nodes = [replace(icd.nodes[0], digest="") for icd in (charger, plain)]
+    for name in ("c", "python", "rust"):
+        files = [dict(backends.get(name).files(Icd((node,)), renderer(name))) for node in nodes]
+        assert files[0] and files[0] == files[1]

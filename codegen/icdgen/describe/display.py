@@ -1,7 +1,7 @@
-"""Digits of physical values for people: as many as the resolution of a field warrants, decided here for all outputs.
+"""Values for people: the display format of a field, else as many digits as its resolution warrants. For all outputs.
 
 A value whose decimal ends soon is shown in full. Others, such as values of polynomials, are rounded: their further digits
-come from the arithmetic in doubles. JSON and logs have the full precision.
+come from the arithmetic in doubles. JSON and logs have the full precision, whatever the display format is.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 from icdgen.describe.numbers import exact_text
 from icdgen.icd.curve import Curve
+from icdgen.icd.display import BINARY, DECIMALS, HEX, OF_BITS
 from icdgen.icd.formula import Scale
 from icdgen.icd.model import Field
 
@@ -31,10 +32,38 @@ class Digits(NamedTuple):
 
     decimals: int | None = None
     significant: int | None = None
+    is_fixed: bool = False  # whether zeros at the end of the decimals are kept
+
+
+class Base(NamedTuple):
+    """How a raw value is written that is displayed as a bit pattern: ``0x`` and 4 digits of base 16."""
+
+    prefix: str
+    base: int
+    width: int
+
+
+def base_of(field: Field) -> Base | None:
+    """Return how the raw values of a field are written if the ICD displays them in hexadecimal or binary; else None."""
+    kind = field.display.kind if field.display else ""
+    if kind == HEX:
+        return Base("0x", 16, -(-field.bits // 4))
+    return Base("0b", 2, field.bits) if kind == BINARY else None
+
+
+def integer_text(field: Field, raw: int) -> str:
+    """Return the raw value of an integer field: ``18``, or ``0x12`` in its display format."""
+    base = base_of(field)
+    if base is None:
+        return str(raw)
+    return f"{base.prefix}{raw:0{base.width}{'X' if base.base == 16 else 'b'}}"
 
 
 def digits_of(field: Field) -> Digits | None:
     """How the physical values of a field are rounded; None where they are shown in full."""
+    if field.display is not None and field.display.kind not in OF_BITS:
+        places = field.display.places
+        return Digits(decimals=places, is_fixed=True) if field.display.kind == DECIMALS else Digits(significant=places)
     if field.type == "float":
         computed = field.curve is not None or field.derived is not None
         return Digits(significant=_DIGITS[field.bits]) if computed else None
@@ -66,8 +95,9 @@ def number_text(field: Field, value: float | Fraction) -> str:
             return _plain(repr(number))
         if digits.decimals is not None:
             text = f"{exact.quantize(Decimal(1).scaleb(-digits.decimals)):f}"
-            text = text.rstrip("0").rstrip(".") if "." in text else text
-            return "0" if text == "-0" else text
+            if not digits.is_fixed and "." in text:
+                text = text.rstrip("0").rstrip(".")
+            return text if text.strip("-0.") else text.removeprefix("-")
         context.prec = digits.significant or 1
         return _plain(repr(float(+exact)))
 

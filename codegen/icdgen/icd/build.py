@@ -10,6 +10,7 @@ from itertools import chain
 from typing import Any
 
 from icdgen.icd import annex, conditions, curve, derived, division, floats, formula, model, tails, wire_ids
+from icdgen.icd.display import display_of
 from icdgen.icd.errata import Applied
 from icdgen.icd.implied import implied_count
 from icdgen.icd.located import Map, plain, unread
@@ -270,6 +271,7 @@ class Builder:
             const=get("const"),
             special=self.special(item, kind) if "special" in item else (),
             limits=limits(item),
+            display=display_of(get("display")),
             byte_order=byte_order,
             bit_order=bit_order,
             view=get("view", False),
@@ -312,6 +314,7 @@ def derived_field(how: derived.Derivation, length: int, item: Map, unit: Unit | 
         identifier=item.get("identifier"),
         unit=unit,
         formula=item["formula"],
+        display=display_of(item.get("display")),
         summary=item.get("summary", ""),
         aliases=tuple(item.get("aliases", ())),
         view=True,

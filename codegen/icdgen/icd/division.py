@@ -8,7 +8,7 @@ from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 from icdgen.icd.trees import mappings
 
-OF_A_WHOLE = ("unit", "formula", "points", "outside", "const", "special", "min", "max", "above", "below")
+OF_A_WHOLE = ("unit", "formula", "points", "outside", "const", "special", "min", "max", "above", "below", "display")
 """Keys that say what a value means: of a divided field its parts say so."""
 
 

@@ -16,6 +16,7 @@ from icdgen.frozen import dataclass
 from icdgen.icd.annex import Loggable, Missing
 from icdgen.icd.curve import Curve, leads_back
 from icdgen.icd.derived import Derivation
+from icdgen.icd.display import Display as Display
 from icdgen.icd.enumeration import Enum as Enum
 from icdgen.icd.enumeration import Member as Member
 from icdgen.icd.erratum import Erratum as Erratum
@@ -86,6 +87,7 @@ class Field:
     const: int | None = None
     special: tuple[Special, ...] = ()
     limits: Limits | None = None
+    display: Display | None = None
     summary: str = ""
     byte_order: str = ""  # its own or its message's; empty: the node's
     bit_order: str = ""  # likewise; `at` is counted by it

@@ -133,8 +133,8 @@ def _explain(error: Any, tree: Map, path: list[Any], owner: Map, place: Place) -
         message = f"{what} cannot be {_describe(error.instance)}"
     elif name in ("minItems", "minProperties"):
         message = f"{what} is empty" if rule[name] == 1 else f"{what} has less than {rule[name]} entries"
-    elif name == "maxItems":
-        message = f"{what} has more than {rule[name]} entries"
+    elif name in ("maxItems", "maxProperties"):
+        message = f"{what} has more than {rule[name]} {'entry' if rule[name] == 1 else 'entries'}"
     elif name == "anyOf":
         keys = (f"`{key}`" for choice in rule["anyOf"] for key in choice["required"])
         message = f"{what} has neither {' nor '.join(keys)}"

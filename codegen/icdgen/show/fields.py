@@ -79,6 +79,8 @@ def remarks(
             most = "up to " if part is not None else ""
             every = f", every {byte_count(step.struct.length)}"
             yield f"{most}{step.count} times{every}" if step.count > 1 else f"{most}once"
+    if field.display is not None:
+        yield field.display.words
     if field.curve is not None and field.curve.points:
         yield f"points {points_text(field.curve, 12)}"
     if field.const is not None:

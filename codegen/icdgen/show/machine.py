@@ -125,6 +125,7 @@ def _field(field: Field) -> _Object:
         **(field.curve.plain if field.curve else {}),
         formula=field.formula if field.has_formula else None,
         special=[_attributes(one) for one in field.special],
+        display=field.display.plain if field.display else None,
         limits={bound.key: str(bound.value) for bound in bounds(field.limits)},  # exact, like `scale`
         view=True if field.view else None,
         when={one.field: list(one.values) for one in field.when},
@@ -134,7 +135,8 @@ def _field(field: Field) -> _Object:
 
 def _derived(field: Field) -> _Object:
     found = {key: getattr(field, key) for key in ("name", "identifier", "formula", "summary")}
-    return _present(**found, aliases=list(field.aliases), unit=field.unit_symbol or None)
+    display = field.display.plain if field.display else None
+    return _present(**found, aliases=list(field.aliases), unit=field.unit_symbol or None, display=display)
 
 
 def _row(one: Enum | Member | Loggable | Struct) -> _Object:

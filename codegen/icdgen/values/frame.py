@@ -9,7 +9,7 @@ from fractions import Fraction
 
 from icdgen import codec, layout
 from icdgen.describe.bounds import bounds
-from icdgen.describe.display import number_text
+from icdgen.describe.display import digits_of, integer_text, number_text
 from icdgen.describe.numbers import bit_range, exact_text, value_text
 from icdgen.icd import floats
 from icdgen.icd.model import Field, Icd, Message, Node
@@ -47,14 +47,14 @@ class Row:
 
     @property
     def raw_text(self) -> str:
-        """The raw value for people: a number, or hexadecimal for floats and bytes; of what is derived none."""
+        """Raw value for people: a number in its display format, hexadecimal for floats and bytes; empty for derived values."""
         if self.field.derived is not None:
             return ""
         if isinstance(self.raw, bytes):
             return self.raw.hex(" ")
         if self.field.type == "float":
             return f"0x{self.raw:0{self.field.bits // 4}X}"
-        return str(self.raw)
+        return integer_text(self.field, self.raw)
 
     @property
     def text(self) -> str:
@@ -63,10 +63,11 @@ class Row:
         if isinstance(self.raw, bytes):
             return codec.text(self.raw) if kind == "text" else self.raw_text
         if kind == "enum":
-            return self.member if self.member is not None else f"unknown {self.raw}"
+            return self.member if self.member is not None else f"unknown {self.raw_text}"
         if kind == "bool":
             return "true" if self.raw else "false"
-        if self.number is not None and (self.field.curve is not None or self.field.derived is not None):
+        is_rounded = kind == "float" and digits_of(self.field) is not None
+        if self.number is not None and (self.field.curve is not None or is_rounded):
             return number_text(self.field, self.number)
         if kind == "float":
             return floats.text_of(codec.float_value(self.field, self.raw), self.field.bits)

@@ -13,15 +13,18 @@ _DECIMAL = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1
 _RATIO = re.compile(r"[+-]?[0-9]+/0*[1-9][0-9]*")
 _INTEGER = re.compile(r"[+-]?[0-9]+")
 _HEX = re.compile(r"([+-]?)0[xX]([0-9A-Fa-f]+)")
+_BINARY = re.compile(r"0[bB][01]+")
 _SPECIAL = {"nan": "nan", "inf": "inf", "infinity": "inf"}
 
 
 def integer(text: str) -> int | None:
-    """``12``, ``-3``, ``0x5A``; None if it is none of these."""
+    """Return the integer that a text states: ``12``, ``-3``, ``0x5A``, ``0b101``; None for any other text."""
     if len(text) > LONGEST:
         return None
     if match := _HEX.fullmatch(text):
         return int(match[1] + match[2], 16)
+    if _BINARY.fullmatch(text):
+        return int(text, 2)
     return int(text) if _INTEGER.fullmatch(text) else None
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from icdgen import codec
 from icdgen.backends.html.texts import MINUS, number
-from icdgen.describe.display import number_text
+from icdgen.describe.display import base_of, digits_of, integer_text, number_text
 from icdgen.icd import floats
 from icdgen.icd.model import Field, Message, Node
 from icdgen.tables import clean
@@ -65,14 +65,19 @@ def _cell(field: Field, raw: int | bytes | None) -> Cell:
         return Cell(shown if len(raw) <= 16 else f"{shown[:47]} …", clean(said))
     if field.type == "float":
         value = floats.text_of(codec.float_value(field, raw), field.bits)
-        if field.curve is not None or field.derived is not None:
+        if digits_of(field) is not None:
             value = number_text(field, codec.value_double(field, raw))
         return Cell(f"0x{raw:0{field.bits // 4}X}", value.replace("-", MINUS))
     if field.enum is not None:
         member = field.enum.member_of(raw)
         name = member.name if member else "no member"
-        return Cell(number(raw), name)
+        return Cell(_raw(field, raw), name)
     if field.type == "bool":
         return Cell(str(raw), "true" if raw else "false")
     physical = codec.physical(field, raw) if field.curve is None else codec.value_double(field, raw)
-    return Cell(number(raw), "" if physical is None else number_text(field, physical).replace("-", MINUS))
+    return Cell(_raw(field, raw), "" if physical is None else number_text(field, physical).replace("-", MINUS))
+
+
+def _raw(field: Field, raw: int) -> str:
+    """The raw value of an integer field in its display format."""
+    return integer_text(field, raw) if base_of(field) else number(raw)

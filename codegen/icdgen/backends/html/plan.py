@@ -9,7 +9,7 @@ from collections.abc import Mapping
 
 from icdgen import layout
 from icdgen.describe.bounds import bounds
-from icdgen.describe.display import digits_of
+from icdgen.describe.display import base_of, digits_of
 from icdgen.describe.steps import EXACT_DOUBLE, steps
 from icdgen.icd.model import Enum, Field, Message, Node
 
@@ -51,7 +51,7 @@ def integer(value: int) -> int | str:
 def _field(field: Field, message: Message, node: Node, places: Mapping[str, int]) -> dict[str, object]:
     """The plan of a field; what does not apply is left out. ``places``: of the message's fields by name."""
     scaled, curve, how, tail = steps(field), field.curve, field.derived, message.tail
-    digits = digits_of(field)
+    digits, base = digits_of(field), base_of(field)
     pieces = () if field.implied or field.is_bytes else layout.pieces(field, node)
     is_part = bool(curve) and field.leads_back and field.ends != (field.raw_min, field.raw_max)
     limits = {one.key: [integer(one.value.numerator), integer(one.value.denominator)] for one in bounds(field.limits)}
@@ -70,6 +70,8 @@ def _field(field: Field, message: Message, node: Node, places: Mapping[str, int]
         "oneWay": curve is not None and not field.leads_back,
         "decimals": digits.decimals if digits else None,
         "digits": digits.significant if digits else None,
+        "fixed": digits is not None and digits.is_fixed,
+        "base": list(base) if base else None,
         "ends": list(field.ends) if is_part else None,
         "unit": field.unit_symbol or None,
         "enum": field.enum.name if field.enum else None,

@@ -6,7 +6,17 @@ from collections.abc import Iterator
 
 from icdgen.diff.context import Context
 from icdgen.diff.generated import is_called_otherwise
-from icdgen.diff.pairs import EnumPair, IdentifiedPair, MessagePair, NodePair, Pair, differing, orders, place_of
+from icdgen.diff.pairs import (
+    EnumPair,
+    FieldPair,
+    IdentifiedPair,
+    MessagePair,
+    NodePair,
+    Pair,
+    differing,
+    orders,
+    place_of,
+)
 from icdgen.diff.rule import Found, rule
 from icdgen.diff.where import Places
 from icdgen.icd.rules.wording import quote
@@ -74,6 +84,15 @@ def reserved_said_otherwise(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     if was != now:
         text = f"{quote(pair.new.name)} is said to end with {now or 'no'} reserved bytes, was with {was or 'none'}"
         yield Found(text, ("reserved", "length"), str(was), str(now))
+
+
+@rule("DIF417", "field", severity="note")
+def displayed_otherwise(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+    was, now = (side.display.words if side.display else "" for side in (pair.old, pair.new))
+    if was != now:
+        default = "displayed by its resolution"
+        text = f"{quote(pair.new.name)} is {now or default}, was {was or default}"
+        yield Found(text, ("display",), was, now)
 
 
 @rule("DIF409", "node", severity="note")

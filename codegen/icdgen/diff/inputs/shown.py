@@ -15,6 +15,7 @@ from icdgen.diff.inputs.side import Side
 from icdgen.errors import UserError, unreadable
 from icdgen.icd import annex, curve, derived, model, schema, source
 from icdgen.icd.build import derived_field
+from icdgen.icd.display import display_of
 from icdgen.icd.formula import FormulaError, Scale
 from icdgen.icd.implied import implied_count
 from icdgen.icd.located import Map, Seq, plain
@@ -227,6 +228,7 @@ class _Reader:
             scale=_scale(item),
             curve=_curve(item),
             special=tuple(model.Special(**_as_it_is(model.Special, one)) for one in item.get("special", ())),
+            display=display_of(item.get("display")),
             limits=model.Limits(**limits) if "limits" in item else None,
             view=item.get("view", False),
             when=tuple(model.Condition(name, tuple(values)) for name, values in item.get("when", {}).items()),

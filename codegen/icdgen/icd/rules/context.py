@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 # Keys of a field that only few fields have.
 RARE = ("enum", "unit", "formula", "formula_for", "points", "outside", "const", "special", "bitfields", "byte_order",
-    "bit_order", "view", "when",
+    "bit_order", "view", "when", "display",
 )  # fmt: skip
 
 Owner = Message | Struct
@@ -64,8 +64,9 @@ class Context:
             for key in row[0].source:
                 if key in having:
                     having[key].append(row)
-        derived = ((f, m, n) for m, n in self.messages for f in m.views if f.derived is not None)
-        having["unit"] += (row for row in derived if "unit" in row[0].source)
+        derived = [(f, m, n) for m, n in self.messages for f in m.views if f.derived is not None]
+        for key in ("unit", "display"):
+            having[key] += (row for row in derived if key in row[0].source)
         self.declared: list[Any] | None = None  # what backends declare; see `declarations`
         self._scopes: dict[int, tuple[Node, ...]] = {}
 

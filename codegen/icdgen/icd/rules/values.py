@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from icdgen.icd import floats
 from icdgen.icd.build import float_bits
+from icdgen.icd.display import OF_BITS
 from icdgen.icd.fault import Fault
 from icdgen.icd.model import Field, Member
 from icdgen.icd.rules.context import Context
@@ -100,3 +101,38 @@ def _misfit(field: Field, value: int | None) -> tuple[str, str] | None:
     shown = str(value) if abs(value) < 1 << 64 else f"of {value.bit_length()} bits"
     what = f"{shown} does not fit {quote(field.name)}"
     return what, f"{count(field.bits, 'bit')} of `{field.type}` hold {field.raw_min} to {field.raw_max}"
+
+
+@rule("ICD036")
+def display_suits(ctx: Context) -> Iterator[Fault]:
+    for field, _, _ in ctx.having["display"]:
+        format_, name = field.display, quote(field.name)
+        if format_ is None:
+            continue
+        has_bits = field.type in ("uint", "enum") and not field.signed
+        is_scaled = field.type in ("uint", "int") and not field.source.keys().isdisjoint(("formula", "points"))
+        if format_.kind in OF_BITS and is_scaled:
+            message = (
+                f"{name} has a scale, so that its value is a physical one, which `{format_.kind}` does not display"
+            )
+            yield Fault.at(field.source, "display", message, "use `{decimals: N}` or `{digits: N}`")
+        elif format_.kind in OF_BITS and not has_bits:
+            message = f"{name} is {_in_words(field)}, which `{format_.kind}` does not display"
+            help = "use `{decimals: N}` or `{digits: N}`" if field.type == "float" else "remove `display`"
+            help = "use `type: uint` for a bit pattern, or remove `display`" if field.type == "int" else help
+            yield Fault.at(field.source, "display", message, help)
+        elif format_.kind not in OF_BITS and field.type != "float" and not is_scaled:
+            without = " without a scale" if field.type in ("uint", "int") else ""
+            message = f"{name} is {_in_words(field)}{without}: its value has no {format_.kind}"
+            help = "remove `display`, or use `hex` or `binary`" if has_bits else "remove `display`"
+            yield Fault.at(field.source, "display", message, help)
+
+
+def _in_words(field: Field) -> str:
+    """The type of a field: ``a float``, ``an enumeration with negative values``."""
+    if field.derived is not None:
+        return "a derived value"
+    if field.type == "enum":
+        return "an enumeration with negative values" if field.signed else "an enumeration"
+    words = {"uint": "an unsigned integer", "int": "a signed integer", "bool": "a flag", "float": "a float"}
+    return words.get(field.type, f"`{field.type}`")
