@@ -10,7 +10,7 @@ const icdgenPasted = ((frames) => {
     /^t(?<id>[0-9A-Fa-f]{3})(?<size>[0-8])(?<data>(?:[0-9A-Fa-f]{2})*)$/,
     /^R(?<id>[0-9A-Fa-f]{8})[0-8](?<data>)$/,
   ];
-  const STAMP = 2; // bytes of the time that an slcan adapter may append
+  const STAMP = 2; // bytes of the time that an slcan adapter may append: milliseconds of the minute
   const DUMPED =
     /^(?:0x)?(?<at>[0-9A-Fa-f]{4,8})(?<mark>:?)(?<space>\s*)(?<data>(?:[0-9A-Fa-f]{2}){0,4}(?:\s{1,2}(?:[0-9A-Fa-f]{2}){1,4}(?=\s|$))*)(?<text>\s*\|.*\|?|\s{2,}.*)?$/;
   const WORDS = 7; // digits of an address of hexdump and od
@@ -60,7 +60,8 @@ const icdgenPasted = ((frames) => {
     const size = Number(groups.size ?? data.length);
     const fits = data.length === size || (/^t/i.test(line) && data.length === size + STAMP);
     if (groups.data !== "remote request" && !fits) return null;
-    return { id: parseInt(groups.id, 16), data: data.slice(0, size), extended: groups.id.length === 8, time: (groups.time ?? "").trim() };
+    const time = fits && data.length > size ? ((data[size] * 256 + data[size + 1]) / 1000).toFixed(3) : (groups.time ?? "").trim();
+    return { id: parseInt(groups.id, 16), data: data.slice(0, size), extended: groups.id.length === 8, time };
   }
 
   function dump(text) {

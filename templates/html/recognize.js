@@ -3,7 +3,7 @@
  * What a frame is: node, message and direction are found, framing, ids and checksums come off, as `icdgen decode` does it.
  *
  * A reading is `{ what, message, node, title, url, id, data, checked, remarks, leftOut, time }`, `leftOut` being reports about other
- * packets of the input, `time` what candump printed, `what` telecommand, telemetry, request,
+ * packets of the input, `time` what candump printed or seconds of slcan, `what` telecommand, telemetry, request,
  * acknowledge, refusal, or configuration where nothing tells the direction.
  */
 const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {

@@ -107,6 +107,11 @@ def test_the_times_of_candump_are_kept(icd):
     assert "time" not in recognize(icd, f"100#{DRIVE}")[0].to_json()
 
 
+def test_the_times_of_slcan_are_kept_as_seconds_of_the_minute(icd):
+    found = recognize(icd, f"t1008{DRIVE}1234\nt1018{BRAKE}EA5F\nt1008{DRIVE}")
+    assert [one.time for one in found] == ["4.660", "59.999", ""]
+
+
 def test_a_message_of_several_packets_has_the_time_of_the_last(shipped):
     (message,) = [one for one in shipped.node("cubeacp").messages if one.telemetry_id == 0xBE]
     pieces = [bytes(range(at, at + 7))[: message.length - at].ljust(7, b"\0") for at in range(0, message.length, 7)]

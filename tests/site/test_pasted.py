@@ -51,12 +51,12 @@ def test_every_way_to_paste_a_frame_is_read_as_on_the_command_line():
             found = read(text)
         except BadHex:
             return None
-        return [list(found.data), [[p.id, list(p.data), p.extended] for p in found.packets], found.form]
+        return [list(found.data), [[p.id, list(p.data), p.extended, p.time] for p in found.packets], found.form]
 
     found = node(
         """(texts) => texts.map((text) => attempt(() => {
             const { data, form, packets } = pasted.read(text);
-            return [[...(data ?? [])], (packets ?? []).map((p) => [p.id, [...p.data], p.extended]), form ?? ""];
+            return [[...(data ?? [])], (packets ?? []).map((p) => [p.id, [...p.data], p.extended, p.time]), form ?? ""];
         })).map((one) => (one.error ? null : one))""",
         texts,
     )

@@ -17,11 +17,14 @@ _FORMS = (
     re.compile(r"t(?P<id>[0-9A-Fa-f]{3})(?P<size>[0-8])(?P<data>(?:[0-9A-Fa-f]{2})*)"),
     re.compile(r"R(?P<id>[0-9A-Fa-f]{8})[0-8](?P<data>)"),
 )
-_STAMP = 2  # bytes of the time that an slcan adapter may append
+_STAMP = 2  # bytes of the time that an slcan adapter may append: milliseconds of the minute (Lawicel manual, command Z)
 
 
 class Printed(NamedTuple):
-    """A packet. ``extended``: the identifier has 29 bits, not 11. ``time``: as candump printed it; empty without one."""
+    """A packet. ``extended``: the identifier has 29 bits, not 11.
+
+    ``time`` is what candump printed, or the seconds of the minute of an slcan adapter; empty without one.
+    """
 
     id: int
     data: bytes
@@ -51,4 +54,6 @@ def _packet(line: str) -> Iterator[Printed]:
     if text != "remote request" and len(data) not in (size, size + _STAMP if line[0] in "tT" else size):
         return
     time = (match.groupdict().get("time") or "").strip()
+    if len(data) > size:
+        time = f"{int.from_bytes(data[size:], 'big') / 1000:.3f}"
     yield Printed(int(match["id"], 16), data[:size], len(match["id"]) == 8, time)
