@@ -9,6 +9,11 @@ import pytest
 from icdgen.loading import load
 from icdgen.show.people import to_text
 from icdgen.values.errors import NotFound
+from icdgen.values.find import find_message
+from icdgen.values.frame import frame
+from icdgen.values.text import to_text as values_text
+from tests.conformance.icds import icd_of
+from tests.conftest import ROOT
 from tests.show.test_machine import BASE, OVERLAY, TOP
 
 EXPECTED = """\
@@ -132,3 +137,16 @@ offset  bits  type      name       unit  from     to
     16    16  reserved
 """
     assert to_text(load([tmp_path / "demo.yaml"]).icd, ["demo", "peak"]) == expected
+
+
+def test_ids_of_several_bytes_are_shown_as_decode_shows_them():
+    icd = icd_of([ROOT / "examples" / "links"])
+    clock = to_text(icd, ["receiver", "Navigation Clock"])
+    assert clock.startswith("receiver: Navigation Clock\ntelemetry 01 22; ")
+    assert "(telemetry 01 22)" in values_text(
+        frame(icd, icd.node("receiver"), find_message(icd, "receiver", "Navigation Clock"), bytes(20))
+    )
+    assert "01 22  telemetry" in to_text(icd, ["receiver"])
+    with pytest.raises(NotFound) as error:
+        find_message(icd, "receiver", "Navigation Clock", "telecommand")
+    assert error.value.help == "`Navigation Clock` is telemetry 01 22"

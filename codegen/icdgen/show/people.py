@@ -6,6 +6,7 @@ import textwrap
 from collections.abc import Sequence
 
 from icdgen.describe.errata import errata_of_enum, errata_of_message
+from icdgen.describe.ids import id_text, pair_bytes
 from icdgen.describe.numbers import length_text
 from icdgen.describe.shared_ids import sharing
 from icdgen.icd.erratum import Erratum
@@ -13,6 +14,7 @@ from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Icd, M
 from icdgen.icd.rules.wording import count
 from icdgen.icd.variants import ids_of
 from icdgen.icd.wire_ids import DEFAULT_BITS, size
+from icdgen.protocol import facts as protocol_facts
 from icdgen.show.fields import field_table
 from icdgen.tables import Column, clean, render
 from icdgen.values.errors import NotFound
@@ -78,11 +80,12 @@ def _node(icd: Icd, node: Node, width: int | None, kind: str | None) -> str:
         _count(node),
     ]
     text = _lines([f"{node.name}: {node.title}", "; ".join(filter(None, facts)), node.summary], width)
+    form = protocol_facts.of(icd, node).stream
     messages = [m for m in icd.messages_of(node) if kind in (None, m.kind)]
     messages.sort(key=lambda m: m.node != node.name)  # its own first
     rows = [
         (
-            "/".join(map(str, m.ids)),
+            "/".join(id_text(form, id) for id in m.ids),
             m.kind,
             m.name,
             str(m.length) if len(m.lengths) == 1 else f"{m.least} to {m.length}",
@@ -96,13 +99,13 @@ def _node(icd: Icd, node: Node, width: int | None, kind: str | None) -> str:
     text += "\n" + render(_MESSAGES, rows, width) if rows else ""
     if node.enums:
         text += "\n" + _lines([f"Enumerations: {', '.join(e.name for e in node.enums)}"], width)
-    missing = [f"Missing: {m.kind} {m.id} {m.name}. {m.why}" for m in node.missing]
+    missing = [f"Missing: {m.kind} {id_text(form, m.id)} {m.name}. {m.why}" for m in node.missing]
     return text + ("\n" + _lines(missing, width) if missing else "")
 
 
 def _one(icd: Icd, node: Node, name: str, width: int | None, kind: str | None) -> str:
     try:
-        return _message(icd, find_message(icd, node.name, name, kind), width)
+        return _message(icd, node, find_message(icd, node.name, name, kind), width)
     except NotFound:
         family = (*icd.included(node), node)
         found = (
@@ -125,10 +128,12 @@ def _struct(struct: Struct, node: Node, width: int | None) -> str:
     return _lines(lines, width) + "\n" + field_table(struct, node, width)
 
 
-def _message(icd: Icd, message: Message, width: int | None) -> str:
-    node = icd.node(message.node)
+def _message(icd: Icd, asked: Node, message: Message, width: int | None) -> str:
+    node, form = icd.node(message.node), protocol_facts.of(icd, asked).stream
+    # An id that is written as its bytes, `01 35`, is hexadecimal already.
+    in_hex = "/".join(f"{i:0{2 * size(node.id_bits)}X}" for i in message.ids)
     facts = [
-        f"{describe(message)} (hex {'/'.join(f'{i:0{2 * size(node.id_bits)}X}' for i in message.ids)})",
+        describe(message, form) + ("" if pair_bytes(form) else f" (hex {in_hex})"),
         length_text(message),
         f"the last {message.reserved} reserved" if message.reserved else "",
         f"table {message.table}" if message.table else "",

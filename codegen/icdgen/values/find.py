@@ -12,6 +12,7 @@ from icdgen import naming
 from icdgen.describe.ids import id_text
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Field, Icd, Message, Node, Tail
 from icdgen.icd.paths import arrays_of, name_of
+from icdgen.protocol import facts
 from icdgen.protocol.envelope import Stream
 from icdgen.suggest import close_words
 from icdgen.values.errors import Ambiguous, NotFound
@@ -93,7 +94,8 @@ def find_message(icd: Icd, node_name: str, key: str, kind: str | None = None) ->
     if len(found) == 1:
         return found[0]
     if found:
-        listed = ", ".join(f"`{m.name}` ({describe(m)})" for m in found)
+        form = facts.of(icd, node).stream
+        listed = ", ".join(f"`{m.name}` ({describe(m, form)})" for m in found)
         raise Ambiguous(f"`{key}` fits several messages of {node.name}: {listed}", "give the full name, or the kind")
     raise NotFound(f"{node.name} has no {kind or 'message'} `{key}`", _message_help(icd, node, messages, key, kind))
 
@@ -221,7 +223,7 @@ def _message_help(icd: Icd, node: Node, messages: Sequence[Message], key: str, k
     if kind is not None:
         with suppress(NotFound, Ambiguous):
             other = find_message(icd, node.name, key)
-            return f"`{other.name}` is {describe(other)}"
+            return f"`{other.name}` is {describe(other, facts.of(icd, node).stream)}"
     elsewhere = [n.name for n in icd.nodes if n is not node and by_name(n.messages, key, n.vocabulary)]
     if elsewhere:
         return f"it is a message of {' and '.join(elsewhere)}"
