@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -15,10 +16,23 @@ from tests.importer.test_text import ENUM, LIST, MESSAGE, RAW
 TEXT = LIST.replace("\t6\n", "\t4\n").rsplit("141", 1)[0] + "\n" + MESSAGE + ENUM
 
 
+WORDS = Path(__file__).with_name("words.yaml")  # a profile without rules: the vocabulary that comes with icdgen
+
+
 def icdgen(*arguments, cwd) -> subprocess.CompletedProcess:
-    return subprocess.run(
-        [sys.executable, "-m", "icdgen", *map(str, arguments)], cwd=cwd, capture_output=True, text=True
-    )
+    """Run icdgen; an import of `pump.txt`, whose tables the vocabulary knows, gets the profile without rules."""
+    words = ["--profile", WORDS] if "pump.txt" in arguments and "--profile" not in arguments else []
+    command = [sys.executable, "-m", "icdgen", *map(str, [*arguments, *words])]
+    return subprocess.run(command, cwd=cwd, capture_output=True, text=True)
+
+
+def test_without_a_profile_nothing_becomes_a_message(folder):
+    command = [sys.executable, "-m", "icdgen", "import", "pump.txt"]
+    result = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    assert result.returncode == 1 and not (folder / "icd").exists()
+    assert "error[IMP004]: no rule gives a message" in result.stdout
+    assert "= help: write rules in a profile (--profile): --explore proposes them" in result.stdout
+    assert result.stdout.count("warning[IMP100]: no rule applies to table") == 3
 
 
 @pytest.fixture
@@ -221,7 +235,7 @@ def test_the_page_shows_each_doubtful_table_as_a_picture(tmp_path):
 
     manual = content.manual(content.shipped("common"), {"common": "Common"})
     LAYOUTS["ruled"](manual, tmp_path / "manual.pdf")
-    result = icdgen("import", "manual.pdf", "--report", "report.html", cwd=tmp_path)
+    result = icdgen("import", "manual.pdf", "--report", "report.html", "--profile", WORDS, cwd=tmp_path)
     assert (result.returncode, result.stderr) == (1, "")  # without its errata, the result has errors
     assert "error[" not in result.stdout
     page = (tmp_path / "report.html").read_text(encoding="utf-8")

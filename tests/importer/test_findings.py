@@ -101,7 +101,7 @@ def test_nothing_found_names_the_headings_that_were_seen_and_gives_a_report(tmp_
     (tmp_path / "odd.txt").write_text(text, encoding="utf-8")
     run = icdgen("import", "odd.txt", "--report", "report.html", cwd=tmp_path)
     assert run.returncode == 1
-    assert "tables begin with `Place | Size | Thing` (2 times)" in run.stdout
+    assert "no rule applies to tables 1, 2 with the headings `Place | Size | Thing`" in run.stdout
     assert "Things" in (tmp_path / "report.html").read_text("utf-8")
     assert not (tmp_path / "icd").exists()
 

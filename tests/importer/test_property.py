@@ -10,9 +10,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from icdgen.diagnostics import Findings
-from icdgen.importer import explore, html, profile, run
+from icdgen.importer import html, profile, run
 from icdgen.importer.pages.extract import Page, Word
 from icdgen.importer.reading import pdf
+from icdgen.importer.rules import explore
 from tests.importer.manuals.wild import WILD
 from tests.importer.test_text import ENUM, LIST, MESSAGE
 
@@ -81,7 +82,7 @@ def test_shuffled_cut_and_dropped_cells_of_a_text_are_read_or_reported(data, tmp
     path.write_text(text, encoding="utf-8")
     result, trees = run.run(path, WORDS, jobs=1)
     check(trees, text)
-    explore.report(result, WORDS)
+    explore.report(result.tables, "manual.txt")
     html.report(result)
 
 

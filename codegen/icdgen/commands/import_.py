@@ -18,7 +18,6 @@ from icdgen.errors import UserError
 
 if TYPE_CHECKING:
     from icdgen.definitions.model import Reader
-    from icdgen.importer.profile import Profile
     from icdgen.importer.run import Result
     from icdgen.importer.targets import Target
 
@@ -45,7 +44,10 @@ ABOUT_FILES = frozenset({"IMP002", "IMP003", "IMP005"})
 @click.option("--out", type=PATH, default=Path("icd"), show_default=True, help="Folder for the ICDs, one file a node.")
 @click.option("--kind", help="Kind of a definition that is not recognized by how it begins: xtce, dbc, ksy ...")
 @click.option(
-    "--profile", "words", metavar="PROFILE", help="Vocabulary of the manual: a YAML file, or the name of a shipped one."
+    "--profile",
+    "words",
+    metavar="PROFILE",
+    help="Rules that say what the tables mean: a YAML file, or the name of a shipped one.",
 )
 @click.option(
     "--update",
@@ -61,7 +63,7 @@ ABOUT_FILES = frozenset({"IMP002", "IMP003", "IMP005"})
 )
 @click.option("--descriptions", is_flag=True, help="Hold the manual's descriptions as summaries.")
 @click.option(
-    "--explore", is_flag=True, help="Say what kinds of tables there are, and propose a profile; import nothing."
+    "--explore", is_flag=True, help="Print the kinds of tables, and for each a rule to be completed; import nothing."
 )
 @click.option(
     "--tables",
@@ -123,6 +125,7 @@ def import_(
         return
     try:
         vocabulary = profile.load(profile.find(words))
+        vocabulary.has_rules |= words is None  # nothing becomes a message that no profile asks for
         with _progress() as progress:
             result, trees = run.run(manual, vocabulary, progress, jobs, descriptions, pages)
         if folder is not None:
@@ -134,16 +137,16 @@ def import_(
         if table is not None:
             say(_explanation(result, table))
             sys.exit(0)
-        if not explore and (folder is None or vocabulary.has_rules):
+        if not explore and (folder is None or vocabulary.rules):
             result.targets = targets.aim(trees, out, update, dry_run)
     except Findings as error:
         _refuse(error, manual, form)
         sys.exit(1)
     invalid = False
-    if folder is not None and not vocabulary.has_rules and not explore:
+    if folder is not None and not vocabulary.rules and not explore:
         sys.exit(0)  # the tables were what was asked for
     if explore:
-        _explore(result, vocabulary, form)
+        _explore(result, form)
     else:
         checked = targets.check(result.targets)
         invalid = has_errors(checked)
@@ -250,19 +253,11 @@ def _explanation(result: Result, number: int) -> str:
     return explain.explain(result.interpretation, number)
 
 
-def _explore(result: Result, vocabulary: Profile, form: str) -> None:
-    from icdgen.importer import explore
+def _explore(result: Result, form: str) -> None:
+    from icdgen.importer.rules import explore
 
-    if result.interpretation is not None:
-        from icdgen.importer.rules import explore as by_kind
-
-        document = result.document.file
-        report = by_kind.as_json if form == "json" else by_kind.report
-        say(report(result.tables, document).rstrip("\n"))
-    elif form == "json":
-        click.echo(explore.as_json(result))
-    else:
-        say(explore.report(result, vocabulary).rstrip("\n"))
+    report = explore.as_json if form == "json" else explore.report
+    say(report(result.tables, result.document.file).rstrip("\n"))
 
 
 def _say(result: Result, checked: list[Finding], dry_run: bool) -> None:

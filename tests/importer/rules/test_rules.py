@@ -266,6 +266,16 @@ def test_a_rule_without_columns_reads_a_message_without_parameters(tmp_path):
     assert "it has 6 bytes and no field" in found(result, "IMP034")[0] and result.failed
 
 
+def test_each_row_of_a_table_of_commands_is_a_message_without_parameters(tmp_path):
+    rules = r"""rules:
+  - tables: {head: Command | Code}
+    message: {kind: telecommand, length: 0}
+    columns: {Command: message, Code: id, Remarks: message_text}
+"""
+    _, tree = read(tmp_path, "Commands\nCommand\tCode\tRemarks\nStart\t0x10\tStarts it\nHalt\t0x11\t\n", rules)
+    assert [(m["name"], m["id"], m["length"]) for m in tree["messages"]] == [("Start", 16, 0), ("Halt", 17, 0)]
+
+
 def test_lists_name_the_groups_of_messages_and_what_can_be_logged(tmp_path):
     text = "List of Pump Telemetry\nID\tName\tLength\nState\t\t\n33\tMotor state\t1\n34\tTank\t2\n"
     text += "Motor state (0x21)\nByte\tName\tType\n0\tMode\tu8\nLogs\nMask\tFrame\n00 02\t33\n"

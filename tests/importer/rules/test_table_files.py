@@ -10,7 +10,7 @@ from icdgen.diagnostics import Findings
 from icdgen.importer import table_files
 from tests.importer.rules.test_mistakes import RULES, TABLE
 from tests.importer.rules.test_rules import NODE
-from tests.importer.test_command import icdgen
+from tests.importer.test_command import WORDS, icdgen
 
 
 @pytest.fixture
@@ -80,6 +80,8 @@ def test_explain_says_which_rule_read_a_table_and_why_others_did_not(folder):
     result = icdgen("import", "state.txt", "--profile", "rules.yaml", "--explain", "2", cwd=folder)
     assert result.returncode == 2 and "tables are numbered from 1 to 1" in result.stderr
     result = icdgen("import", "state.txt", "--explain", "1", cwd=folder)
+    assert result.returncode == 0 and "no rule applies: the table gives nothing" in result.stdout
+    result = icdgen("import", "state.txt", "--profile", WORDS, "--explain", "1", cwd=folder)
     assert result.returncode == 2 and "--explain needs a profile with rules" in result.stderr
 
 

@@ -130,6 +130,8 @@ class _Interpreter:
                 part.pairs.append((value, name))
                 part.texts.append(roles.get("text"))
             return
+        if not part.rule.has_fields and what in ("message", "registers"):
+            return
         draft = reader.read(roles)
         if draft is not None:
             part.drafts.append(draft)

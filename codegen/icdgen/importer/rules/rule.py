@@ -82,6 +82,13 @@ class Rule:
     base: int = 10
 
     @property
+    def has_fields(self) -> bool:
+        """Whether the rule gives roles of fields; else every row is a message without parameters."""
+        patterns = [pattern for column in (*self.columns, *self.lines) for pattern in column.patterns]
+        given = {*self.each, *(role for pattern in patterns for role in pattern.roles)}
+        return not given <= set(MESSAGE_ROLES)
+
+    @property
     def heading_titles(self) -> list[str]:
         """The headings that `head` names; empty if it has patterns, or a single heading, which many texts have."""
         titles = [title.strip() for title in re.split(r"\s\|\s", self.head)] if self.head not in ("", "none") else []
