@@ -87,7 +87,7 @@ def get(name: str) -> Backend:
     if name not in found:
         there = sorted({*_BUILT_IN, *found})
         close = close_words(name, there, 1) or [one for one in there if one.startswith(name.lower())]
-        help = "a backend of another package must be installed beside icdgen"
+        help = "install the package of the backend in the environment of icdgen"
         raise UnknownBackend(
             f"there is no backend `{name}`; there are: {', '.join(there)}",
             f"did you mean `{close[0]}`?" if close else help,

@@ -74,7 +74,7 @@ def icd_arguments(command: Command) -> Command:
 
 def icd_option(command: Command) -> Command:
     """``--icd FILE`` (repeatable), for commands whose arguments are something else."""
-    text = "ICD file or folder (default: those of icdgen.toml, else those shipped)."
+    text = "ICD file or folder (default: the ICDs in icdgen.toml, or the shipped ones)."
     return click.option("--icd", "icds", multiple=True, type=PATH, help=text)(command)
 
 

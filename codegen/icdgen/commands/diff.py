@@ -62,7 +62,7 @@ def diff(
     unchecked: bool,
     everything: bool,
 ) -> None:
-    """Say what changed from OLD to NEW: on the wire, in meaning, in generated names, in words only.
+    """Report changes from OLD to NEW: on the wire, in meaning, in generated names, in text.
 
     A side is an ICD file or folder, a git revision (HEAD~1, or HEAD~1:icd/a.yaml), or the output of `icdgen show --format
     json` (a file, or - for standard input). A..B compares two revisions; a revision alone is compared with the working tree.

@@ -17,13 +17,13 @@ from icdgen.commands.common import PATH, chosen, icd_arguments, print_findings, 
 @click.option(
     "--previous",
     metavar="OLD",
-    help="Older release, for a page that says what changed: a file, a folder, a git revision.",
+    help="Older release to compare with: a file, a folder, a git revision. Adds a page of changes.",
 )
-@click.option("--serve", is_flag=True, help="Write nothing; serve the site, made anew whenever an ICD changes.")
+@click.option("--serve", is_flag=True, help="Write nothing; serve the site and update it when an ICD changes.")
 @click.option("--port", type=click.IntRange(0, 65535), default=8000, show_default=True, help="For --serve; 0: any.")
 @click.option("--check", is_flag=True, help="Write nothing; exit 1 if the site is not current.")
 def docs(icds: tuple[Path, ...], out: Path, previous: str | None, serve: bool, port: int, check: bool) -> None:
-    """Make the documentation site of ICDs: static pages that open from the folder, without a server."""
+    """Generate the documentation site: static pages that open from the folder, without a server."""
     from icdgen import site
 
     paths, config = chosen(icds)

@@ -29,7 +29,7 @@ class _Languages(click.Option):
 @click.option("--depfile", type=PATH, help="Also write a Make/Ninja dependency file.")
 @click.option("--templates", type=PATH, help="Folder of templates that replace shipped ones of the same name.")
 @click.option("--measured", type=PATH, help="Folder of measurements that go into the pack of `--lang assurance`.")
-@click.option("--quiet", "-q", is_flag=True, help="Say nothing on success.")
+@click.option("--quiet", "-q", is_flag=True, help="Print nothing on success.")
 @click.pass_obj
 def generate(
     obj: dict[str, str],
@@ -42,12 +42,12 @@ def generate(
     measured: Path | None,
     quiet: bool,
 ) -> None:
-    """Generate code from ICDs: files or folders; without any, those of icdgen.toml, else those shipped."""
+    """Generate code from ICDs: files or folders; by default those in icdgen.toml, or the shipped ones."""
     paths, config = chosen(icds)
     packages = of_project(config)
     asked = list(languages) or config.lang
     if not asked:
-        raise UserError("say what to generate", "for instance `icdgen --lang c`; or set `lang` in icdgen.toml")
+        raise UserError("no language to generate", "for instance `icdgen --lang c`; or set `lang` in icdgen.toml")
     if out is None:
         base = config.out or Path("generated")
         out = base / asked[0] if len(set(asked)) == 1 else base

@@ -22,7 +22,7 @@ _SUFFIXES = {".csv": "csv", ".jsonl": "jsonl", ".ndjson": "jsonl", ".parquet": "
 
 @click.command(epilog="Example: icdgen log wheels telemetry.bin --out telemetry.csv")
 @click.argument("words", nargs=-1, required=True, metavar="[NODE] FILE [MESSAGE]...")
-@click.option("--node", "name", help="The same as NODE.")
+@click.option("--node", "name", help="Node, instead of the argument NODE.")
 @click.option("--out", "-o", type=PATH, metavar="FILE", help="Convert to this file, whose ending tells the format.")
 @click.option("--format", "form", type=click.Choice(["csv", "jsonl", "parquet"]), help="Convert to this format.")
 @click.option("--head", type=click.IntRange(0), metavar="N", help="Only the first N rows.")
@@ -31,7 +31,7 @@ _SUFFIXES = {".csv": "csv", ".jsonl": "jsonl", ".ndjson": "jsonl", ".parquet": "
     type=click.Choice(["telemetry", "telecommand"]),
     default="telemetry",
     show_default=True,
-    help="What was recorded of a link with envelopes.",
+    help="Direction of a recorded framed stream.",
 )
 @icd_option
 def log(

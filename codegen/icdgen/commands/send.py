@@ -30,9 +30,9 @@ if TYPE_CHECKING:
 @click.option("--yes", "-y", is_flag=True, help="Send also what is dangerous, without asking.")
 @format_option("text", "json")
 def send(words: tuple[str, ...], icds: tuple[Path, ...], raw: bool, yes: bool, form: str, **options: Any) -> None:
-    """Send one telecommand and wait for its acknowledge, or for what the ICD says that it is answered with.
+    """Send one telecommand and wait for its acknowledge or response.
 
-    NODE may be left out where there is one only. What the ICD calls dangerous (its `hazard`) is shown and asked about first;
+    NODE may be left out where there is one only. A telecommand with a hazard (its `hazard`) is shown and asked about first;
     without a terminal to ask on it is only sent with --yes. Exit status: 0 acknowledged (or sent, if it is never acknowledged),
     1 refused, no answer or not sent, 2 misuse.
     """

@@ -54,7 +54,13 @@ class _Sim(click.Command):
 )
 @click.option("--loss", metavar="SHARE", help="Short for --fault drop=SHARE@packet,upload: packets of files are lost.")
 @click.option("--late", type=click.IntRange(1), default=1500, show_default=True, help="How late is late at most, ms.")
-@click.option("--seed", type=int, default=0, show_default=True, help="The same seed, the same faults.")
+@click.option(
+    "--seed",
+    type=int,
+    default=0,
+    show_default=True,
+    help="Seed of the random faults; the same seed gives the same faults.",
+)
 @click.option("--boot", type=click.IntRange(0), help="Boot time in ms (default: the ICD's).")
 @click.option("--busy", type=click.IntRange(0), default=20, show_default=True, help="Loading, erasing ... takes, ms.")
 @click.option("--processing", type=click.IntRange(0), default=0, show_default=True, help="A telecommand takes, ms.")
@@ -70,7 +76,7 @@ class _Sim(click.Command):
 def sim(
     name: str, pty: bool, tcp: int | None, udp: int | None, host: str, icds: tuple[Path, ...], **options: Any
 ) -> None:
-    """A device made from its ICD, on a pseudo-terminal (if nothing else is said), a TCP or a UDP port.
+    """Simulate a device on a pseudo-terminal (the default), a TCP or a UDP port.
 
     Prints where it listens, one line for each, and serves until it is interrupted or, with --orders, its input ends.
     """

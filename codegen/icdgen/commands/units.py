@@ -9,7 +9,7 @@ import click
 
 @click.command(epilog="Example: icdgen units")
 def units() -> None:
-    """List the units that every ICD may use; others are declared in the ICD under `units:`."""
+    """List the built-in units; declare others in the ICD under `units:`."""
     from icdgen import tables
     from icdgen.icd.units import SPELLINGS, STANDARD
 

@@ -121,7 +121,7 @@ def _conditions(field: Field, message: Message) -> str:
 
 def part_comment(part: Message, begins: Sequence[int]) -> str:
     """What is given of a message that another one repeats."""
-    return f"{words(part.name)}, as it is repeated from {' and from '.join(map(_from, begins))}."
+    return f"{words(part.name)}, repeated from {' and from '.join(map(_from, begins))}."
 
 
 def _from(at: int) -> str:
@@ -172,7 +172,7 @@ def field_comment(field: Field, told: Mapping[str, str], message: Message) -> Co
     """Name, place, range and unit; summary; values that are allowed or mean something. ``told``: as for a member."""
     tail = message.tail
     if tail is not None and field.implied:
-        what = f"how much of {words(tail.name)} the frame has, up to {tail.most}; told by its length"
+        what = f"how much of {words(tail.name)} the frame has, up to {tail.most}; identified by its length"
         return Comment(f"{words(field.name)}: {what}.")
     if field.derived is not None:
         head = f"{words(field.name)}{_unit(field)}: derived by `{words(field.formula)}`, in doubles, and never set."

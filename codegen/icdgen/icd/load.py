@@ -125,7 +125,9 @@ class _Loader:
         self.findings += treacherous
         if document == "icd" and "errata" in tree and "icdgen" not in tree:
             text = "this is an errata overlay, not an ICD"
-            self.findings.append(Finding("ICD010", text, tree.place, "name the ICD; its overlay is found beside it"))
+            self.findings.append(
+                Finding("ICD010", text, tree.place, "name the ICD; icdgen finds its errata file in the same folder")
+            )
             self.unreadable = True
             return None
         self.check_structure(tree, document, treacherous)
@@ -175,7 +177,7 @@ class _Loader:
         target = _resolved(path.parent / item)
         folder = _resolved(path.parent)
         if not target.is_relative_to(folder):
-            return f"`{item}` lies outside the folder of this file", "move it beside this file or below"
+            return f"`{item}` lies outside the folder of this file", "move it to the folder of this file or below"
         if target in stack:
             names = " -> ".join(p.name for p in (*stack[stack.index(target) :], target))
             return f"files include each other in a circle: {names}", "take one `include` out"

@@ -29,17 +29,17 @@ def session_options(command: Callable[..., Any]) -> Callable[..., Any]:
             metavar="PORT",
             help="tcp://HOST:PORT, udp://HOST:PORT, a terminal or serial port (/dev/ttyUSB0, COM3), can://INTERFACE/CHANNEL.",
         ),
-        click.option("--crc", is_flag=True, help="Use checksums where the ICD leaves that to the client."),
-        click.option("--address", type=click.IntRange(0), default=0, help="Our address, on CAN."),
+        click.option("--crc", is_flag=True, help="Use checksums that are optional in the ICD."),
+        click.option("--address", type=click.IntRange(0), default=0, help="Address of the client on CAN."),
         click.option(
             "--envelope",
             "chosen",
             multiple=True,
             metavar="ROLE=NUMBER",
-            help="What we put into a field of the envelope, such as source=3. Repeatable.",
+            help="Value of a header field, such as source=3. Repeatable.",
         ),
-        click.option("--timeout", type=click.IntRange(1), metavar="MS", help="How long a reply is waited for."),
-        click.option("--retries", type=click.IntRange(0, 255), help="How often a request is sent again."),
+        click.option("--timeout", type=click.IntRange(1), metavar="MS", help="Time-out of a response in milliseconds."),
+        click.option("--retries", type=click.IntRange(0, 255), help="Number of repetitions of a request."),
     ]
     for option in reversed(options):
         command = option(command)

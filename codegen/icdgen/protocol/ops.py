@@ -231,7 +231,7 @@ def stream_encode(known: Facts, request: Request) -> dict[str, Any]:
     form, direction = _envelope(known, request)
     id, data, values = number(request, "id"), octets(request), request.get("values", {})
     if not isinstance(values, dict) or not set(values) <= set(GIVEN):
-        raise Refusal("request", detail="`values` are those of fields that the sender chooses, by role")
+        raise Refusal("request", detail="`values` has the fields that the sender chooses, by role")
     chosen = {role: number(values, role) for role in values}
     return {"bytes": stream.encode(form, direction, id, data, chosen).hex()}
 

@@ -26,7 +26,7 @@ _WHAT = {
 def readings(speakers: Sequence[Speaker], packets: Sequence[Printed], asked: Asked) -> list[Reading]:
     """The messages that the packets make, in their order. Raises `NotFound`, `BadLength` or `Ambiguous`."""
     if not all(packet.extended for packet in packets):
-        text = "a packet has an 11-bit identifier, those of the ICD have 29 bits"
+        text = "a packet has an 11-bit identifier, but the identifiers of the ICD have 29 bits"
         raise NotFound(text, "candump prints them with 8 digits")
     sent = [CanPacket(packet.id, packet.data) for packet in packets]
     times = [packet.time for packet in packets]

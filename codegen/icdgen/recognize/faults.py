@@ -182,7 +182,7 @@ def _fault_of_whole(
         lengths = f"{row.least}" if row.least == row.most else f"{row.least} to {row.most}"
         text = f"a {title} has {byte_count(size)} of data, the ICD says {lengths}"
         return Fault(rank + 300, text, "bytes are missing, or too many", row.most, size, is_certain=True)
-    text = f"a {title} has data that are not those of the message, by length and constants"
+    text = f"a {title} has data that do not match the length and constants of the message"
     return Fault(rank + 300, text, "a byte was damaged, or there are too many", size, size)
 
 

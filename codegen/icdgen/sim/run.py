@@ -52,7 +52,7 @@ class Options:
     chosen: Sequence[str] = ()
 
 
-FRAMING = "`protocol.uart.framing` or `stream` says so; `icdgen init NAME` writes an ICD that has it"
+FRAMING = "describe the link in `protocol.uart.framing` or `stream`; `icdgen init NAME` writes an example"
 
 
 def node_of(icd: Icd, name: str | None) -> Node:

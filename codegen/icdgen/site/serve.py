@@ -131,7 +131,7 @@ def serve(
         raise UserError(f"cannot listen on port {port}: {error.strerror}", "choose another one with --port") from None
     with server:
         site = source.site()
-        state = f"{len(site.files)} files" if site.ok else "the ICDs have errors, the pages say which"
+        state = f"{len(site.files)} files" if site.ok else "the ICDs have errors: see the pages"
         say(f"http://localhost:{server.server_port}/ ({state}); Ctrl+C ends it")
         try:
             server.serve_forever()

@@ -54,7 +54,7 @@ def encode(
     if not misnamed:
         with wrong.collect():
             _require(missing)
-    wrong.report(f"`icdgen show {node.name} {shlex.quote(message.name)}` says what each field takes")
+    wrong.report(f"`icdgen show {node.name} {shlex.quote(message.name)}` lists the values of each field")
     return frame(icd, node, message, codec.encode(icd.node(message.node), message, values), notes)
 
 

@@ -116,7 +116,7 @@ static inline const icd_field_t *cubeacp_actuator_commands_fields(size_t *count)
     return fields;
 }
 
-/** Magnetorquer Command, as it is repeated from byte 0. */
+/** Magnetorquer Command, repeated from byte 0. */
 static inline void cubeacp_actuator_commands_part_magnetorquer_command(
     const cubeacp_actuator_commands_t *ICDGEN_RESTRICT message,
     cubeacp_magnetorquer_command_t *ICDGEN_RESTRICT part)
@@ -126,7 +126,7 @@ static inline void cubeacp_actuator_commands_part_magnetorquer_command(
     part->z_magnetorquer_command = message->z_magnetorquer_command;
 }
 
-/** Wheel Speed Commands, as it is repeated from byte 6. */
+/** Wheel Speed Commands, repeated from byte 6. */
 static inline void cubeacp_actuator_commands_part_wheel_speed_commands(
     const cubeacp_actuator_commands_t *ICDGEN_RESTRICT message,
     cubeacp_wheel_speed_commands_t *ICDGEN_RESTRICT part)

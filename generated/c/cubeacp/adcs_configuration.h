@@ -1314,7 +1314,7 @@ static inline const icd_field_t *cubeacp_adcs_configuration_fields(size_t *count
     return fields;
 }
 
-/** Set Magnetorquer Configuration, as it is repeated from byte 0. */
+/** Set Magnetorquer Configuration, repeated from byte 0. */
 static inline void cubeacp_adcs_configuration_part_set_magnetorquer_configuration(
     const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
     cubeacp_set_magnetorquer_configuration_t *ICDGEN_RESTRICT part)
@@ -1324,7 +1324,7 @@ static inline void cubeacp_adcs_configuration_part_set_magnetorquer_configuratio
     part->magnetorquer_3_configuration = message->magnetorquer_3_configuration;
 }
 
-/** Set Wheel Configuration, as it is repeated from byte 3. */
+/** Set Wheel Configuration, repeated from byte 3. */
 static inline void cubeacp_adcs_configuration_part_set_wheel_configuration(
     const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
     cubeacp_set_wheel_configuration_t *ICDGEN_RESTRICT part)
@@ -1335,7 +1335,7 @@ static inline void cubeacp_adcs_configuration_part_set_wheel_configuration(
     part->rw4_configuration = message->rw4_configuration;
 }
 
-/** Set Rate Gyro Configuration, as it is repeated from byte 7. */
+/** Set Rate Gyro Configuration, repeated from byte 7. */
 static inline void cubeacp_adcs_configuration_part_set_rate_gyro_configuration(
     const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
     cubeacp_set_rate_gyro_configuration_t *ICDGEN_RESTRICT part)
@@ -1349,7 +1349,7 @@ static inline void cubeacp_adcs_configuration_part_set_rate_gyro_configuration(
     part->rate_sensor_mult = message->rate_sensor_mult;
 }
 
-/** CSS Configuration, as it is repeated from byte 17. */
+/** CSS Configuration, repeated from byte 17. */
 static inline void cubeacp_adcs_configuration_part_css_configuration(
     const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
     cubeacp_css_configuration_t *ICDGEN_RESTRICT part)
@@ -1377,7 +1377,7 @@ static inline void cubeacp_adcs_configuration_part_css_configuration(
     part->css_threshold = message->css_threshold;
 }
 
-/** CubeSense Configuration, as it is repeated from byte 38. */
+/** CubeSense Configuration, repeated from byte 38. */
 static inline void cubeacp_adcs_configuration_part_cubesense_configuration(
     const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
     cubeacp_cubesense_configuration_t *ICDGEN_RESTRICT part)
@@ -1444,7 +1444,7 @@ static inline void cubeacp_adcs_configuration_part_cubesense_configuration(
     part->cam_2_maximum_y_of_area_5 = message->cam_2_maximum_y_of_area_5;
 }
 
-/** Magnetometer Configuration, as it is repeated from byte 150. */
+/** Magnetometer Configuration, repeated from byte 150. */
 static inline void cubeacp_adcs_configuration_part_magnetometer_configuration(
     const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
     cubeacp_magnetometer_configuration_t *ICDGEN_RESTRICT part)
@@ -1466,7 +1466,7 @@ static inline void cubeacp_adcs_configuration_part_magnetometer_configuration(
     part->sensitivity_s32 = message->magnetometer_sensitivity_s32;
 }
 
-/** Redundant Magnetometer Configuration, as it is repeated from byte 180. */
+/** Redundant Magnetometer Configuration, repeated from byte 180. */
 static inline void cubeacp_adcs_configuration_part_redundant_mag_configuration(
     const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
     cubeacp_redundant_mag_configuration_t *ICDGEN_RESTRICT part)
@@ -1488,7 +1488,7 @@ static inline void cubeacp_adcs_configuration_part_redundant_mag_configuration(
     part->sensitivity_s32 = message->redundant_mag_sensitivity_s32;
 }
 
-/** Set Star Tracker Configuration, as it is repeated from byte 210. */
+/** Set Star Tracker Configuration, repeated from byte 210. */
 static inline void cubeacp_adcs_configuration_part_set_star_tracker_configuration(
     const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
     cubeacp_set_star_tracker_configuration_t *ICDGEN_RESTRICT part)
@@ -1521,7 +1521,7 @@ static inline void cubeacp_adcs_configuration_part_set_star_tracker_configuratio
     part->search_width = message->star_tracking_search_width;
 }
 
-/** Set Detumbling Control Parameters, as it is repeated from byte 263. */
+/** Set Detumbling Control Parameters, repeated from byte 263. */
 static inline void cubeacp_adcs_configuration_part_set_detumbling_control_parameters(
     const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
     cubeacp_set_detumbling_control_parameters_t *ICDGEN_RESTRICT part)
@@ -1532,7 +1532,7 @@ static inline void cubeacp_adcs_configuration_part_set_detumbling_control_parame
     part->fast_bdot_detumbling_gain = message->fast_bdot_detumbling_gain;
 }
 
-/** Set Y-Wheel Control Parameters, as it is repeated from byte 277. */
+/** Set Y-Wheel Control Parameters, repeated from byte 277. */
 static inline void cubeacp_adcs_configuration_part_set_y_wheel_control_parameters(
     const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
     cubeacp_set_y_wheel_control_parameters_t *ICDGEN_RESTRICT part)
@@ -1544,7 +1544,7 @@ static inline void cubeacp_adcs_configuration_part_set_y_wheel_control_parameter
     part->reference_wheel_momentum = message->reference_wheel_momentum;
 }
 
-/** Set Reaction Wheel Control Parameters, as it is repeated from byte 297. */
+/** Set Reaction Wheel Control Parameters, repeated from byte 297. */
 static inline void cubeacp_adcs_configuration_part_set_reaction_wheel_control_parameters(
     const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
     cubeacp_set_reaction_wheel_control_parameters_t *ICDGEN_RESTRICT part)
@@ -1556,7 +1556,7 @@ static inline void cubeacp_adcs_configuration_part_set_reaction_wheel_control_pa
     part->control_transition_on_wheel_error = message->control_transition_on_wheel_error;
 }
 
-/** Set Tracking Controller Gain Parameters, as it is repeated from byte 310. */
+/** Set Tracking Controller Gain Parameters, repeated from byte 310. */
 static inline void cubeacp_adcs_configuration_part_set_tracking_controller_gain_parameters(
     const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
     cubeacp_set_tracking_controller_gain_parameters_t *ICDGEN_RESTRICT part)
@@ -1567,7 +1567,7 @@ static inline void cubeacp_adcs_configuration_part_set_tracking_controller_gain_
     part->target_tracking_facet = message->target_tracking_facet;
 }
 
-/** Moment of Inertia Matrix, as it is repeated from byte 323. */
+/** Moment of Inertia Matrix, repeated from byte 323. */
 static inline void cubeacp_adcs_configuration_part_moment_of_inertia_matrix(
     const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
     cubeacp_moment_of_inertia_matrix_t *ICDGEN_RESTRICT part)
@@ -1580,7 +1580,7 @@ static inline void cubeacp_adcs_configuration_part_moment_of_inertia_matrix(
     part->product_of_inertia_iyz = message->product_of_inertia_iyz;
 }
 
-/** Estimation Parameters, as it is repeated from byte 347. */
+/** Estimation Parameters, repeated from byte 347. */
 static inline void cubeacp_adcs_configuration_part_estimation_parameters(
     const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
     cubeacp_estimation_parameters_t *ICDGEN_RESTRICT part)
@@ -1605,7 +1605,7 @@ static inline void cubeacp_adcs_configuration_part_estimation_parameters(
     part->cam2_period = message->cam2_period;
 }
 
-/** Augmented-SGP4 Parameters, as it is repeated from byte 378. */
+/** Augmented-SGP4 Parameters, repeated from byte 378. */
 static inline void cubeacp_adcs_configuration_part_augmented_sgp4_parameters(
     const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
     cubeacp_augmented_sgp4_parameters_t *ICDGEN_RESTRICT part)
@@ -1629,7 +1629,7 @@ static inline void cubeacp_adcs_configuration_part_augmented_sgp4_parameters(
     part->min_samples = message->min_samples;
 }
 
-/** User-coded Controller and Estimator Parameters, as it is repeated from byte 408. */
+/** User-coded Controller and Estimator Parameters, repeated from byte 408. */
 static inline void cubeacp_adcs_configuration_part_user_coded_controller_and_estimator_parameters(
     const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
     cubeacp_user_coded_controller_and_estimator_parameters_t *ICDGEN_RESTRICT part)

@@ -240,7 +240,7 @@ static inline const icd_field_t *cubeacp_adcs_measurements_fields(size_t *count)
     return fields;
 }
 
-/** Magnetic Field Vector, as it is repeated from byte 0. */
+/** Magnetic Field Vector, repeated from byte 0. */
 static inline void cubeacp_adcs_measurements_part_magnetic_field_vector(
     const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
     cubeacp_magnetic_field_vector_t *ICDGEN_RESTRICT part)
@@ -250,7 +250,7 @@ static inline void cubeacp_adcs_measurements_part_magnetic_field_vector(
     part->magnetic_field_z = message->magnetic_field_z;
 }
 
-/** Coarse Sun Vector, as it is repeated from byte 6. */
+/** Coarse Sun Vector, repeated from byte 6. */
 static inline void cubeacp_adcs_measurements_part_coarse_sun_vector(
     const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
     cubeacp_coarse_sun_vector_t *ICDGEN_RESTRICT part)
@@ -260,7 +260,7 @@ static inline void cubeacp_adcs_measurements_part_coarse_sun_vector(
     part->coarse_sun_z = message->coarse_sun_z;
 }
 
-/** Fine Sun Vector, as it is repeated from byte 12. */
+/** Fine Sun Vector, repeated from byte 12. */
 static inline void cubeacp_adcs_measurements_part_fine_sun_vector(
     const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
     cubeacp_fine_sun_vector_t *ICDGEN_RESTRICT part)
@@ -270,7 +270,7 @@ static inline void cubeacp_adcs_measurements_part_fine_sun_vector(
     part->sun_z = message->sun_z;
 }
 
-/** Nadir Vector, as it is repeated from byte 18. */
+/** Nadir Vector, repeated from byte 18. */
 static inline void cubeacp_adcs_measurements_part_nadir_vector(
     const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
     cubeacp_nadir_vector_t *ICDGEN_RESTRICT part)
@@ -280,7 +280,7 @@ static inline void cubeacp_adcs_measurements_part_nadir_vector(
     part->nadir_z = message->nadir_z;
 }
 
-/** Rate Sensor Rates, as it is repeated from byte 24. */
+/** Rate Sensor Rates, repeated from byte 24. */
 static inline void cubeacp_adcs_measurements_part_rate_sensor_rates(
     const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
     cubeacp_rate_sensor_rates_t *ICDGEN_RESTRICT part)
@@ -290,7 +290,7 @@ static inline void cubeacp_adcs_measurements_part_rate_sensor_rates(
     part->z_angular_rate = message->z_angular_rate;
 }
 
-/** Wheel Speed, as it is repeated from byte 30. */
+/** Wheel Speed, repeated from byte 30. */
 static inline void cubeacp_adcs_measurements_part_wheel_speed(
     const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
     cubeacp_wheel_speed_t *ICDGEN_RESTRICT part)
@@ -300,7 +300,7 @@ static inline void cubeacp_adcs_measurements_part_wheel_speed(
     part->z_wheel_speed = message->z_wheel_speed;
 }
 
-/** Star 1 Body Vector, as it is repeated from byte 36. */
+/** Star 1 Body Vector, repeated from byte 36. */
 static inline void cubeacp_adcs_measurements_part_star_1_body_vector(
     const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
     cubeacp_star_1_body_vector_t *ICDGEN_RESTRICT part)
@@ -310,7 +310,7 @@ static inline void cubeacp_adcs_measurements_part_star_1_body_vector(
     part->star1_body_z = message->star1_body_z;
 }
 
-/** Star 1 Orbit Vector, as it is repeated from byte 42. */
+/** Star 1 Orbit Vector, repeated from byte 42. */
 static inline void cubeacp_adcs_measurements_part_star_1_orbit_vector(
     const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
     cubeacp_star_1_orbit_vector_t *ICDGEN_RESTRICT part)
@@ -320,7 +320,7 @@ static inline void cubeacp_adcs_measurements_part_star_1_orbit_vector(
     part->star1_orbit_z = message->star1_orbit_z;
 }
 
-/** Star 2 Body Vector, as it is repeated from byte 48. */
+/** Star 2 Body Vector, repeated from byte 48. */
 static inline void cubeacp_adcs_measurements_part_star_2_body_vector(
     const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
     cubeacp_star_2_body_vector_t *ICDGEN_RESTRICT part)
@@ -330,7 +330,7 @@ static inline void cubeacp_adcs_measurements_part_star_2_body_vector(
     part->star2_body_z = message->star2_body_z;
 }
 
-/** Star 2 Orbit Vector, as it is repeated from byte 54. */
+/** Star 2 Orbit Vector, repeated from byte 54. */
 static inline void cubeacp_adcs_measurements_part_star_2_orbit_vector(
     const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
     cubeacp_star_2_orbit_vector_t *ICDGEN_RESTRICT part)
@@ -340,7 +340,7 @@ static inline void cubeacp_adcs_measurements_part_star_2_orbit_vector(
     part->star2_orbit_z = message->star2_orbit_z;
 }
 
-/** Star 3 Body Vector, as it is repeated from byte 60. */
+/** Star 3 Body Vector, repeated from byte 60. */
 static inline void cubeacp_adcs_measurements_part_star_3_body_vector(
     const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
     cubeacp_star_3_body_vector_t *ICDGEN_RESTRICT part)
@@ -350,7 +350,7 @@ static inline void cubeacp_adcs_measurements_part_star_3_body_vector(
     part->star3_body_z = message->star3_body_z;
 }
 
-/** Star 3 Orbit Vector, as it is repeated from byte 66. */
+/** Star 3 Orbit Vector, repeated from byte 66. */
 static inline void cubeacp_adcs_measurements_part_star_3_orbit_vector(
     const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
     cubeacp_star_3_orbit_vector_t *ICDGEN_RESTRICT part)

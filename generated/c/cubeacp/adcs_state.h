@@ -577,7 +577,7 @@ static inline const icd_field_t *cubeacp_adcs_state_fields(size_t *count)
     return fields;
 }
 
-/** Current ADCS State, as it is repeated from byte 0. */
+/** Current ADCS State, repeated from byte 0. */
 static inline void cubeacp_adcs_state_part_current_adcs_state(
     const cubeacp_adcs_state_t *ICDGEN_RESTRICT message,
     cubeacp_current_adcs_state_t *ICDGEN_RESTRICT part)
@@ -624,7 +624,7 @@ static inline void cubeacp_adcs_state_part_current_adcs_state(
     part->star_tracker_overcurrent_detected = message->star_tracker_overcurrent_detected;
 }
 
-/** Current ADCS State 2, as it is repeated from byte 6. */
+/** Current ADCS State 2, repeated from byte 6. */
 static inline void cubeacp_adcs_state_part_current_adcs_state_2(
     const cubeacp_adcs_state_t *ICDGEN_RESTRICT message,
     cubeacp_current_adcs_state_2_t *ICDGEN_RESTRICT part)
@@ -648,7 +648,7 @@ static inline void cubeacp_adcs_state_part_current_adcs_state_2(
     part->rate_sensor_failure = message->rate_sensor_failure;
 }
 
-/** Estimated Attitude Angles, as it is repeated from byte 12. */
+/** Estimated Attitude Angles, repeated from byte 12. */
 static inline void cubeacp_adcs_state_part_estimated_attitude_angles(
     const cubeacp_adcs_state_t *ICDGEN_RESTRICT message,
     cubeacp_estimated_attitude_angles_t *ICDGEN_RESTRICT part)
@@ -658,7 +658,7 @@ static inline void cubeacp_adcs_state_part_estimated_attitude_angles(
     part->estimated_yaw_angle = message->estimated_yaw_angle;
 }
 
-/** Estimated Quaternion, as it is repeated from byte 18. */
+/** Estimated Quaternion, repeated from byte 18. */
 static inline void cubeacp_adcs_state_part_estimated_quaternion(
     const cubeacp_adcs_state_t *ICDGEN_RESTRICT message,
     cubeacp_estimated_quaternion_t *ICDGEN_RESTRICT part)
@@ -668,7 +668,7 @@ static inline void cubeacp_adcs_state_part_estimated_quaternion(
     part->estimated_q3 = message->estimated_q3;
 }
 
-/** Estimated Angular Rates, as it is repeated from byte 24. */
+/** Estimated Angular Rates, repeated from byte 24. */
 static inline void cubeacp_adcs_state_part_estimated_angular_rates(
     const cubeacp_adcs_state_t *ICDGEN_RESTRICT message,
     cubeacp_estimated_angular_rates_t *ICDGEN_RESTRICT part)
@@ -678,7 +678,7 @@ static inline void cubeacp_adcs_state_part_estimated_angular_rates(
     part->estimated_z_angular_rate = message->estimated_z_angular_rate;
 }
 
-/** Satellite Position (ECI), as it is repeated from byte 30. */
+/** Satellite Position (ECI), repeated from byte 30. */
 static inline void cubeacp_adcs_state_part_satellite_position_eci(
     const cubeacp_adcs_state_t *ICDGEN_RESTRICT message,
     cubeacp_satellite_position_eci_t *ICDGEN_RESTRICT part)
@@ -688,7 +688,7 @@ static inline void cubeacp_adcs_state_part_satellite_position_eci(
     part->z_position = message->z_position;
 }
 
-/** Satellite Velocity (ECI), as it is repeated from byte 36. */
+/** Satellite Velocity (ECI), repeated from byte 36. */
 static inline void cubeacp_adcs_state_part_satellite_velocity_eci(
     const cubeacp_adcs_state_t *ICDGEN_RESTRICT message,
     cubeacp_satellite_velocity_eci_t *ICDGEN_RESTRICT part)
@@ -698,7 +698,7 @@ static inline void cubeacp_adcs_state_part_satellite_velocity_eci(
     part->z_velocity = message->z_velocity;
 }
 
-/** Satellite Position (LLH), as it is repeated from byte 42. */
+/** Satellite Position (LLH), repeated from byte 42. */
 static inline void cubeacp_adcs_state_part_satellite_position_llh(
     const cubeacp_adcs_state_t *ICDGEN_RESTRICT message,
     cubeacp_satellite_position_llh_t *ICDGEN_RESTRICT part)
@@ -708,7 +708,7 @@ static inline void cubeacp_adcs_state_part_satellite_position_llh(
     part->altitude = message->altitude;
 }
 
-/** ECEF Position, as it is repeated from byte 48. */
+/** ECEF Position, repeated from byte 48. */
 static inline void cubeacp_adcs_state_part_ecef_position(
     const cubeacp_adcs_state_t *ICDGEN_RESTRICT message,
     cubeacp_ecef_position_t *ICDGEN_RESTRICT part)

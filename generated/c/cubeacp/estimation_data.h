@@ -180,7 +180,7 @@ static inline const icd_field_t *cubeacp_estimation_data_fields(size_t *count)
     return fields;
 }
 
-/** IGRF Modelled Magnetic Field Vector, as it is repeated from byte 0. */
+/** IGRF Modelled Magnetic Field Vector, repeated from byte 0. */
 static inline void cubeacp_estimation_data_part_igrf_modelled_magnetic_field_vector(
     const cubeacp_estimation_data_t *ICDGEN_RESTRICT message,
     cubeacp_igrf_modelled_magnetic_field_vector_t *ICDGEN_RESTRICT part)
@@ -190,7 +190,7 @@ static inline void cubeacp_estimation_data_part_igrf_modelled_magnetic_field_vec
     part->field_z = message->igrf_modelled_magnetic_field_z;
 }
 
-/** Modelled Sun Vector, as it is repeated from byte 6. */
+/** Modelled Sun Vector, repeated from byte 6. */
 static inline void cubeacp_estimation_data_part_modelled_sun_vector(
     const cubeacp_estimation_data_t *ICDGEN_RESTRICT message,
     cubeacp_modelled_sun_vector_t *ICDGEN_RESTRICT part)
@@ -200,7 +200,7 @@ static inline void cubeacp_estimation_data_part_modelled_sun_vector(
     part->modelled_sun_vector_z = message->modelled_sun_vector_z;
 }
 
-/** Estimated Gyro Bias, as it is repeated from byte 12. */
+/** Estimated Gyro Bias, repeated from byte 12. */
 static inline void cubeacp_estimation_data_part_estimated_gyro_bias(
     const cubeacp_estimation_data_t *ICDGEN_RESTRICT message,
     cubeacp_estimated_gyro_bias_t *ICDGEN_RESTRICT part)
@@ -210,7 +210,7 @@ static inline void cubeacp_estimation_data_part_estimated_gyro_bias(
     part->estimated_z_gyro_bias = message->estimated_z_gyro_bias;
 }
 
-/** Estimation Innovation Vector, as it is repeated from byte 18. */
+/** Estimation Innovation Vector, repeated from byte 18. */
 static inline void cubeacp_estimation_data_part_estimation_innovation_vector(
     const cubeacp_estimation_data_t *ICDGEN_RESTRICT message,
     cubeacp_estimation_innovation_vector_t *ICDGEN_RESTRICT part)
@@ -220,7 +220,7 @@ static inline void cubeacp_estimation_data_part_estimation_innovation_vector(
     part->innovation_vector_z = message->innovation_vector_z;
 }
 
-/** Quaternion Error Vector, as it is repeated from byte 24. */
+/** Quaternion Error Vector, repeated from byte 24. */
 static inline void cubeacp_estimation_data_part_quaternion_error_vector(
     const cubeacp_estimation_data_t *ICDGEN_RESTRICT message,
     cubeacp_quaternion_error_vector_t *ICDGEN_RESTRICT part)
@@ -230,7 +230,7 @@ static inline void cubeacp_estimation_data_part_quaternion_error_vector(
     part->quaternion_error_q3 = message->quaternion_error_q3;
 }
 
-/** Quaternion Covariance, as it is repeated from byte 30. */
+/** Quaternion Covariance, repeated from byte 30. */
 static inline void cubeacp_estimation_data_part_quaternion_covariance(
     const cubeacp_estimation_data_t *ICDGEN_RESTRICT message,
     cubeacp_quaternion_covariance_t *ICDGEN_RESTRICT part)
@@ -240,7 +240,7 @@ static inline void cubeacp_estimation_data_part_quaternion_covariance(
     part->q3_rms = message->quaternion_covariance_q3_rms;
 }
 
-/** Angular Rate Covariance, as it is repeated from byte 36. */
+/** Angular Rate Covariance, repeated from byte 36. */
 static inline void cubeacp_estimation_data_part_angular_rate_covariance(
     const cubeacp_estimation_data_t *ICDGEN_RESTRICT message,
     cubeacp_angular_rate_covariance_t *ICDGEN_RESTRICT part)

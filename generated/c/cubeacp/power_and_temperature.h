@@ -185,7 +185,7 @@ static inline const icd_field_t *cubeacp_power_and_temperature_fields(size_t *co
     return fields;
 }
 
-/** CubeSense1 Current Measurements, as it is repeated from byte 0. */
+/** CubeSense1 Current Measurements, repeated from byte 0. */
 static inline void cubeacp_power_and_temperature_part_cubesense1_currents(
     const cubeacp_power_and_temperature_t *ICDGEN_RESTRICT message,
     cubeacp_cubesense1_currents_t *ICDGEN_RESTRICT part)
@@ -194,7 +194,7 @@ static inline void cubeacp_power_and_temperature_part_cubesense1_currents(
     part->cubesense1_cam_sram_current = message->cubesense1_cam_sram_current;
 }
 
-/** CubeSense2 Current Measurements, as it is repeated from byte 4. */
+/** CubeSense2 Current Measurements, repeated from byte 4. */
 static inline void cubeacp_power_and_temperature_part_cubesense2_currents(
     const cubeacp_power_and_temperature_t *ICDGEN_RESTRICT message,
     cubeacp_cubesense2_currents_t *ICDGEN_RESTRICT part)
@@ -203,7 +203,7 @@ static inline void cubeacp_power_and_temperature_part_cubesense2_currents(
     part->cubesense2_cam_sram_current = message->cubesense2_cam_sram_current;
 }
 
-/** CubeControl Current Measurements, as it is repeated from byte 8. */
+/** CubeControl Current Measurements, repeated from byte 8. */
 static inline void cubeacp_power_and_temperature_part_cubecontrol_currents(
     const cubeacp_power_and_temperature_t *ICDGEN_RESTRICT message,
     cubeacp_cubecontrol_currents_t *ICDGEN_RESTRICT part)
@@ -213,7 +213,7 @@ static inline void cubeacp_power_and_temperature_part_cubecontrol_currents(
     part->cubecontrol_vbat_current = message->cubecontrol_vbat_current;
 }
 
-/** Wheel Currents, as it is repeated from byte 14. */
+/** Wheel Currents, repeated from byte 14. */
 static inline void cubeacp_power_and_temperature_part_wheel_currents(
     const cubeacp_power_and_temperature_t *ICDGEN_RESTRICT message,
     cubeacp_wheel_currents_t *ICDGEN_RESTRICT part)
@@ -223,7 +223,7 @@ static inline void cubeacp_power_and_temperature_part_wheel_currents(
     part->wheel3_current = message->wheel3_current;
 }
 
-/** ADCS Misc Current Measurements, as it is repeated from byte 20. */
+/** ADCS Misc Current Measurements, repeated from byte 20. */
 static inline void cubeacp_power_and_temperature_part_adcs_misc_currents(
     const cubeacp_power_and_temperature_t *ICDGEN_RESTRICT message,
     cubeacp_adcs_misc_currents_t *ICDGEN_RESTRICT part)
@@ -233,7 +233,7 @@ static inline void cubeacp_power_and_temperature_part_adcs_misc_currents(
     part->cubestar_mcu_temperature = message->cubestar_mcu_temperature;
 }
 
-/** ADCS Temperatures, as it is repeated from byte 26. */
+/** ADCS Temperatures, repeated from byte 26. */
 static inline void cubeacp_power_and_temperature_part_adcs_temperatures(
     const cubeacp_power_and_temperature_t *ICDGEN_RESTRICT message,
     cubeacp_adcs_temperatures_t *ICDGEN_RESTRICT part)
@@ -243,7 +243,7 @@ static inline void cubeacp_power_and_temperature_part_adcs_temperatures(
     part->redundant_mag_temperature = message->redundant_mag_temperature;
 }
 
-/** Rate sensor temperatures, as it is repeated from byte 32. */
+/** Rate sensor temperatures, repeated from byte 32. */
 static inline void cubeacp_power_and_temperature_part_rate_sensor_temperatures(
     const cubeacp_power_and_temperature_t *ICDGEN_RESTRICT message,
     cubeacp_rate_sensor_temperatures_t *ICDGEN_RESTRICT part)

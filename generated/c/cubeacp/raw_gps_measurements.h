@@ -214,7 +214,7 @@ static inline const icd_field_t *cubeacp_raw_gps_measurements_fields(size_t *cou
     return fields;
 }
 
-/** Raw GPS Status, as it is repeated from byte 0. */
+/** Raw GPS Status, repeated from byte 0. */
 static inline void cubeacp_raw_gps_measurements_part_raw_gps_status(
     const cubeacp_raw_gps_measurements_t *ICDGEN_RESTRICT message,
     cubeacp_raw_gps_status_t *ICDGEN_RESTRICT part)
@@ -227,7 +227,7 @@ static inline void cubeacp_raw_gps_measurements_part_raw_gps_status(
     part->response_message_for_gps_log_setup = message->response_message_for_gps_log_setup;
 }
 
-/** Raw GPS Time, as it is repeated from byte 6. */
+/** Raw GPS Time, repeated from byte 6. */
 static inline void cubeacp_raw_gps_measurements_part_raw_gps_time(
     const cubeacp_raw_gps_measurements_t *ICDGEN_RESTRICT message,
     cubeacp_raw_gps_time_t *ICDGEN_RESTRICT part)
@@ -236,7 +236,7 @@ static inline void cubeacp_raw_gps_measurements_part_raw_gps_time(
     part->gps_time_milliseconds = message->gps_time_milliseconds;
 }
 
-/** Raw GPS X, as it is repeated from byte 12. */
+/** Raw GPS X, repeated from byte 12. */
 static inline void cubeacp_raw_gps_measurements_part_raw_gps_x(
     const cubeacp_raw_gps_measurements_t *ICDGEN_RESTRICT message,
     cubeacp_raw_gps_x_t *ICDGEN_RESTRICT part)
@@ -245,7 +245,7 @@ static inline void cubeacp_raw_gps_measurements_part_raw_gps_x(
     part->ecef_velocity_x = message->ecef_velocity_x;
 }
 
-/** Raw GPS Y, as it is repeated from byte 18. */
+/** Raw GPS Y, repeated from byte 18. */
 static inline void cubeacp_raw_gps_measurements_part_raw_gps_y(
     const cubeacp_raw_gps_measurements_t *ICDGEN_RESTRICT message,
     cubeacp_raw_gps_y_t *ICDGEN_RESTRICT part)
@@ -254,7 +254,7 @@ static inline void cubeacp_raw_gps_measurements_part_raw_gps_y(
     part->ecef_velocity_y = message->ecef_velocity_y;
 }
 
-/** Raw GPS Z, as it is repeated from byte 24. */
+/** Raw GPS Z, repeated from byte 24. */
 static inline void cubeacp_raw_gps_measurements_part_raw_gps_z(
     const cubeacp_raw_gps_measurements_t *ICDGEN_RESTRICT message,
     cubeacp_raw_gps_z_t *ICDGEN_RESTRICT part)

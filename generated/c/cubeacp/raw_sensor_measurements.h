@@ -202,7 +202,7 @@ static inline const icd_field_t *cubeacp_raw_sensor_measurements_fields(size_t *
     return fields;
 }
 
-/** Raw Cam2 Sensor, as it is repeated from byte 0. */
+/** Raw Cam2 Sensor, repeated from byte 0. */
 static inline void cubeacp_raw_sensor_measurements_part_raw_cam2_sensor(
     const cubeacp_raw_sensor_measurements_t *ICDGEN_RESTRICT message,
     cubeacp_raw_cam2_sensor_t *ICDGEN_RESTRICT part)
@@ -213,7 +213,7 @@ static inline void cubeacp_raw_sensor_measurements_part_raw_cam2_sensor(
     part->cam2_detection_result = message->cam2_detection_result;
 }
 
-/** Raw Cam1 Sensor, as it is repeated from byte 6. */
+/** Raw Cam1 Sensor, repeated from byte 6. */
 static inline void cubeacp_raw_sensor_measurements_part_raw_cam1_sensor(
     const cubeacp_raw_sensor_measurements_t *ICDGEN_RESTRICT message,
     cubeacp_raw_cam1_sensor_t *ICDGEN_RESTRICT part)
@@ -224,7 +224,7 @@ static inline void cubeacp_raw_sensor_measurements_part_raw_cam1_sensor(
     part->cam1_detection_result = message->cam1_detection_result;
 }
 
-/** Raw CSS 1 to 6, as it is repeated from byte 12. */
+/** Raw CSS 1 to 6, repeated from byte 12. */
 static inline void cubeacp_raw_sensor_measurements_part_raw_css_1_to_6(
     const cubeacp_raw_sensor_measurements_t *ICDGEN_RESTRICT message,
     cubeacp_raw_css_1_to_6_t *ICDGEN_RESTRICT part)
@@ -237,7 +237,7 @@ static inline void cubeacp_raw_sensor_measurements_part_raw_css_1_to_6(
     part->css6 = message->css6;
 }
 
-/** Raw CSS 7 to 10, as it is repeated from byte 18. */
+/** Raw CSS 7 to 10, repeated from byte 18. */
 static inline void cubeacp_raw_sensor_measurements_part_raw_css_7_to_10(
     const cubeacp_raw_sensor_measurements_t *ICDGEN_RESTRICT message,
     cubeacp_raw_css_7_to_10_t *ICDGEN_RESTRICT part)
@@ -248,7 +248,7 @@ static inline void cubeacp_raw_sensor_measurements_part_raw_css_7_to_10(
     part->css10 = message->css10;
 }
 
-/** Raw Magnetometer, as it is repeated from byte 22. */
+/** Raw Magnetometer, repeated from byte 22. */
 static inline void cubeacp_raw_sensor_measurements_part_raw_magnetometer(
     const cubeacp_raw_sensor_measurements_t *ICDGEN_RESTRICT message,
     cubeacp_raw_magnetometer_t *ICDGEN_RESTRICT part)
@@ -258,7 +258,7 @@ static inline void cubeacp_raw_sensor_measurements_part_raw_magnetometer(
     part->mag_z = message->mag_z;
 }
 
-/** Raw Rate Sensor, as it is repeated from byte 28. */
+/** Raw Rate Sensor, repeated from byte 28. */
 static inline void cubeacp_raw_sensor_measurements_part_raw_rate_sensor(
     const cubeacp_raw_sensor_measurements_t *ICDGEN_RESTRICT message,
     cubeacp_raw_rate_sensor_t *ICDGEN_RESTRICT part)

@@ -303,7 +303,7 @@ static inline const icd_field_t *cubeacp_raw_star_tracker_fields(size_t *count)
     return fields;
 }
 
-/** Star Performance1, as it is repeated from byte 0. */
+/** Star Performance1, repeated from byte 0. */
 static inline void cubeacp_raw_star_tracker_part_star_performance1(
     const cubeacp_raw_star_tracker_t *ICDGEN_RESTRICT message,
     cubeacp_star_performance1_t *ICDGEN_RESTRICT part)
@@ -316,7 +316,7 @@ static inline void cubeacp_raw_star_tracker_part_star_performance1(
     part->image_dark_value = message->image_dark_value;
 }
 
-/** Star Performance2, as it is repeated from byte 6. */
+/** Star Performance2, repeated from byte 6. */
 static inline void cubeacp_raw_star_tracker_part_star_performance2(
     const cubeacp_raw_star_tracker_t *ICDGEN_RESTRICT message,
     cubeacp_star_performance2_t *ICDGEN_RESTRICT part)
@@ -335,7 +335,7 @@ static inline void cubeacp_raw_star_tracker_part_star_performance2(
     part->star_3_confidence = message->star_3_confidence;
 }
 
-/** Star Magnitude, as it is repeated from byte 12. */
+/** Star Magnitude, repeated from byte 12. */
 static inline void cubeacp_raw_star_tracker_part_star_magnitude(
     const cubeacp_raw_star_tracker_t *ICDGEN_RESTRICT message,
     cubeacp_star_magnitude_t *ICDGEN_RESTRICT part)
@@ -345,7 +345,7 @@ static inline void cubeacp_raw_star_tracker_part_star_magnitude(
     part->magnitude_star_3 = message->magnitude_star_3;
 }
 
-/** Star 1 Raw Data, as it is repeated from byte 18. */
+/** Star 1 Raw Data, repeated from byte 18. */
 static inline void cubeacp_raw_star_tracker_part_star_1_raw_data(
     const cubeacp_raw_star_tracker_t *ICDGEN_RESTRICT message,
     cubeacp_star_1_raw_data_t *ICDGEN_RESTRICT part)
@@ -355,7 +355,7 @@ static inline void cubeacp_raw_star_tracker_part_star_1_raw_data(
     part->centroid_y_star_1 = message->centroid_y_star_1;
 }
 
-/** Star 2 Raw Data, as it is repeated from byte 24. */
+/** Star 2 Raw Data, repeated from byte 24. */
 static inline void cubeacp_raw_star_tracker_part_star_2_raw_data(
     const cubeacp_raw_star_tracker_t *ICDGEN_RESTRICT message,
     cubeacp_star_2_raw_data_t *ICDGEN_RESTRICT part)
@@ -365,7 +365,7 @@ static inline void cubeacp_raw_star_tracker_part_star_2_raw_data(
     part->centroid_y_star_2 = message->centroid_y_star_2;
 }
 
-/** Star 3 Raw Data, as it is repeated from byte 30. */
+/** Star 3 Raw Data, repeated from byte 30. */
 static inline void cubeacp_raw_star_tracker_part_star_3_raw_data(
     const cubeacp_raw_star_tracker_t *ICDGEN_RESTRICT message,
     cubeacp_star_3_raw_data_t *ICDGEN_RESTRICT part)
@@ -375,7 +375,7 @@ static inline void cubeacp_raw_star_tracker_part_star_3_raw_data(
     part->centroid_y_star_3 = message->centroid_y_star_3;
 }
 
-/** Star Timing, as it is repeated from byte 36. */
+/** Star Timing, repeated from byte 36. */
 static inline void cubeacp_raw_star_tracker_part_star_timing(
     const cubeacp_raw_star_tracker_t *ICDGEN_RESTRICT message,
     cubeacp_star_timing_t *ICDGEN_RESTRICT part)
@@ -385,7 +385,7 @@ static inline void cubeacp_raw_star_tracker_part_star_timing(
     part->identification = message->identification;
 }
 
-/** CubeStar Estimated Rates, as it is repeated from byte 42. */
+/** CubeStar Estimated Rates, repeated from byte 42. */
 static inline void cubeacp_raw_star_tracker_part_cubestar_estimated_rates(
     const cubeacp_raw_star_tracker_t *ICDGEN_RESTRICT message,
     cubeacp_cubestar_estimated_rates_t *ICDGEN_RESTRICT part)
@@ -395,7 +395,7 @@ static inline void cubeacp_raw_star_tracker_part_cubestar_estimated_rates(
     part->z_axis_rate = message->z_axis_rate;
 }
 
-/** CubeStar Estimated Quaternion, as it is repeated from byte 48. */
+/** CubeStar Estimated Quaternion, repeated from byte 48. */
 static inline void cubeacp_raw_star_tracker_part_cubestar_estimated_quaternion(
     const cubeacp_raw_star_tracker_t *ICDGEN_RESTRICT message,
     cubeacp_cubestar_estimated_quaternion_t *ICDGEN_RESTRICT part)

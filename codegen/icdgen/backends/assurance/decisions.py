@@ -17,13 +17,11 @@ ERRATA = (
 ASSUMPTIONS = ("node", "part of", "key", "value", "line", "why")
 MISSING = ("node", "kind", "id", "name", "why")
 _OF_ERRATA = (
-    "Errata are decisions about faults of the manual: what is printed, what is held instead, why, and how sure that is. Notes "
-    "change nothing. Each names the place where it is decided and the lines of the ICD that it touches.",
+    "Errata are decisions about errors of the manual: the printed value, the value that replaces it, the reason, and the "
+    "confidence. Notes change no value. Each names the place of the decision and the affected lines of the ICD.",
 )
-_OF_ASSUMPTIONS = (
-    "What the manual does not say and the code has to know, each with its reason, and the line of the ICD where that stands.",
-)
-_OF_MISSING = ("What the manual mentions and does not describe: there is no code for it.",)
+_OF_ASSUMPTIONS = ("Facts that the manual omits and the code needs, each with its reason and the line of the ICD.",)
+_OF_MISSING = ("Messages that the manual mentions and does not describe. No code is generated for them.",)
 
 
 def papers(

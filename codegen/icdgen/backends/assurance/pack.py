@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 _HOME = (
-    "What a review of the generated code asks for: where each line of the ICD comes from, what it became, and what would notice "
-    "that it is wrong; what was decided and assumed; and what was measured. Each paper is a page to print and a table in CSV.",
-    "The papers are made of the ICDs and of the golden vectors with the reference codec. They show that the vectors hold what the "
-    "ICD says. That the ICD says what the manual says, and that the manual says what the device does, they do not show.",
+    "Evidence for a review of the generated code: the origin of each line of the ICD, its generated names, and the tests that "
+    "detect an error in it; decisions and assumptions; and measurements. Each part is a page to print and a table in CSV.",
+    "The package is generated from the ICDs and the golden vectors with the reference codec. It shows that the vectors cover "
+    "the ICD. It does not show that the ICD agrees with the manual, or the manual with the device.",
 )
 
 

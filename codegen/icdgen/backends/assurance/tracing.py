@@ -18,14 +18,14 @@ _SHOWN = (
 )  # fmt: skip
 """Keys of what is printed in a row of the manual, in the order of a sentence."""
 _SAYS = (
-    "Each row is a line of the ICD: the row of the manual's table that it comes from, what it says, the names that the generated "
-    "code of each language has for it, and the golden vectors that notice a change of it, by their lines in the files of vectors.",
+    "Each row is a line of the ICD: its row in the manual's table, its content, its names in the generated code of each "
+    "language, and the golden vectors that detect a change of it, by their lines in the files of vectors.",
     "Each number, type and formula of the line was changed, one at a time: an offset by one bit and by eight, a width, an id, a "
-    "length or a value by one, each number of a formula in its last digit and by a factor of ten, a type to each other that fits. "
-    "Changes counts them, Unnoticed those that no vector notices. Vectors are those that notice any of them; which notice a "
-    "single one, changes.csv says.",
-    "Names, units, summaries and remarks are not held by vectors: another unit or another name gives other symbols. The protocol "
-    "section of a node is not traced here; vectors of its own hold it.",
+    "length or a value by one, each number of a formula in its last digit and by a factor of ten, a type to every other possible "
+    "type. Changes counts the changes, Unnoticed the changes that no vector detects. Vectors lists the vectors that detect any of "
+    "them; changes.csv lists the vectors of each single change.",
+    "Vectors do not cover names, units, summaries and remarks: another unit or name gives other symbols. The protocol section of a "
+    "node is not traced here; it has vectors of its own.",
 )
 TRACE = (
     "kind", "node", "part of", "name", "row", "table", "page", "file", "line", "says", "errata", "changes", "unnoticed", "vectors",

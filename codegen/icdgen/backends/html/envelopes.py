@@ -27,7 +27,7 @@ ENDS = {
 _ROLES = {
     "sync": "begins a message",
     "constant": "is always the same",
-    "id": "says which message it is",
+    "id": "identifies the message",
     "length": "says how long it is",
     "sequence": "counts messages",
     "source": "says who sends",

@@ -12,8 +12,8 @@ _TYPES = {
     "uint": "Unsigned integer of 1 to 64 bits.",
     "int": "Signed integer in two's complement.",
     "bool": "One bit: 1 is true.",
-    "enum": "Integer whose values have names, unsigned unless one of them is negative. Values without a name are kept.",
-    "float": "IEEE 754 number of 32 or 64 bits. Every NaN is kept as it is.",
+    "enum": "Integer whose values have names, unsigned unless one of them is negative. Values without a name stay numbers.",
+    "float": "IEEE 754 number of 32 or 64 bits. Every NaN keeps its bits.",
     "bytes": "Whole bytes, in order.",
     "text": "ASCII characters in whole bytes, filled with NUL.",
 }

@@ -23,9 +23,9 @@ def other_enumeration(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     if now and was:
         text = f"the values of {quote(pair.new.name)} are those of {quote(now)}, were those of {quote(was)}"
     elif now:
-        text = f"the values of {quote(pair.new.name)} have names now, those of {quote(now)}"
+        text = f"the values of {quote(pair.new.name)} now have names, as in {quote(now)}"
     else:
-        text = f"the values of {quote(pair.new.name)} no longer have names; they were those of {quote(was)}"
+        text = f"the values of {quote(pair.new.name)} no longer have names; they were in {quote(was)}"
     yield Found(text, ("enum", "type"), was, now, details, None if was and now else "warning")
 
 

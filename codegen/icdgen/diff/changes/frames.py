@@ -56,7 +56,7 @@ def id_taken_over(ctx: Context) -> Iterator[Found]:
                     continue
                 gone, come = ctx.pair(old), ctx.pair(new)
                 seen.add((id(old), id(new), kind))
-                same = " Both have the same length, so nobody will notice." if old.length == new.length else ""
+                same = " Both have the same length, so no decoder can notice." if old.length == new.length else ""
                 yield Found(
                     f"{kind} {number} was {quote(old.name)} and is {quote(new.name)} now",
                     was=old.name,

@@ -91,7 +91,9 @@ def condition_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     was, now = (_needs(one, message) for one, message in ((pair.old, pair.owner.old), (pair.new, pair.owner.new)))
     if _conditions(pair.old) != _conditions(pair.new):
         text = f"{quote(pair.new.name)} is {now}, was {was}"
-        yield Found(text, ("when", "name"), was, now, ("Elsewhere its bits are those of other fields, or of none.",))
+        yield Found(
+            text, ("when", "name"), was, now, ("In other frames its bits belong to other fields or are reserved.",)
+        )
 
 
 def _conditions(field: Field) -> set[tuple[str, frozenset[int]]]:
@@ -117,7 +119,7 @@ def read_otherwise(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     if {kind(old), kind(new)} == {"unsigned", "int"} and old.bits == new.bits:
         half = 1 << (new.bits - 1)
         first, last = (str(half), str(-half)) if new.signed else (str(-half), str(half))
-        details = (f"What was read as {first} is read as {last}.",)
+        details = (f"Bits read as {first} is read as {last}.",)
     text = f"{quote(new.name)} is a {type_of(new)}, was a {type_of(old)}"
     yield Found(text, ("type",), read_as(old), read_as(new), details)
 

@@ -147,7 +147,7 @@ def became_a_view(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     was, now = map(_standing, (pair.old, pair.new))
     if was != now:
         is_view = pair.new.view and pair.new.derived is None
-        details = ("What is encoded follows from the fields that have the bits.",) if is_view else ()
+        details = ("The encoded value follows from the fields that own the bits.",) if is_view else ()
         yield Found(f"{quote(pair.new.name)} is {now}, was {was}", ("view", "at", "name"), was, now, details)
 
 

@@ -69,7 +69,7 @@ def _few(points: list[str]) -> list[str]:
 def _times(old: Scale, new: Scale) -> tuple[str, ...]:
     if old.offset != new.offset:
         return ()
-    return (f"The same bits give {number(new.factor / old.factor)} times the value.",)
+    return (f"Identical bits give {number(new.factor / old.factor)} times the value.",)
 
 
 @rule("DIF202", "field")
@@ -139,5 +139,9 @@ def limits_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
         return
     was, now = _limits(pair.old), _limits(pair.new)
     text = f"{quote(pair.new.name)} may be {now or 'anything'}, could be {was or 'anything'}"
-    detail = "What was allowed still is." if is_wider(old, new) else "Values that were allowed no longer are."
+    detail = (
+        "Values that were allowed are still allowed."
+        if is_wider(old, new)
+        else "Values that were allowed no longer are."
+    )
     yield Found(text, KEYS, was, now, (detail,))

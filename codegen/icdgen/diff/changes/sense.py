@@ -16,11 +16,11 @@ from icdgen.icd.rules.wording import quote
 def answer_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     old, new = _answer(pair.old), _answer(pair.new)
     if old != new:
-        detail = "Who waits for the answer waits in vain."
+        detail = "A program that waits for the acknowledge times out."
         if pair.old.acknowledge == pair.new.acknowledge:
             detail = "No answer comes in either case, but the node restarts in one of them."
         elif pair.new.acknowledge:
-            detail = "An answer comes that nobody expects."
+            detail = "The device sends an acknowledge that old programs do not expect."
         yield Found(f"{quote(pair.new.name)} is {new} now", ("acknowledge", "name"), old, new, (detail,))
 
 

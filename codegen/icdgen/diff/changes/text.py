@@ -74,7 +74,7 @@ def parts_said_otherwise(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     old, new = (frozenset((p.message, p.at) for p in side.contains) for side in (pair.old, pair.new))
     if old != new:
         was, now = (", ".join(f"{name} at {at}" for name, at in sorted(some)) for some in (old - new, new - old))
-        text = f"{quote(pair.new.name)} is said to repeat other frames"
+        text = f"{quote(pair.new.name)} now declares repeated frames"
         yield Found(text, ("contains",), was, now)
 
 
@@ -82,7 +82,7 @@ def parts_said_otherwise(pair: MessagePair, ctx: Context) -> Iterator[Found]:
 def reserved_said_otherwise(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     was, now = pair.old.reserved, pair.new.reserved
     if was != now:
-        text = f"{quote(pair.new.name)} is said to end with {now or 'no'} reserved bytes, was with {was or 'none'}"
+        text = f"{quote(pair.new.name)} now declares at its end {now or 'no'} reserved bytes, was with {was or 'none'}"
         yield Found(text, ("reserved", "length"), str(was), str(now))
 
 

@@ -89,7 +89,7 @@ class Git:
         for path in paths:
             full = os.path.realpath(path)
             if not self.top or os.path.commonpath([full, top]) != top:
-                help = "say which ICDs are meant: REVISION:PATH, or `icds` in icdgen.toml"
+                help = "name the ICDs: REVISION:PATH, or `icds` in icdgen.toml"
                 raise UserError(f"{path} is not in this git repository", help)
             found.append(PurePosixPath(os.path.relpath(full, top).replace(os.sep, "/")))
         return found

@@ -63,5 +63,5 @@ def checksums_are_heeded(ctx: Context) -> Iterator[Fault]:
         if speak_can and CAN in telemetry.get("buses", (CAN,)):
             crc8 = node.source["protocol"]["crc8"]
             place = telemetry.at("buses") if "buses" in telemetry else crc8.key_at("telemetry")
-            message = "frames are read from CAN without a checksum, so that nothing would heed this one there"
+            message = "frames on CAN have no checksum, so this one has no effect there"
             yield Fault(telemetry, place, message, "name in `buses` the others that have it: uart, i2c")

@@ -114,7 +114,7 @@ def member_names(ctx: Context) -> Iterator[Fault]:
         for first, second in _twice(enum.members, lambda m: (m.name, m.identifier)):
             there = f"{first.value} ({line_of(first.source.at('name'), second.source.at('name'))})"
             message = f"{quote(second.name)} is already the name of {there}"
-            help = "if the manual does say so, give each an `identifier:` of its own"
+            help = "if the manual prints it so, give each its own `identifier:`"
             yield Fault.at(second.source, "name", message, help)
 
 

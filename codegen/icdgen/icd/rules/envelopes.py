@@ -61,13 +61,13 @@ def described_once(ctx: Context) -> Iterator[Fault]:
         protocol = link.node.source["protocol"]
         for key in protocol:
             if key not in BESIDE:
-                message = f"`{key}` is of another kind of link than `stream`, and nothing would heed it"
+                message = f"`{key}` belongs to another kind of link than `stream` and has no effect"
                 yield Fault.at_key(protocol, key, message, f"remove `{key}` or `stream`")
         uart = protocol.get("uart")
         client = protocol.get("client")
         for key in ("poll_interval_ms", "poll_timeout_ms"):
             if isinstance(client, Map) and key in client:
-                message = f"nothing is polled where messages travel in envelopes, and nothing would heed `{key}`"
+                message = f"`{key}` has no effect, because framed streams do not poll"
                 yield Fault.at_key(client, key, message, "remove it")
         for key in ("framing", "acknowledge"):
             if isinstance(uart, Map) and key in uart:
@@ -107,7 +107,7 @@ def _missing(ctx: Context, link: Link) -> Iterator[Fault]:
     lengths = link.of("length")
     if link.section.get("delimited_by") == "length":
         if not lengths:
-            help = "add one, or say what else delimits messages in `delimited_by`"
+            help = "add one, or choose another value of `delimited_by`"
             message = "no field has the role `length`, which delimits messages"
             yield Fault.at(link.section, "delimited_by", message, help)
         elif any(part == "trailer" for part, row in link.rows if row["role"] == "length"):
@@ -116,7 +116,9 @@ def _missing(ctx: Context, link: Link) -> Iterator[Fault]:
     for direction in DIRECTIONS:
         if len({id for id, _ in _ids(ctx, link.node, direction)}) > 1 and not link.of("id"):
             message = f"no field has the role `id`, and there are several messages in one direction ({direction})"
-            yield Fault.at(link.section, "delimited_by", message, "add one: nothing else tells them apart")
+            yield Fault.at(
+                link.section, "delimited_by", message, "add one: the link has no other way to distinguish them"
+            )
             return
 
 
@@ -172,7 +174,7 @@ def _contents(ctx: Context, link: Link) -> Iterator[Fault]:
     )
     empty = next((one for _, one in messages if one.least == 0 and around == 0), None)
     if empty is not None:
-        message = f"nothing is sent of {quote(empty.name)}, which can have no data"
+        message = f"no byte is sent for {quote(empty.name)}, which can have no data"
         yield Fault.at(link.section, "delimited_by", message, "add a field to `header`, such as an id")
     for row in link.of("length"):
         plus = row.get("plus", 0) + (around if row.get("counts") == "message" else 0)
@@ -204,7 +206,7 @@ def checksums_of_links(ctx: Context) -> Iterator[Fault]:
             used.add(name)
             known = checksums.get(name)
             if known is None:
-                message = f"no checksum is called {quote(name)}" if name else "it does not say which checksum it is"
+                message = f"no checksum is called {quote(name)}" if name else "the field names no checksum"
                 names = listing(f"`{key}`" for key in checksums) if checksums else "there are none"
                 yield Fault.at(row, "role", message, f"say in `checksum:` which of `checksums` it is: {names}")
             elif _is_known(known):
@@ -301,7 +303,9 @@ def alike_under_an_id(ctx: Context) -> Iterator[Fault]:
                 other = first.setdefault(id, one)
                 if bool(one.may_end_early) != bool(other.may_end_early):
                     whose = one if one.may_end_early else other
-                    message = f"zeros of {quote(whose.name)} may be cut off, and those of another message of its id not"
+                    message = (
+                        f"zeros of {quote(whose.name)} may be omitted, but not the zeros of another message with its id"
+                    )
                     yield Fault.at(whose.source, "may_end_early", message, "let both end early, or none")
                 for known in seeds:
                     if one.name in known and other.name in known and known[one.name] != known[other.name]:

@@ -114,7 +114,7 @@ def is_distinct(ctx: Context) -> Iterator[Fault]:
             else:
                 there = f" ({line_of(_place(ctx, first), place)})" if first.source is not None else ""
                 what = f"{first.owner}{there} and {one.owner} become {both}"
-            message = f"{what}, the same in their first {most} characters, and {language} guarantees no more"
+            message = f"{what}, equal in their first {most} characters, and {language} guarantees no more"
             yield Fault(one.source, place, message, "give it, or its message, a shorter `identifier:`")
 
 

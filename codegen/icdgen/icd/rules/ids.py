@@ -129,7 +129,7 @@ def _same_id(node: Node, first: Use, use: Use, is_linked: bool) -> Fault:
     help = f"correct one `{use.key}`"
     if first.message is not None and use.message is not None:
         if not is_linked:
-            message += ", and nothing tells the two apart"
+            message += ", and the two cannot be distinguished"
             help += ", or give each a field with another `const` at the same place"
         elif _are_told_apart(first, use):
             message += ", and the links that `protocol` describes tell a message by its id alone"
@@ -198,7 +198,7 @@ def ids_that_tell_the_direction(ctx: Context) -> Iterator[Fault]:
         for use in uses:
             if use.direction == TELECOMMAND and first <= use.id <= last and id(use.source) not in told:
                 told.add(id(use.source))  # once, though other nodes may include it
-                among = f"telecommand id {use.id} lies among those of telemetry, {first} to {last}"
+                among = f"telecommand id {use.id} is in the range of telemetry ids, {first} to {last}"
                 message = f"{among}: on a UART only the id tells the direction, so an acknowledge is taken for a reply"
                 help = "give each direction ids of its own, one range before the other; or leave `uart: framing` out"
                 yield Fault.at(use.source, use.key, message, help)

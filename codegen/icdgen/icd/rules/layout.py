@@ -179,7 +179,7 @@ def view_of_fields(ctx: Context) -> Iterator[Fault]:
             continue  # no view, or a finding already
         source, name = field.source, quote(field.name)
         if field.count:
-            help = "write a view for each element that is asked for"
+            help = "write an overlay field for each element"
             yield Fault.at(source, "view", f"{name} is an array: a view reads one number", help)
             continue
         if field.is_bytes:

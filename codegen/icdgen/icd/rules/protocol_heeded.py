@@ -44,7 +44,7 @@ def _acknowledges(node: Node) -> Iterator[Fault]:
         section = section_of(node, bus, "acknowledge")
         if section is not None and section.get("required_before_next") is False:
             message = "a client waits for each acknowledge before it sends the next telecommand, whatever stands here"
-            help = "remove it; a telecommand without acknowledge says so itself: `acknowledge: false`"
+            help = "remove it; for a telecommand without acknowledge set `acknowledge: false`"
             yield Fault.at(section, "required_before_next", message, help)
 
 

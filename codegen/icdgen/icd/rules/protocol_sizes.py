@@ -122,5 +122,5 @@ def assumptions_are_about_something(ctx: Context) -> Iterator[Fault]:
             continue
         for key in assumptions:
             if key == "assumptions" or key not in owner:
-                message = f"`{key}` is said to be assumed, but there is no such key beside it"
+                message = f"`{key}` is listed as assumed, but the section has no such key"
                 yield Fault(owner, assumptions.key_at(key), message, "name a key of this section")

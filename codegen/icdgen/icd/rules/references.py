@@ -24,7 +24,7 @@ def enum_known(ctx: Context) -> Iterator[Fault]:
                 message = f"{quote(field.name)} names an enumeration, but its type is `{field.type}`"
                 yield Fault.at(source, "enum", message, "write `type: enum` or remove `enum:`")
         elif "enum" not in source:
-            message = f"{quote(field.name)} is of type `enum` and does not say which"
+            message = f"{quote(field.name)} has the type `enum` but no `enum` key"
             yield Fault.at(source, "type", message, "add `enum:`, the name of an enumeration")
         elif field.enum is None and ctx.complete:
             yield Fault.at(source, "enum", *undeclared(ctx, node, "enumeration", "enums", source["enum"]))
@@ -80,7 +80,7 @@ def unit_known(ctx: Context) -> Iterator[Fault]:
     for field, _, node in ctx.having["unit"]:
         if field.unit is None:
             unit = field.source["unit"]
-            help = "declare it in `units:`; `icdgen units` lists those that are known"
+            help = "declare it in `units:`; `icdgen units` lists the built-in units"
             if close := meant(unit, (u.symbol for n in ctx.scope(node) for u in n.units)):
                 otherwise = "" if unit in SPELLINGS else " If not, declare it in `units:`"
                 help = f"did you mean {quote(close)}?{otherwise}"

@@ -128,7 +128,7 @@ message!(ActuatorCommands {
     commanded_z_wheel_speed: ("Commanded Z Wheel Speed", 80, 16).unit("rpm"),
 });
 
-/// Magnetorquer Command, as it is repeated from byte 0.
+/// Magnetorquer Command, repeated from byte 0.
 impl ::core::convert::From<&ActuatorCommands> for super::MagnetorquerCommand {
     fn from(message: &ActuatorCommands) -> Self {
         super::MagnetorquerCommand {
@@ -139,7 +139,7 @@ impl ::core::convert::From<&ActuatorCommands> for super::MagnetorquerCommand {
     }
 }
 
-/// Wheel Speed Commands, as it is repeated from byte 6.
+/// Wheel Speed Commands, repeated from byte 6.
 impl ::core::convert::From<&ActuatorCommands> for super::WheelSpeedCommands {
     fn from(message: &ActuatorCommands) -> Self {
         super::WheelSpeedCommands {

@@ -4469,7 +4469,7 @@ message!(AdcsConfiguration {
     user_coded_estimator_settings: ("User Coded Estimator Settings", 3_648, 384),
 });
 
-/// Set Magnetorquer Configuration, as it is repeated from byte 0.
+/// Set Magnetorquer Configuration, repeated from byte 0.
 impl ::core::convert::From<&AdcsConfiguration> for super::SetMagnetorquerConfiguration {
     fn from(message: &AdcsConfiguration) -> Self {
         super::SetMagnetorquerConfiguration {
@@ -4480,7 +4480,7 @@ impl ::core::convert::From<&AdcsConfiguration> for super::SetMagnetorquerConfigu
     }
 }
 
-/// Set Wheel Configuration, as it is repeated from byte 3.
+/// Set Wheel Configuration, repeated from byte 3.
 impl ::core::convert::From<&AdcsConfiguration> for super::SetWheelConfiguration {
     fn from(message: &AdcsConfiguration) -> Self {
         super::SetWheelConfiguration {
@@ -4492,7 +4492,7 @@ impl ::core::convert::From<&AdcsConfiguration> for super::SetWheelConfiguration 
     }
 }
 
-/// Set Rate Gyro Configuration, as it is repeated from byte 7.
+/// Set Rate Gyro Configuration, repeated from byte 7.
 impl ::core::convert::From<&AdcsConfiguration> for super::SetRateGyroConfiguration {
     fn from(message: &AdcsConfiguration) -> Self {
         super::SetRateGyroConfiguration {
@@ -4507,7 +4507,7 @@ impl ::core::convert::From<&AdcsConfiguration> for super::SetRateGyroConfigurati
     }
 }
 
-/// CSS Configuration, as it is repeated from byte 17.
+/// CSS Configuration, repeated from byte 17.
 impl ::core::convert::From<&AdcsConfiguration> for super::CssConfiguration {
     fn from(message: &AdcsConfiguration) -> Self {
         super::CssConfiguration {
@@ -4536,7 +4536,7 @@ impl ::core::convert::From<&AdcsConfiguration> for super::CssConfiguration {
     }
 }
 
-/// CubeSense Configuration, as it is repeated from byte 38.
+/// CubeSense Configuration, repeated from byte 38.
 impl ::core::convert::From<&AdcsConfiguration> for super::CubesenseConfiguration {
     fn from(message: &AdcsConfiguration) -> Self {
         super::CubesenseConfiguration {
@@ -4604,7 +4604,7 @@ impl ::core::convert::From<&AdcsConfiguration> for super::CubesenseConfiguration
     }
 }
 
-/// Magnetometer Configuration, as it is repeated from byte 150.
+/// Magnetometer Configuration, repeated from byte 150.
 impl ::core::convert::From<&AdcsConfiguration> for super::MagnetometerConfiguration {
     fn from(message: &AdcsConfiguration) -> Self {
         super::MagnetometerConfiguration {
@@ -4627,7 +4627,7 @@ impl ::core::convert::From<&AdcsConfiguration> for super::MagnetometerConfigurat
     }
 }
 
-/// Redundant Magnetometer Configuration, as it is repeated from byte 180.
+/// Redundant Magnetometer Configuration, repeated from byte 180.
 impl ::core::convert::From<&AdcsConfiguration> for super::RedundantMagConfiguration {
     fn from(message: &AdcsConfiguration) -> Self {
         super::RedundantMagConfiguration {
@@ -4650,7 +4650,7 @@ impl ::core::convert::From<&AdcsConfiguration> for super::RedundantMagConfigurat
     }
 }
 
-/// Set Star Tracker Configuration, as it is repeated from byte 210.
+/// Set Star Tracker Configuration, repeated from byte 210.
 impl ::core::convert::From<&AdcsConfiguration> for super::SetStarTrackerConfiguration {
     fn from(message: &AdcsConfiguration) -> Self {
         super::SetStarTrackerConfiguration {
@@ -4684,7 +4684,7 @@ impl ::core::convert::From<&AdcsConfiguration> for super::SetStarTrackerConfigur
     }
 }
 
-/// Set Detumbling Control Parameters, as it is repeated from byte 263.
+/// Set Detumbling Control Parameters, repeated from byte 263.
 impl ::core::convert::From<&AdcsConfiguration> for super::SetDetumblingControlParameters {
     fn from(message: &AdcsConfiguration) -> Self {
         super::SetDetumblingControlParameters {
@@ -4696,7 +4696,7 @@ impl ::core::convert::From<&AdcsConfiguration> for super::SetDetumblingControlPa
     }
 }
 
-/// Set Y-Wheel Control Parameters, as it is repeated from byte 277.
+/// Set Y-Wheel Control Parameters, repeated from byte 277.
 impl ::core::convert::From<&AdcsConfiguration> for super::SetYWheelControlParameters {
     fn from(message: &AdcsConfiguration) -> Self {
         super::SetYWheelControlParameters {
@@ -4709,7 +4709,7 @@ impl ::core::convert::From<&AdcsConfiguration> for super::SetYWheelControlParame
     }
 }
 
-/// Set Reaction Wheel Control Parameters, as it is repeated from byte 297.
+/// Set Reaction Wheel Control Parameters, repeated from byte 297.
 impl ::core::convert::From<&AdcsConfiguration> for super::SetReactionWheelControlParameters {
     fn from(message: &AdcsConfiguration) -> Self {
         super::SetReactionWheelControlParameters {
@@ -4722,7 +4722,7 @@ impl ::core::convert::From<&AdcsConfiguration> for super::SetReactionWheelContro
     }
 }
 
-/// Set Tracking Controller Gain Parameters, as it is repeated from byte 310.
+/// Set Tracking Controller Gain Parameters, repeated from byte 310.
 impl ::core::convert::From<&AdcsConfiguration> for super::SetTrackingControllerGainParameters {
     fn from(message: &AdcsConfiguration) -> Self {
         super::SetTrackingControllerGainParameters {
@@ -4734,7 +4734,7 @@ impl ::core::convert::From<&AdcsConfiguration> for super::SetTrackingControllerG
     }
 }
 
-/// Moment of Inertia Matrix, as it is repeated from byte 323.
+/// Moment of Inertia Matrix, repeated from byte 323.
 impl ::core::convert::From<&AdcsConfiguration> for super::MomentOfInertiaMatrix {
     fn from(message: &AdcsConfiguration) -> Self {
         super::MomentOfInertiaMatrix {
@@ -4748,7 +4748,7 @@ impl ::core::convert::From<&AdcsConfiguration> for super::MomentOfInertiaMatrix 
     }
 }
 
-/// Estimation Parameters, as it is repeated from byte 347.
+/// Estimation Parameters, repeated from byte 347.
 impl ::core::convert::From<&AdcsConfiguration> for super::EstimationParameters {
     fn from(message: &AdcsConfiguration) -> Self {
         super::EstimationParameters {
@@ -4774,7 +4774,7 @@ impl ::core::convert::From<&AdcsConfiguration> for super::EstimationParameters {
     }
 }
 
-/// Augmented-SGP4 Parameters, as it is repeated from byte 378.
+/// Augmented-SGP4 Parameters, repeated from byte 378.
 impl ::core::convert::From<&AdcsConfiguration> for super::AugmentedSgp4Parameters {
     fn from(message: &AdcsConfiguration) -> Self {
         super::AugmentedSgp4Parameters {
@@ -4799,7 +4799,7 @@ impl ::core::convert::From<&AdcsConfiguration> for super::AugmentedSgp4Parameter
     }
 }
 
-/// User-coded Controller and Estimator Parameters, as it is repeated from byte 408.
+/// User-coded Controller and Estimator Parameters, repeated from byte 408.
 impl ::core::convert::From<&AdcsConfiguration> for super::UserCodedControllerAndEstimatorParameters {
     fn from(message: &AdcsConfiguration) -> Self {
         super::UserCodedControllerAndEstimatorParameters {

@@ -1449,7 +1449,7 @@ message!(AdcsMeasurements {
     star3_orbit_z: ("Star3OZ", 560, 16).scale(&STAR3_ORBIT_Z),
 });
 
-/// Magnetic Field Vector, as it is repeated from byte 0.
+/// Magnetic Field Vector, repeated from byte 0.
 impl ::core::convert::From<&AdcsMeasurements> for super::MagneticFieldVector {
     fn from(message: &AdcsMeasurements) -> Self {
         super::MagneticFieldVector {
@@ -1460,7 +1460,7 @@ impl ::core::convert::From<&AdcsMeasurements> for super::MagneticFieldVector {
     }
 }
 
-/// Coarse Sun Vector, as it is repeated from byte 6.
+/// Coarse Sun Vector, repeated from byte 6.
 impl ::core::convert::From<&AdcsMeasurements> for super::CoarseSunVector {
     fn from(message: &AdcsMeasurements) -> Self {
         super::CoarseSunVector {
@@ -1471,7 +1471,7 @@ impl ::core::convert::From<&AdcsMeasurements> for super::CoarseSunVector {
     }
 }
 
-/// Fine Sun Vector, as it is repeated from byte 12.
+/// Fine Sun Vector, repeated from byte 12.
 impl ::core::convert::From<&AdcsMeasurements> for super::FineSunVector {
     fn from(message: &AdcsMeasurements) -> Self {
         super::FineSunVector {
@@ -1482,7 +1482,7 @@ impl ::core::convert::From<&AdcsMeasurements> for super::FineSunVector {
     }
 }
 
-/// Nadir Vector, as it is repeated from byte 18.
+/// Nadir Vector, repeated from byte 18.
 impl ::core::convert::From<&AdcsMeasurements> for super::NadirVector {
     fn from(message: &AdcsMeasurements) -> Self {
         super::NadirVector {
@@ -1493,7 +1493,7 @@ impl ::core::convert::From<&AdcsMeasurements> for super::NadirVector {
     }
 }
 
-/// Rate Sensor Rates, as it is repeated from byte 24.
+/// Rate Sensor Rates, repeated from byte 24.
 impl ::core::convert::From<&AdcsMeasurements> for super::RateSensorRates {
     fn from(message: &AdcsMeasurements) -> Self {
         super::RateSensorRates {
@@ -1504,7 +1504,7 @@ impl ::core::convert::From<&AdcsMeasurements> for super::RateSensorRates {
     }
 }
 
-/// Wheel Speed, as it is repeated from byte 30.
+/// Wheel Speed, repeated from byte 30.
 impl ::core::convert::From<&AdcsMeasurements> for super::WheelSpeed {
     fn from(message: &AdcsMeasurements) -> Self {
         super::WheelSpeed {
@@ -1515,7 +1515,7 @@ impl ::core::convert::From<&AdcsMeasurements> for super::WheelSpeed {
     }
 }
 
-/// Star 1 Body Vector, as it is repeated from byte 36.
+/// Star 1 Body Vector, repeated from byte 36.
 impl ::core::convert::From<&AdcsMeasurements> for super::Star1BodyVector {
     fn from(message: &AdcsMeasurements) -> Self {
         super::Star1BodyVector {
@@ -1526,7 +1526,7 @@ impl ::core::convert::From<&AdcsMeasurements> for super::Star1BodyVector {
     }
 }
 
-/// Star 1 Orbit Vector, as it is repeated from byte 42.
+/// Star 1 Orbit Vector, repeated from byte 42.
 impl ::core::convert::From<&AdcsMeasurements> for super::Star1OrbitVector {
     fn from(message: &AdcsMeasurements) -> Self {
         super::Star1OrbitVector {
@@ -1537,7 +1537,7 @@ impl ::core::convert::From<&AdcsMeasurements> for super::Star1OrbitVector {
     }
 }
 
-/// Star 2 Body Vector, as it is repeated from byte 48.
+/// Star 2 Body Vector, repeated from byte 48.
 impl ::core::convert::From<&AdcsMeasurements> for super::Star2BodyVector {
     fn from(message: &AdcsMeasurements) -> Self {
         super::Star2BodyVector {
@@ -1548,7 +1548,7 @@ impl ::core::convert::From<&AdcsMeasurements> for super::Star2BodyVector {
     }
 }
 
-/// Star 2 Orbit Vector, as it is repeated from byte 54.
+/// Star 2 Orbit Vector, repeated from byte 54.
 impl ::core::convert::From<&AdcsMeasurements> for super::Star2OrbitVector {
     fn from(message: &AdcsMeasurements) -> Self {
         super::Star2OrbitVector {
@@ -1559,7 +1559,7 @@ impl ::core::convert::From<&AdcsMeasurements> for super::Star2OrbitVector {
     }
 }
 
-/// Star 3 Body Vector, as it is repeated from byte 60.
+/// Star 3 Body Vector, repeated from byte 60.
 impl ::core::convert::From<&AdcsMeasurements> for super::Star3BodyVector {
     fn from(message: &AdcsMeasurements) -> Self {
         super::Star3BodyVector {
@@ -1570,7 +1570,7 @@ impl ::core::convert::From<&AdcsMeasurements> for super::Star3BodyVector {
     }
 }
 
-/// Star 3 Orbit Vector, as it is repeated from byte 66.
+/// Star 3 Orbit Vector, repeated from byte 66.
 impl ::core::convert::From<&AdcsMeasurements> for super::Star3OrbitVector {
     fn from(message: &AdcsMeasurements) -> Self {
         super::Star3OrbitVector {

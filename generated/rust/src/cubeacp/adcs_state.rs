@@ -1140,7 +1140,7 @@ message!(AdcsState {
     ecef_position_z: ("ECEF Position Z", 416, 16),
 });
 
-/// Current ADCS State, as it is repeated from byte 0.
+/// Current ADCS State, repeated from byte 0.
 impl ::core::convert::From<&AdcsState> for super::CurrentAdcsState {
     fn from(message: &AdcsState) -> Self {
         super::CurrentAdcsState {
@@ -1188,7 +1188,7 @@ impl ::core::convert::From<&AdcsState> for super::CurrentAdcsState {
     }
 }
 
-/// Current ADCS State 2, as it is repeated from byte 6.
+/// Current ADCS State 2, repeated from byte 6.
 impl ::core::convert::From<&AdcsState> for super::CurrentAdcsState2 {
     fn from(message: &AdcsState) -> Self {
         super::CurrentAdcsState2 {
@@ -1213,7 +1213,7 @@ impl ::core::convert::From<&AdcsState> for super::CurrentAdcsState2 {
     }
 }
 
-/// Estimated Attitude Angles, as it is repeated from byte 12.
+/// Estimated Attitude Angles, repeated from byte 12.
 impl ::core::convert::From<&AdcsState> for super::EstimatedAttitudeAngles {
     fn from(message: &AdcsState) -> Self {
         super::EstimatedAttitudeAngles {
@@ -1224,7 +1224,7 @@ impl ::core::convert::From<&AdcsState> for super::EstimatedAttitudeAngles {
     }
 }
 
-/// Estimated Quaternion, as it is repeated from byte 18.
+/// Estimated Quaternion, repeated from byte 18.
 impl ::core::convert::From<&AdcsState> for super::EstimatedQuaternion {
     fn from(message: &AdcsState) -> Self {
         super::EstimatedQuaternion {
@@ -1235,7 +1235,7 @@ impl ::core::convert::From<&AdcsState> for super::EstimatedQuaternion {
     }
 }
 
-/// Estimated Angular Rates, as it is repeated from byte 24.
+/// Estimated Angular Rates, repeated from byte 24.
 impl ::core::convert::From<&AdcsState> for super::EstimatedAngularRates {
     fn from(message: &AdcsState) -> Self {
         super::EstimatedAngularRates {
@@ -1246,7 +1246,7 @@ impl ::core::convert::From<&AdcsState> for super::EstimatedAngularRates {
     }
 }
 
-/// Satellite Position (ECI), as it is repeated from byte 30.
+/// Satellite Position (ECI), repeated from byte 30.
 impl ::core::convert::From<&AdcsState> for super::SatellitePositionEci {
     fn from(message: &AdcsState) -> Self {
         super::SatellitePositionEci {
@@ -1257,7 +1257,7 @@ impl ::core::convert::From<&AdcsState> for super::SatellitePositionEci {
     }
 }
 
-/// Satellite Velocity (ECI), as it is repeated from byte 36.
+/// Satellite Velocity (ECI), repeated from byte 36.
 impl ::core::convert::From<&AdcsState> for super::SatelliteVelocityEci {
     fn from(message: &AdcsState) -> Self {
         super::SatelliteVelocityEci {
@@ -1268,7 +1268,7 @@ impl ::core::convert::From<&AdcsState> for super::SatelliteVelocityEci {
     }
 }
 
-/// Satellite Position (LLH), as it is repeated from byte 42.
+/// Satellite Position (LLH), repeated from byte 42.
 impl ::core::convert::From<&AdcsState> for super::SatellitePositionLlh {
     fn from(message: &AdcsState) -> Self {
         super::SatellitePositionLlh {
@@ -1279,7 +1279,7 @@ impl ::core::convert::From<&AdcsState> for super::SatellitePositionLlh {
     }
 }
 
-/// ECEF Position, as it is repeated from byte 48.
+/// ECEF Position, repeated from byte 48.
 impl ::core::convert::From<&AdcsState> for super::EcefPosition {
     fn from(message: &AdcsState) -> Self {
         super::EcefPosition {

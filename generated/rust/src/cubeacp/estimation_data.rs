@@ -1008,7 +1008,7 @@ message!(EstimationData {
         .scale(&Z_ANGULAR_RATE_COVARIANCE),
 });
 
-/// IGRF Modelled Magnetic Field Vector, as it is repeated from byte 0.
+/// IGRF Modelled Magnetic Field Vector, repeated from byte 0.
 impl ::core::convert::From<&EstimationData> for super::IgrfModelledMagneticFieldVector {
     fn from(message: &EstimationData) -> Self {
         super::IgrfModelledMagneticFieldVector {
@@ -1019,7 +1019,7 @@ impl ::core::convert::From<&EstimationData> for super::IgrfModelledMagneticField
     }
 }
 
-/// Modelled Sun Vector, as it is repeated from byte 6.
+/// Modelled Sun Vector, repeated from byte 6.
 impl ::core::convert::From<&EstimationData> for super::ModelledSunVector {
     fn from(message: &EstimationData) -> Self {
         super::ModelledSunVector {
@@ -1030,7 +1030,7 @@ impl ::core::convert::From<&EstimationData> for super::ModelledSunVector {
     }
 }
 
-/// Estimated Gyro Bias, as it is repeated from byte 12.
+/// Estimated Gyro Bias, repeated from byte 12.
 impl ::core::convert::From<&EstimationData> for super::EstimatedGyroBias {
     fn from(message: &EstimationData) -> Self {
         super::EstimatedGyroBias {
@@ -1041,7 +1041,7 @@ impl ::core::convert::From<&EstimationData> for super::EstimatedGyroBias {
     }
 }
 
-/// Estimation Innovation Vector, as it is repeated from byte 18.
+/// Estimation Innovation Vector, repeated from byte 18.
 impl ::core::convert::From<&EstimationData> for super::EstimationInnovationVector {
     fn from(message: &EstimationData) -> Self {
         super::EstimationInnovationVector {
@@ -1052,7 +1052,7 @@ impl ::core::convert::From<&EstimationData> for super::EstimationInnovationVecto
     }
 }
 
-/// Quaternion Error Vector, as it is repeated from byte 24.
+/// Quaternion Error Vector, repeated from byte 24.
 impl ::core::convert::From<&EstimationData> for super::QuaternionErrorVector {
     fn from(message: &EstimationData) -> Self {
         super::QuaternionErrorVector {
@@ -1063,7 +1063,7 @@ impl ::core::convert::From<&EstimationData> for super::QuaternionErrorVector {
     }
 }
 
-/// Quaternion Covariance, as it is repeated from byte 30.
+/// Quaternion Covariance, repeated from byte 30.
 impl ::core::convert::From<&EstimationData> for super::QuaternionCovariance {
     fn from(message: &EstimationData) -> Self {
         super::QuaternionCovariance {
@@ -1074,7 +1074,7 @@ impl ::core::convert::From<&EstimationData> for super::QuaternionCovariance {
     }
 }
 
-/// Angular Rate Covariance, as it is repeated from byte 36.
+/// Angular Rate Covariance, repeated from byte 36.
 impl ::core::convert::From<&EstimationData> for super::AngularRateCovariance {
     fn from(message: &EstimationData) -> Self {
         super::AngularRateCovariance {

@@ -718,7 +718,7 @@ message!(PowerAndTemperature {
     z_rate_sensor_temperature: ("Z-Rate Sensor Temperature", 288, 16).unit("C"),
 });
 
-/// CubeSense1 Current Measurements, as it is repeated from byte 0.
+/// CubeSense1 Current Measurements, repeated from byte 0.
 impl ::core::convert::From<&PowerAndTemperature> for super::Cubesense1Currents {
     fn from(message: &PowerAndTemperature) -> Self {
         super::Cubesense1Currents {
@@ -728,7 +728,7 @@ impl ::core::convert::From<&PowerAndTemperature> for super::Cubesense1Currents {
     }
 }
 
-/// CubeSense2 Current Measurements, as it is repeated from byte 4.
+/// CubeSense2 Current Measurements, repeated from byte 4.
 impl ::core::convert::From<&PowerAndTemperature> for super::Cubesense2Currents {
     fn from(message: &PowerAndTemperature) -> Self {
         super::Cubesense2Currents {
@@ -738,7 +738,7 @@ impl ::core::convert::From<&PowerAndTemperature> for super::Cubesense2Currents {
     }
 }
 
-/// CubeControl Current Measurements, as it is repeated from byte 8.
+/// CubeControl Current Measurements, repeated from byte 8.
 impl ::core::convert::From<&PowerAndTemperature> for super::CubecontrolCurrents {
     fn from(message: &PowerAndTemperature) -> Self {
         super::CubecontrolCurrents {
@@ -749,7 +749,7 @@ impl ::core::convert::From<&PowerAndTemperature> for super::CubecontrolCurrents 
     }
 }
 
-/// Wheel Currents, as it is repeated from byte 14.
+/// Wheel Currents, repeated from byte 14.
 impl ::core::convert::From<&PowerAndTemperature> for super::WheelCurrents {
     fn from(message: &PowerAndTemperature) -> Self {
         super::WheelCurrents {
@@ -760,7 +760,7 @@ impl ::core::convert::From<&PowerAndTemperature> for super::WheelCurrents {
     }
 }
 
-/// ADCS Misc Current Measurements, as it is repeated from byte 20.
+/// ADCS Misc Current Measurements, repeated from byte 20.
 impl ::core::convert::From<&PowerAndTemperature> for super::AdcsMiscCurrents {
     fn from(message: &PowerAndTemperature) -> Self {
         super::AdcsMiscCurrents {
@@ -771,7 +771,7 @@ impl ::core::convert::From<&PowerAndTemperature> for super::AdcsMiscCurrents {
     }
 }
 
-/// ADCS Temperatures, as it is repeated from byte 26.
+/// ADCS Temperatures, repeated from byte 26.
 impl ::core::convert::From<&PowerAndTemperature> for super::AdcsTemperatures {
     fn from(message: &PowerAndTemperature) -> Self {
         super::AdcsTemperatures {
@@ -782,7 +782,7 @@ impl ::core::convert::From<&PowerAndTemperature> for super::AdcsTemperatures {
     }
 }
 
-/// Rate sensor temperatures, as it is repeated from byte 32.
+/// Rate sensor temperatures, repeated from byte 32.
 impl ::core::convert::From<&PowerAndTemperature> for super::RateSensorTemperatures {
     fn from(message: &PowerAndTemperature) -> Self {
         super::RateSensorTemperatures {

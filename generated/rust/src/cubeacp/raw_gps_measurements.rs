@@ -319,7 +319,7 @@ message!(RawGpsMeasurements {
     z_vel_standard_deviation: ("Z-vel Standard Deviation", 280, 8).unit("m/s"),
 });
 
-/// Raw GPS Status, as it is repeated from byte 0.
+/// Raw GPS Status, repeated from byte 0.
 impl ::core::convert::From<&RawGpsMeasurements> for super::RawGpsStatus {
     fn from(message: &RawGpsMeasurements) -> Self {
         super::RawGpsStatus {
@@ -333,7 +333,7 @@ impl ::core::convert::From<&RawGpsMeasurements> for super::RawGpsStatus {
     }
 }
 
-/// Raw GPS Time, as it is repeated from byte 6.
+/// Raw GPS Time, repeated from byte 6.
 impl ::core::convert::From<&RawGpsMeasurements> for super::RawGpsTime {
     fn from(message: &RawGpsMeasurements) -> Self {
         super::RawGpsTime {
@@ -343,7 +343,7 @@ impl ::core::convert::From<&RawGpsMeasurements> for super::RawGpsTime {
     }
 }
 
-/// Raw GPS X, as it is repeated from byte 12.
+/// Raw GPS X, repeated from byte 12.
 impl ::core::convert::From<&RawGpsMeasurements> for super::RawGpsX {
     fn from(message: &RawGpsMeasurements) -> Self {
         super::RawGpsX {
@@ -353,7 +353,7 @@ impl ::core::convert::From<&RawGpsMeasurements> for super::RawGpsX {
     }
 }
 
-/// Raw GPS Y, as it is repeated from byte 18.
+/// Raw GPS Y, repeated from byte 18.
 impl ::core::convert::From<&RawGpsMeasurements> for super::RawGpsY {
     fn from(message: &RawGpsMeasurements) -> Self {
         super::RawGpsY {
@@ -363,7 +363,7 @@ impl ::core::convert::From<&RawGpsMeasurements> for super::RawGpsY {
     }
 }
 
-/// Raw GPS Z, as it is repeated from byte 24.
+/// Raw GPS Z, repeated from byte 24.
 impl ::core::convert::From<&RawGpsMeasurements> for super::RawGpsZ {
     fn from(message: &RawGpsMeasurements) -> Self {
         super::RawGpsZ {

@@ -261,7 +261,7 @@ message!(RawSensorMeasurements {
     rate_z: ("RateZ", 256, 16),
 });
 
-/// Raw Cam2 Sensor, as it is repeated from byte 0.
+/// Raw Cam2 Sensor, repeated from byte 0.
 impl ::core::convert::From<&RawSensorMeasurements> for super::RawCam2Sensor {
     fn from(message: &RawSensorMeasurements) -> Self {
         super::RawCam2Sensor {
@@ -273,7 +273,7 @@ impl ::core::convert::From<&RawSensorMeasurements> for super::RawCam2Sensor {
     }
 }
 
-/// Raw Cam1 Sensor, as it is repeated from byte 6.
+/// Raw Cam1 Sensor, repeated from byte 6.
 impl ::core::convert::From<&RawSensorMeasurements> for super::RawCam1Sensor {
     fn from(message: &RawSensorMeasurements) -> Self {
         super::RawCam1Sensor {
@@ -285,7 +285,7 @@ impl ::core::convert::From<&RawSensorMeasurements> for super::RawCam1Sensor {
     }
 }
 
-/// Raw CSS 1 to 6, as it is repeated from byte 12.
+/// Raw CSS 1 to 6, repeated from byte 12.
 impl ::core::convert::From<&RawSensorMeasurements> for super::RawCss1To6 {
     fn from(message: &RawSensorMeasurements) -> Self {
         super::RawCss1To6 {
@@ -299,7 +299,7 @@ impl ::core::convert::From<&RawSensorMeasurements> for super::RawCss1To6 {
     }
 }
 
-/// Raw CSS 7 to 10, as it is repeated from byte 18.
+/// Raw CSS 7 to 10, repeated from byte 18.
 impl ::core::convert::From<&RawSensorMeasurements> for super::RawCss7To10 {
     fn from(message: &RawSensorMeasurements) -> Self {
         super::RawCss7To10 {
@@ -311,7 +311,7 @@ impl ::core::convert::From<&RawSensorMeasurements> for super::RawCss7To10 {
     }
 }
 
-/// Raw Magnetometer, as it is repeated from byte 22.
+/// Raw Magnetometer, repeated from byte 22.
 impl ::core::convert::From<&RawSensorMeasurements> for super::RawMagnetometer {
     fn from(message: &RawSensorMeasurements) -> Self {
         super::RawMagnetometer {
@@ -322,7 +322,7 @@ impl ::core::convert::From<&RawSensorMeasurements> for super::RawMagnetometer {
     }
 }
 
-/// Raw Rate Sensor, as it is repeated from byte 28.
+/// Raw Rate Sensor, repeated from byte 28.
 impl ::core::convert::From<&RawSensorMeasurements> for super::RawRateSensor {
     fn from(message: &RawSensorMeasurements) -> Self {
         super::RawRateSensor {

@@ -554,7 +554,7 @@ message!(RawStarTracker {
     q2: ("Q2", 416, 16).scale(&Q2),
 });
 
-/// Star Performance1, as it is repeated from byte 0.
+/// Star Performance1, repeated from byte 0.
 impl ::core::convert::From<&RawStarTracker> for super::StarPerformance1 {
     fn from(message: &RawStarTracker) -> Self {
         super::StarPerformance1 {
@@ -568,7 +568,7 @@ impl ::core::convert::From<&RawStarTracker> for super::StarPerformance1 {
     }
 }
 
-/// Star Performance2, as it is repeated from byte 6.
+/// Star Performance2, repeated from byte 6.
 impl ::core::convert::From<&RawStarTracker> for super::StarPerformance2 {
     fn from(message: &RawStarTracker) -> Self {
         super::StarPerformance2 {
@@ -588,7 +588,7 @@ impl ::core::convert::From<&RawStarTracker> for super::StarPerformance2 {
     }
 }
 
-/// Star Magnitude, as it is repeated from byte 12.
+/// Star Magnitude, repeated from byte 12.
 impl ::core::convert::From<&RawStarTracker> for super::StarMagnitude {
     fn from(message: &RawStarTracker) -> Self {
         super::StarMagnitude {
@@ -599,7 +599,7 @@ impl ::core::convert::From<&RawStarTracker> for super::StarMagnitude {
     }
 }
 
-/// Star 1 Raw Data, as it is repeated from byte 18.
+/// Star 1 Raw Data, repeated from byte 18.
 impl ::core::convert::From<&RawStarTracker> for super::Star1RawData {
     fn from(message: &RawStarTracker) -> Self {
         super::Star1RawData {
@@ -610,7 +610,7 @@ impl ::core::convert::From<&RawStarTracker> for super::Star1RawData {
     }
 }
 
-/// Star 2 Raw Data, as it is repeated from byte 24.
+/// Star 2 Raw Data, repeated from byte 24.
 impl ::core::convert::From<&RawStarTracker> for super::Star2RawData {
     fn from(message: &RawStarTracker) -> Self {
         super::Star2RawData {
@@ -621,7 +621,7 @@ impl ::core::convert::From<&RawStarTracker> for super::Star2RawData {
     }
 }
 
-/// Star 3 Raw Data, as it is repeated from byte 30.
+/// Star 3 Raw Data, repeated from byte 30.
 impl ::core::convert::From<&RawStarTracker> for super::Star3RawData {
     fn from(message: &RawStarTracker) -> Self {
         super::Star3RawData {
@@ -632,7 +632,7 @@ impl ::core::convert::From<&RawStarTracker> for super::Star3RawData {
     }
 }
 
-/// Star Timing, as it is repeated from byte 36.
+/// Star Timing, repeated from byte 36.
 impl ::core::convert::From<&RawStarTracker> for super::StarTiming {
     fn from(message: &RawStarTracker) -> Self {
         super::StarTiming {
@@ -643,7 +643,7 @@ impl ::core::convert::From<&RawStarTracker> for super::StarTiming {
     }
 }
 
-/// CubeStar Estimated Rates, as it is repeated from byte 42.
+/// CubeStar Estimated Rates, repeated from byte 42.
 impl ::core::convert::From<&RawStarTracker> for super::CubestarEstimatedRates {
     fn from(message: &RawStarTracker) -> Self {
         super::CubestarEstimatedRates {
@@ -654,7 +654,7 @@ impl ::core::convert::From<&RawStarTracker> for super::CubestarEstimatedRates {
     }
 }
 
-/// CubeStar Estimated Quaternion, as it is repeated from byte 48.
+/// CubeStar Estimated Quaternion, repeated from byte 48.
 impl ::core::convert::From<&RawStarTracker> for super::CubestarEstimatedQuaternion {
     fn from(message: &RawStarTracker) -> Self {
         super::CubestarEstimatedQuaternion {
