@@ -272,4 +272,4 @@ def test_a_statement_that_cantools_refuses_costs_its_message_and_not_the_file(tm
     read = imported(text, tmp_path)
     assert [one["name"] for one in tree_of(read)["messages"]] == ["Good"] and read.definitions.total == 2
     (error,) = [one for one in read.definitions.troubles if one.severity == "error"]
-    assert error.code == "IMP070" and "message `Bad` is not held" in error.message and error.spot.line == 8
+    assert error.code == "IMP070" and "message `Bad` is not imported" in error.message and error.spot.line == 8

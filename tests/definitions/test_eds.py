@@ -146,7 +146,7 @@ def test_an_error_control_is_a_field_and_what_is_not_held_is_said_with_its_line(
     assert ("IMP082", "`Crc` is CRC16_CCITT of what is in the frame") in said(gyro)
     (missing,) = [one for one in gyro.definitions.troubles if one.severity == "error"]
     why = "`Extra` is there only on a condition"
-    assert missing.message == f"message `Sometimes`: from `Extra` on only bytes are held: {why}"
+    assert missing.message == f"message `Sometimes`: from `Extra` on only bytes are imported: {why}"
     lines = (SHEETS / "gyro.xml").read_text().splitlines()
     assert 'name="Sometimes"' in lines[missing.spot.line - 1]
 
@@ -164,18 +164,18 @@ def copied(folder, name, old="", new=""):
 def test_a_value_that_nothing_defines_costs_what_uses_it(tmp_path):
     folder = copied(tmp_path, "mission.xml", '<Define name="NAME_LENGTH" value="${WORD} + 4"/>', "")
     read = imported("camera.xml", folder)
-    why = "nothing in the file or beside it defines `${MISSION/NAME_LENGTH}`"
-    assert ("IMP081", f"message `Shoot`: from `File` on only bytes are held: {why}") in said(read)
+    why = "no file in the folder defines `${MISSION/NAME_LENGTH}`"
+    assert ("IMP081", f"message `Shoot`: from `File` on only bytes are imported: {why}") in said(read)
     assert read.held == 4 and message(read, "Shoot")["fields"][-1]["type"] == "bytes"
     (folder / "mission.xml").unlink()
-    assert "nothing in the file or beside it defines `${MISSION/HEADER}`" in why_not("camera.xml", folder)
+    assert "no file in the folder defines `${MISSION/HEADER}`" in why_not("camera.xml", folder)
 
 
 def test_a_package_that_lies_elsewhere_is_said(tmp_path):
     folder = copied(tmp_path, "packets.xml")
     (folder / "packets.xml").unlink()
     said = why_not("camera.xml", folder)
-    assert "is of the package `LINK/PACKETS`, which is neither in the file nor beside it" in said
+    assert "is of the package `LINK/PACKETS`, which is neither in the file nor in its folder" in said
 
 
 def test_a_package_and_a_value_that_are_there_twice_are_said_once(tmp_path):
@@ -243,7 +243,7 @@ OPEN = '<StringDataType name="open" length="9" fixedLength="false"{}</StringData
         (container("A", baseType="A"), "based on each other in a circle, or too deep: A -> A"),
         (container("A", baseType="B") + container("B", baseType="A"), "in a circle, or too deep: A -> B -> A"),
         (container("A", entry("A")) + container("B", baseType="A"), "hold each other in a circle, or too deep: A -> A"),
-        (container("A", entry("x/y/nothing")), "`x/y/nothing` is of the package `x/y`, which is neither in the file nor beside it"),
+        (container("A", entry("x/y/nothing")), "of the package `x/y`, which is neither in the file nor in its folder"),
         (container("A", entry("nothing")), "there is no type `nothing`"),
         (container("A", baseType="byte"), "it is based on `byte`, which is no container"),
         (container("A", ENTRY, abstract="true") + container("B", entry("A")), "`Q` is any container that is based on `A`"),
@@ -262,8 +262,8 @@ OPEN = '<StringDataType name="open" length="9" fixedLength="false"{}</StringData
         (container("A", entry("byte", tag="ListEntry", more=' listLengthField="N"')),
          "`Q` is there as often as `N` says, which is no number"),
         (container("A", entry("byte", tag="FixedValueEntry", more=' fixedValue="256"')), "`Q` is never `256`"),
-        (constrained('<ValueConstraint entry="X.Y" value="1"/>'), "it is told by `X.Y`, which is no field that it has"),
-        (constrained('<ValueConstraint entry="P" value="-1"/>'), "it is told by `P`, which is never `-1`"),
+        (constrained('<ValueConstraint entry="X.Y" value="1"/>'), "it depends on `X.Y`, which is no field that it has"),
+        (constrained('<ValueConstraint entry="P" value="-1"/>'), "it depends on `P`, which is never `-1`"),
         (constrained('<ValueConstraint entry="P" value="1"/><ValueConstraint entry="P" value="2"/>'), "is both 1 and 2"),
         (constrained(f'<RangeConstraint entry="P">{SEVERAL}</RangeConstraint>'), "`P`, which has one of several values"),
         (constrained('<SizeConstraint entry="P"/>'), "it is constrained by a `SizeConstraint`"),
@@ -315,7 +315,7 @@ GROWS = '<Define name="A0" value="word word word word"/>' + "".join(
     [
         (BOMB + sheet(container("A", entry("&e9;"))), "the XML has a document type"),
         (sheet(container("A"))[:-20], "not XML: "),
-        (sheet(container("A", abstract="true")), "no message can be held, for none is defined"),
+        (sheet(container("A", abstract="true")), "no message can be imported, for none is defined"),
         (sheet(container("A", entry("${A}"))).replace("<DataTypeSet>", f"{ITSELF}<DataTypeSet>"), "` is defined by itself"),
         (sheet(container("A", entry("${A14}"))).replace("<DataTypeSet>", f"{GROWS}<DataTypeSet>"),
          "becomes longer than 2000 characters"),
@@ -333,7 +333,7 @@ def test_what_is_read_of_a_file_and_those_beside_it_is_bounded(tmp_path, monkeyp
     monkeypatch.setattr(eds_sheets, "MOST_FILES", 1)
     for name in ("b.xml", "c.xml"):
         (tmp_path / name).write_text(sheet(""))
-    assert "beside it are more than 1 data sheets" in refused(sheet(container("A")), tmp_path)
+    assert "its folder has more than 1 data sheets" in refused(sheet(container("A")), tmp_path)
 
 
 def test_a_file_beside_it_that_is_broken_is_named_and_others_are_not_looked_at(tmp_path):

@@ -60,7 +60,7 @@ def test_enumerations_of_several_files_are_one_and_those_without_fields_are_none
     ]
     assert [(one.code, one.message) for one in rover.definitions.troubles] == [
         ("IMP077", "enumeration `ROVER_MODE`: 2 is `ROVER_MODE_MANUAL` and `ROVER_MODE_BY_HAND`"),
-        ("IMP070", "message `ODD` is not held: `value` is of the type `strange`"),
+        ("IMP070", "message `ODD` is not imported: `value` is of the type `strange`"),
     ]
 
 
@@ -88,13 +88,13 @@ def test_seeds_names_places_and_lengths_are_those_of_pymavlink(version, reader):
             "in a circle: a.xml -> b.xml -> a.xml",
         ),
         ({"a.xml": "<include>a.xml</include>"}, "in a circle: a.xml -> a.xml"),
-        ({"a.xml": "<include>b.xml</include>"}, "`b.xml`, which it includes, is not beside it"),
+        ({"a.xml": "<include>b.xml</include>"}, "`b.xml`, which it includes, is not in its folder"),
         (
             {"a.xml": "<include>../../etc/passwd</include>"},
-            "`../../etc/passwd`, which it includes, does not lie beside it",
+            "`../../etc/passwd`, which it includes, is not in its folder",
         ),
         ({"a.xml": "<include>b.xml</include>", "b.xml": "<messages>"}, "not XML: mismatched tag"),
-        ({"a.xml": "<messages/>"}, "no message can be held, for none is defined"),
+        ({"a.xml": "<messages/>"}, "no message can be imported, for none is defined"),
     ],
 )
 def test_what_is_included_may_not_lead_astray(files, says, tmp_path):

@@ -81,7 +81,7 @@ def edited(tmp_path, *changes):
 def test_xtce_a_member_that_an_aggregate_does_not_have_costs_the_message_alone(tmp_path):
     read = edited(tmp_path, ('"Section/Kind"', '"Section/Sort"'))
     assert read.held == 4
-    assert "`Sails` is not held: it is told by `Section/Sort`, which it does not have" in "".join(
+    assert "`Sails` is not imported: it depends on `Section/Sort`, which it does not have" in "".join(
         one.message for one in read.definitions.troubles
     )
 
@@ -97,7 +97,7 @@ def test_xtce_a_packet_without_data_costs_itself_and_not_the_file(tmp_path):
     read = edited(tmp_path, (entry, "<EntryList/>"), (assigned.format(1), ""), (assigned.format(2), ""))
     assert read.held == 4 and "SwitchOn" in {one["name"] for one in read.trees["kite"]["messages"]}
     (lost,) = [one.message for one in read.definitions.troubles if one.severity == "error"]
-    assert lost.startswith("message `Reboot` is not held: it has no data")
+    assert lost.startswith("message `Reboot` is not imported: it has no data")
 
 
 def test_xtce_a_header_of_which_only_parts_are_named_is_one(tmp_path):
@@ -326,7 +326,7 @@ def test_a_header_that_no_icd_can_have_costs_itself_and_not_the_messages(monkeyp
     monkeypatch.setattr(packets, "fill", fill)
     read = imported(SHAPES / "aggregate.xml")
     (lost,) = errors(read)
-    assert lost.code == "IMP070" and lost.message.startswith("the header is not held: the length of")
+    assert lost.code == "IMP070" and lost.message.startswith("the header is not imported: the length of")
     assert read.held == 5 and "protocol" not in read.trees["aggregate"]
 
 
@@ -339,7 +339,7 @@ def test_xtce_a_field_of_unknown_size_costs_what_follows_and_not_the_message(tmp
     )
     (lost,) = errors(read)
     assert (lost.code, lost.spot.line) == ("IMP081", 83)
-    assert lost.message == "message `Orbit`: from `Position` on only bytes are held: its size stands in front of it"
+    assert lost.message == "message `Orbit`: from `Position` on only bytes are imported: its size stands in front of it"
     assert read.held == 5 and [(one["name"], one["type"]) for one in message(read, "Orbit")["fields"]] == [
         ("Elapsed", "uint"), ("Position", "bytes"),
     ]  # fmt: skip
@@ -350,7 +350,7 @@ def test_xtce_what_tells_a_message_apart_must_be_held(tmp_path):
     read = edited(tmp_path, ('name="Kind" typeRef="u8_t"', 'name="Kind" typeRef="lost_t"'))
     why = "there is no parameter type `lost_t`"
     assert sorted(one.message for one in errors(read)) == [
-        f"message `{name}` is not held: it is told by `Section/Kind`, which is in or behind `Section`: {why}"
+        f"message `{name}` is not imported: it depends on `Section/Kind`, which is in or behind `Section`: {why}"
         for name in ("Sails", "Wheels")
     ]
     assert read.held == 3

@@ -82,7 +82,7 @@ def test_groups_that_are_there_several_times_are_structs(charger):
 def test_a_model_that_cannot_be_held_is_named_with_the_reason_and_the_others_are_held(charger):
     (said,) = (one for one in charger.definitions.troubles if one.severity == "error")
     assert said.message == (
-        "message `curves` is not held: `Pt`, which is there any number of times, stands in another group"
+        "message `curves` is not imported: `Pt`, which is there any number of times, stands in another group"
     )
     assert (charger.held, charger.definitions.total) == (2, 3)
 
@@ -112,7 +112,7 @@ def test_a_point_that_is_none_leaves_its_model_out(tmp_path, change, why):
         ('{"id": 70000, "group": {"name": "a", "points": []}}', 1, "not a model of SunSpec, nor a list of them"),
         ("[]", 1, "the list holds no model"),
         ("[" * 100_000, 1, "not JSON"),
-        ('{"id": 1, "group": {"name": "a", "points": []}}', 1, "no message can be held"),
+        ('{"id": 1, "group": {"name": "a", "points": []}}', 1, "no message can be imported"),
     ],
 )
 def test_what_is_no_model_is_refused_where_it_stands(tmp_path, text, line, message):

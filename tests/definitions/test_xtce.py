@@ -186,8 +186,8 @@ MASKED = "<RestrictionCriteria><CustomAlgorithm/></RestrictionCriteria>"
         (container("A", base="nothing"), "there is no container `nothing`"),
         (container("A", '<ParameterRefEntry parameterRef="../../../etc"/>'), "there is no parameter `../../../etc`"),
         (container("A", '<ContainerSegmentRefEntry containerRef="A"/>'), "it has a `ContainerSegmentRefEntry`"),
-        (container("B") + container("A", base="B", of=GREATER), "it is told by `P > 1`, which is no equality"),
-        (container("B") + container("A", base="B", of=MASKED), "it is told by a `CustomAlgorithm`"),
+        (container("B") + container("A", base="B", of=GREATER), "it depends on `P > 1`, which is no equality"),
+        (container("B") + container("A", base="B", of=MASKED), "it depends on a `CustomAlgorithm`"),
         (container("A", entry("<IncludeCondition/>")), "`P` is there only on a condition"),
         (container("A", entry(MANY)), "`P` is there 99999 times"),
         (container("A", ENTRY * 5001), "it has more than 5000 fields"),
@@ -238,7 +238,7 @@ def test_a_number_of_unknown_encoding_tells_no_message_apart(tmp_path):
     of = '<RestrictionCriteria><Comparison parameterRef="P" value="12"/></RestrictionCriteria>'
     containers = container("A") + container("B", "", "A", of)
     why = refused(system(containers, BYTE.replace("Encoding", 'Encoding encoding="BCD"')), tmp_path)
-    assert "message `B` is not held: it is told by `P`, of which only the raw bits are held" in why
+    assert "message `B` is not imported: it depends on `P`, of which only the raw bits are imported" in why
 
 
 BOMB = "<!DOCTYPE x [" + "".join(f'<!ENTITY e{n} "{f"&e{n - 1};" * 10}">' for n in range(1, 10)) + '<!ENTITY e0 "ha">]>'
@@ -251,7 +251,7 @@ OUTSIDE = '<!DOCTYPE x [<!ENTITY e SYSTEM "file:///etc/passwd">]>'
         (BOMB + system(container("A")).replace('name="A"', 'name="&e9;"'), "the XML has a document type"),
         (OUTSIDE + system(container("A", "&e;")), "the XML has a document type"),
         ("<SpaceSystem>", "not XML: no element found"),
-        (system("") , "no message can be held, for none is defined"),
+        (system("") , "no message can be imported, for none is defined"),
         ('<SpaceSystem name="a">' * 102 + "</SpaceSystem>" * 102, "more than 100 systems stand within each other"),
     ],
 )  # fmt: skip
@@ -335,7 +335,7 @@ def test_an_array_that_no_parameter_counts_is_held_as_bytes_to_the_end(dynamic, 
     (tmp_path / "one.xml").write_text(counted(dynamic))
     read = run.read(tmp_path / "one.xml", xtce.Xtce())
     (lost,) = [one for one in read.definitions.troubles if one.severity == "error"]
-    assert lost.code == "IMP081" and lost.message.startswith("message `A`: from `D` on only bytes are held: ")
+    assert lost.code == "IMP081" and lost.message.startswith("message `A`: from `D` on only bytes are imported: ")
     assert "no parameter counts" in lost.message and read.failed
     assert field(read, "A", "D") == {"at": 8, "name": "D", "type": "bytes", "size": "rest", "up_to": 65_534}
 

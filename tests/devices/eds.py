@@ -40,7 +40,7 @@ def sheets() -> Iterator[Definitions]:
                 continue  # of what only others use
             (tree,) = read.trees.values()
             missing = [one.message for one in read.definitions.troubles if one.severity == "error"]
-            # a message that ends in bytes for fields which are not held counts as one that is missing
+            # a message that ends in bytes for fields which are not imported counts as one that is missing
             tree["messages"] = [one for one in tree["messages"] if not any(_is_cut(one, text) for text in missing)]
             messages = [_definition(judge, judge.packages(path), one, tree) for one in tree["messages"]]
             messages += [Definition(said, 0, "telemetry", 0, [], cause=said.split(": ", 1)[1]) for said in missing]

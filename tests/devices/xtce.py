@@ -35,7 +35,7 @@ def packets() -> Iterator[Definitions]:
             if f"message `{one['name']}`" in open_:
                 one["fields"] = [part for part in one["fields"] if "size" not in part]
         missing = [one.message for one in read.definitions.troubles if one.severity == "error"]
-        # a message that ends in bytes for fields which are not held counts as one that is missing
+        # a message that ends in bytes for fields which are not imported counts as one that is missing
         tree["messages"] = [one for one in tree["messages"] if not any(_is_cut(one, text) for text in missing)]
         try:
             yield _definitions(path, tree, missing)

@@ -15,7 +15,7 @@ from icdgen.commands.common import format_option, icd_option, kind_option, load_
 @icd_option
 @kind_option
 @format_option("text", "json")
-@click.option("--raw", is_flag=True, help="Values are raw values, and are not held against limits.")
+@click.option("--raw", is_flag=True, help="Values are raw values; limits are not checked.")
 def encode(words: tuple[str, ...], icds: tuple[Path, ...], kind: str | None, form: str, raw: bool) -> None:
     """Encode a message from physical values.
 

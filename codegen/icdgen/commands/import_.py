@@ -211,7 +211,7 @@ def _define(files: list[tuple[Path, Reader]], out: Path, update: bool, dry_run: 
         click.echo(console.report(reads, colour), color=colour or None)
         _say_files(aimed, checked, dry_run)
         if not trees:
-            say("no ICD is written: no message can be held")
+            say("no ICD is written: no message can be imported")
     sys.exit(1 if not trees or any(read.failed for read in reads) or has_errors(checked) else 0)
 
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 @click.argument("words", nargs=-1, required=True, metavar="[NODE] MESSAGE [FIELD=VALUE]...")
 @session_options
 @icd_option
-@click.option("--raw", is_flag=True, help="Values are raw values, and are not held against limits.")
+@click.option("--raw", is_flag=True, help="Values are raw values; limits are not checked.")
 @click.option("--yes", "-y", is_flag=True, help="Send also what is dangerous, without asking.")
 @format_option("text", "json")
 def send(words: tuple[str, ...], icds: tuple[Path, ...], raw: bool, yes: bool, form: str, **options: Any) -> None:

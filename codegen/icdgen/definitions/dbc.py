@@ -196,7 +196,7 @@ def _widened(text: str, to: Definitions) -> str:
             told.add(id)
             line = text.count("\n", 0, found.start(2)) + 1
             message = f"the id {id:#x} has more than the 11 bits of a standard frame"
-            help = "it is held as that of an extended frame, whose ids have bit 31 set in a DBC"
+            help = "it is imported as an extended frame, whose ids have bit 31 set in a DBC"
             to.warn(REPAIRED, message, help, line=line)
         return f"{found[1]}{id | _EXTENDED}"
 

@@ -110,7 +110,7 @@ class _Found:
         made: Item = {"name": self.name, "id": id, "kind": self.kind, "length": length, **self.more}
         if self.layout.lost is not None:
             name, why = self.layout.lost
-            text = f"message `{self.name}`: from `{name}` on only bytes are held: {why}"
+            text = f"message `{self.name}`: from `{name}` on only bytes are imported: {why}"
             to.warn(
                 AS_BYTES, text, why.help or "describe the rest by hand, or simplify the definition", "error", self.line
             )
@@ -120,7 +120,7 @@ class _Found:
 
 
 def _read(sending: Sending, sheets: Sheets, types: Types, structs: Structs, to: Definitions) -> _Found | None:
-    """A container that is sent; None, and said, where it is not held."""
+    """A container that is sent; None, and said, where it is not imported."""
     to.total += 1
     container = sending.container
     layout = Layout(sheets, types, structs)

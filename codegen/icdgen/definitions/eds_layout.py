@@ -45,7 +45,7 @@ class Layout:
     told: dict[Hashable, int] = field(default_factory=dict)  # by what is constrained: its only raw value
     at: int = 0
     within: tuple[Element, ...] = ()  # containers in which this one is repeated
-    lost: tuple[str, NotHeld] | None = None  # the entry from which on only bytes are held, and why
+    lost: tuple[str, NotHeld] | None = None  # the entry from which on only bytes are imported, and why
 
     def read(self, container: Element) -> None:
         """Raises `NotHeld`."""
@@ -54,7 +54,7 @@ class Layout:
             part = next((part for part in self.parts if part.path == one.path), None)
             if part is None and self.lost is not None:
                 name, why = self.lost
-                text = f"it is told by `{line('.'.join(one.path), 100)}`, which is in or behind `{name}`: {why}"
+                text = f"it depends on `{line('.'.join(one.path), 100)}`, which is in or behind `{name}`: {why}"
                 raise NotHeld(text, why.help)
             raw = eds_parts.constrain(part, one, self.sheets, self.types)
             if raw is not None and part is not None:

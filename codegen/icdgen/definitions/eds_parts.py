@@ -55,7 +55,7 @@ def only(piece: Piece, raw: int, name: str) -> None:
     """Makes a raw value the only one. Raises `NotHeld` if another was."""
     item = piece.item
     if item.get("const", raw) != raw:
-        raise NotHeld(f"it is told by `{name}`, which is both {item['const']} and {raw}")
+        raise NotHeld(f"it depends on `{name}`, which is both {item['const']} and {raw}")
     kind = {"type": "uint"} if item["type"] == "bool" else {}  # a flag has no constant
     kept = {key: value for key, value in item.items() if key not in ("min", "max", "special")}
     again(item, {**kept, **kind, "const": raw})
@@ -77,8 +77,8 @@ def constrain(part: Part | None, told: Told, sheets: Sheets, types: Types) -> in
     """Gives a field the value that a constraint says, or narrows its limits (None). Raises `NotHeld` for all others."""
     one, name = told.constraint, line(".".join(told.path), 100)
     if part is None or part.piece is None or part.bits != part.piece.bits:
-        raise NotHeld(f"it is told by `{name}`, which is no field that it has")
-    piece, where = part.piece, f"it is told by `{name}`, which"
+        raise NotHeld(f"it depends on `{name}`, which is no field that it has")
+    piece, where = part.piece, f"it depends on `{name}`, which"
     if one.tag == "ValueConstraint":
         raw = piece.raw(sheets.attribute(one, "value"), where)
     elif one.tag in ("RangeConstraint", "TypeConstraint"):

@@ -128,7 +128,7 @@ class Sheets:
             return known
         of = next((one for one in (name, f"{package}/{name}") if one in self._defines), None)
         if of is None:
-            raise NotHeld(f"nothing in the file or beside it defines `${{{line(name, 100)}}}`", _TOGETHER)
+            raise NotHeld(f"no file in the folder defines `${{{line(name, 100)}}}`", _TOGETHER)
         text, where, _ = self._defines[of]
         self._twice(f"${{{of}}}", self._defines[of][2])
         text = self._filled(text, where, depth + 1)
@@ -178,7 +178,7 @@ class Sheets:
         of = reference.rpartition("/")[0]
         if of and of not in self._files:
             raise NotHeld(
-                f"`{line(reference, 100)}` is of the package `{line(of, 60)}`, which is neither in the file nor beside it",
+                f"`{line(reference, 100)}` is of the package `{line(of, 60)}`, which is neither in the file nor in its folder",
                 _TOGETHER,
             )
         raise NotHeld(f"there is no {kind} `{line(reference, 100)}`")
@@ -204,6 +204,6 @@ def beside(file: str, size: int) -> Iterator[tuple[str, Element]]:
         data = kinds.contents(path)
         count, size = count + 1, size + len(data)
         if count > MOST_FILES or size > MOST_BYTES:
-            text = f"beside it are more than {MOST_FILES} data sheets, or {MOST_BYTES:,} bytes of them"
+            text = f"its folder has more than {MOST_FILES} data sheets, or {MOST_BYTES:,} bytes of them"
             raise unreadable(file, text, "move those away that it does not need")
         yield str(path), safe_xml.parse(str(path), data)

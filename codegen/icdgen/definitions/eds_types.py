@@ -227,7 +227,7 @@ class Types(Reading):
 
     def _raw_only(self, where: str, why: str) -> None:
         if self.is_new(f"{where}: {why}"):
-            self.to.warn(RAW_ONLY, f"{where}: {why}", "its raw bits are held as a number, without unit and limits")
+            self.to.warn(RAW_ONLY, f"{where}: {why}", "its raw bits are imported as a number, without unit and limits")
 
 
 def described(element: Element) -> dict[str, str]:

@@ -39,7 +39,7 @@ def members(choices: Mapping[int, str], first: int, last: int, where: str, to: D
             same = [one for one in found if one["name"] == name]
             values = ", ".join(str(one["value"]) for one in same)
             text = f"{where}: `{name}` is the name of {values}"
-            to.warn(SAME_NAME, text, "each is held with its value behind the name")
+            to.warn(SAME_NAME, text, "each is imported with its value behind the name")
             taken = {one["name"] for one in found}
             for one in same:
                 told = f"{name} {one['value']}"

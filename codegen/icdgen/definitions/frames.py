@@ -87,7 +87,7 @@ def _owned(name: str, placed: list[tuple[Item, Place]], order: str, to: Definiti
         left |= mask
     if pairs:
         shown = ", ".join(pairs[:3]) + (f" and {len(pairs) - 3} more" if len(pairs) > 3 else "")
-        help = "the smaller ones are held as views: they are read, not set"
+        help = "the smaller ones are imported as overlay fields, which can be read but not set"
         to.warn(OVERLAPPING, f"message `{name}`: {shown} overlap", help)
     yield from ((field, place) for field, place in placed if not any(field is one for one in left_out))
     owned = 0

@@ -176,7 +176,7 @@ class Layout:
         if not piece.is_bits:
             self._align()
         elif self.at % 8 and self.parts and self.parts[-1].piece.is_bits and self.parts[-1].piece.order != piece.order:
-            raise NotHeld("its bits are counted from the other end than those in front of it, within a byte")
+            raise NotHeld("its bits are counted from the other end of a byte than the bits in front of it")
         if not piece.bits and self.ends:
             piece.bits = self.ends[-1] - self.at
             if piece.bits <= 0:
@@ -264,21 +264,21 @@ class Layout:
             size = None
         is_end = self.open or size is None
         if self.open:
-            held = "nothing of it is held"
+            held = "no part of it is imported"
         elif size is not None:
-            held = "its bytes are held"
+            held = "its bytes are imported"
             self._bytes(where, 8 * size)
         elif self.ends:
-            held = "its bytes are held, with those of what follows"
+            held = "its bytes and all bytes behind it are imported"
             self._align()
             if self.ends[-1] > self.at:
                 self._bytes(where, self.ends[-1] - self.at)
             self.at = self.ends[-1]
         else:
-            held = "the bytes up to the end of the frame are held"
+            held = "the bytes up to the end of the frame are imported"
             self._bytes(where, 0)
         settle(one)
-        self.file.note(AS_BYTES, f"`{' '.join(where)}` is not held: {why}", held, "error", one.place.line)
+        self.file.note(AS_BYTES, f"`{' '.join(where)}` is not imported: {why}", held, "error", one.place.line)
         if is_end:
             raise Ended
 
@@ -356,15 +356,15 @@ class Layout:
             where = " ".join((*path, name))
             if "value" not in one:
                 settle(one)
-                text = f"`{where}` is not held: it stands where an expression says"
-                self.file.note(AS_BYTES, text, "what the sequence has is held", "error", one.place.line)
+                text = f"`{where}` is not imported: it stands where an expression says"
+                self.file.note(AS_BYTES, text, "the fields of the sequence are imported", "error", one.place.line)
                 continue
             if not self._formula(one, scope):
                 settle(one)
                 said = line(str(one["value"]), 80)
                 text = f"`{where}`: `{said}` is no line over one field"
                 self.file.note(
-                    RAW_ONLY, text, "the fields that it is computed from are held", "warning", one.place.line
+                    RAW_ONLY, text, "the fields that it is computed from are imported", "warning", one.place.line
                 )
 
     def _stands_at(self, name: str, one: Map, type_: Type, scope: Scope) -> bool:

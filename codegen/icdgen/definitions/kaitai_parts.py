@@ -22,7 +22,7 @@ class Undecided(Exception):
 
 
 class Ended(Exception):
-    """The rest of what is being read is held as bytes."""
+    """The rest of what is being read is imported as bytes."""
 
 
 class Label(NamedTuple):

@@ -25,7 +25,7 @@ _WITHOUT_MEANING = frozenset({"dialect", "print_format", "display", "schemaLocat
 _BITS = {"int8_t": 8, "uint8_t": 8, "char": 8, "int16_t": 16, "uint16_t": 16, "int32_t": 32, "uint32_t": 32,
          "int64_t": 64, "uint64_t": 64, "float": 32, "double": 64}  # fmt: skip
 _VERSION_FIELD = "uint8_t_mavlink_version"
-# Units that say a factor: of integers the unit itself is held, and the factor as a formula.
+# Units that say a factor: of integers the unit itself is imported, and the factor as a formula.
 _SCALED = {
     "degE7": ("deg", "1e-7"), "degE5": ("deg", "1e-5"), "cdeg": ("deg", "0.01"), "ddeg/s": ("deg/s", "0.1"),
     "cm/s": ("m/s", "0.01"), "dm/s": ("m/s", "0.1"), "mm/s": ("m/s", "0.001"), "dm": ("m", "0.1"), "dam": ("m", "10"),
@@ -181,9 +181,7 @@ def _with_included(file: str, data: bytes, account: Account) -> Iterator[tuple[s
             name = (one.text or "").strip()
             target = os.path.join(os.path.dirname(path), name)
             if not name or os.path.basename(name) != name:
-                raise unreadable(
-                    path, f"`{line(name, 100)}`, which it includes, does not lie beside it", "put it there"
-                )
+                raise unreadable(path, f"`{line(name, 100)}`, which it includes, is not in its folder", "put it there")
             if target in (*stack, path):
                 circle = " -> ".join(map(os.path.basename, (*(*stack, path)[(*stack, path).index(target) :], target)))
                 raise unreadable(path, f"files include each other in a circle: {circle}", "take one `include` out")
@@ -192,7 +190,7 @@ def _with_included(file: str, data: bytes, account: Account) -> Iterator[tuple[s
             if len(found) >= MOST_FILES:
                 raise unreadable(file, f"it includes more than {MOST_FILES} files", "import it in parts")
             if not os.path.isfile(target):
-                raise unreadable(path, f"`{name}`, which it includes, is not beside it", "put it there")
+                raise unreadable(path, f"`{name}`, which it includes, is not in its folder", "put it there")
             read(target, kinds.contents(Path(target)), (*stack, path))
 
     read(file, data, ())
@@ -311,7 +309,7 @@ def _enumerations(roots: dict[str, Element], to: Definitions) -> dict[str, Item]
                     to.warn(BEYOND, text, "the name is left out")
                 elif entries.setdefault(value, (label, _said(entry)))[0] != label:
                     text = f"enumeration `{name}`: {value} is `{entries[value][0]}` and `{label}`"
-                    to.warn(TWICE, text, "the first name is held")
+                    to.warn(TWICE, text, "the first name is imported")
     return {name: _enumeration(name, entries, said[name], to) for name, entries in found.items() if entries}
 
 

@@ -77,7 +77,7 @@ class Network:
 class Definitions:
     """Everything that a file defines, with ``more`` files that are read as one with it.
 
-    ``total`` counts its messages, those that are not held among them.
+    ``total`` counts its messages, those that are not imported among them.
     """
 
     file: str
@@ -93,15 +93,15 @@ class Definitions:
         return f"{self.file} and {others}" if self.more else self.file
 
     def left_out(self, name: str, why: object, line: int | None = None, file: str = "") -> None:
-        """Notes that a message is not held. ``file`` is where it stands, if several are read as one."""
+        """Notes that a message is not imported. ``file`` is where it stands, if several are read as one."""
         spot = Spot(line=line, file=file if file != self.file else "")
         help = why.help if isinstance(why, NotHeld) else ""
-        self.troubles.append(Trouble(NOT_HELD, f"message `{name}` is not held: {why}", spot, help, "error"))
+        self.troubles.append(Trouble(NOT_HELD, f"message `{name}` is not imported: {why}", spot, help, "error"))
 
     def without_field(self, message: str, field: str, why: object, line: int | None = None) -> None:
-        """Report that a field is left out of a message, which is held without it."""
+        """Report that a field is left out of a message, which is imported without it."""
         text = f"message `{message}`, `{field}` is left out: {why}"
-        help = "the message is held without it: its bits are reserved"
+        help = "the message is imported without it: its bits are reserved"
         self.troubles.append(Trouble(WITHOUT_FIELD, text, Spot(line=line), help, severity="error"))
 
     def warn(

@@ -73,7 +73,7 @@ def is_of_header(at: int, bits: int) -> bool:
 
 
 def fill(network: Network, found: Sequence[Sent], to: Definitions) -> None:
-    """Puts everything that is sent into the network, with ids and envelope. What is not held is noted."""
+    """Puts everything that is sent into the network, with ids and envelope. What is not imported is noted."""
     if any(one.header is not None for one in found):
         network.head["id_bits"] = APID_BITS
         _packets(found, network, to)
@@ -91,7 +91,7 @@ def _packets(found: Sequence[Sent], network: Network, to: Definitions) -> None:
             if one.header is None:
                 raise NotHeld("it does not begin with the header of a space packet, as others do")
             if one.header.apid is None:
-                raise NotHeld("nothing says of which application process it is")
+                raise NotHeld("its application process is not stated")
             if one.header.version not in (None, version) or one.header.kind not in (None, one.kind):
                 raise NotHeld(f"its header is not that of a space packet with {one.kind}")
             message = one.message(one.header.apid, HEADER_BITS, to)

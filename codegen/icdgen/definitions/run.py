@@ -35,13 +35,13 @@ class Read:
 
 
 def read(path: Path, reader: Reader) -> Read:
-    """Reads a file. Raises `Findings` where nothing of it can be held, and `UserError` where a library is missing."""
+    """Reads a file. Raises `Findings` where nothing of it can be imported, and `UserError` where a library is missing."""
     found = kinds.read(path, reader)
     made = _settled(found, reader)
     if not made.trees:
         first = next((one for one in found.troubles if one.severity == "error"), None)
         why = ", for none is defined" if first is None else f": {first.message}"
-        raise unreadable(str(path), f"no message can be held{why}", "" if first is None else first.help)
+        raise unreadable(str(path), f"no message can be imported{why}", "" if first is None else first.help)
     return made
 
 

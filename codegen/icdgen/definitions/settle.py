@@ -53,7 +53,7 @@ def settle(network: Network, to: Definitions) -> list[str]:
             for finding in findings:
                 line = lines.get(finding.place.line)
                 if line is None and network.protocol is not None:
-                    to.warn(NOT_HELD, f"the header is not held: {finding.message}", finding.help, "error")
+                    to.warn(NOT_HELD, f"the header is not imported: {finding.message}", finding.help, "error")
                     network.protocol, has_changed = None, True
                     network.seeds.clear()
                     break
@@ -135,13 +135,13 @@ def _degrade_part(network: Network, line: _Line, reason: str, to: Definitions) -
         text = f"enumeration `{owner}`: the name `{item['name']}` of {item['value']} is left out: {reason}"
         to.warn(RAW_ONLY, text, "its value stays a number", "error")
         if not line.whole["members"]:
-            _drop_enumeration(network, line.whole, "no name of it can be held", to)
+            _drop_enumeration(network, line.whole, "no name of it can be imported", to)
         return
     whole = "message" if any(line.whole is one for one in network.messages) else "struct"
     if item.keys() & set(_MEANING) and "count" not in item:
         _make_raw(network, item)
         text = f"{whole} `{owner}`, `{item['name']}`: {reason}"
-        to.warn(RAW_ONLY, text, "its raw value is held, without formula, unit, limits and names", "error")
+        to.warn(RAW_ONLY, text, "its raw value is imported, without formula, unit, limits and names", "error")
         return
     fields = line.whole["fields"]
     _remove(fields, item)

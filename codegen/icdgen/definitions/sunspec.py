@@ -27,7 +27,7 @@ _NONE, _NOT_COUNTED = "not implemented", "not accumulated"
 
 
 class _Kind(NamedTuple):
-    """How a type of points is held. ``registers`` is 0 where the point says it; ``none`` is the value that is none."""
+    """How a type of points is imported. ``registers`` is 0 where the point says it; ``none`` is the value that is none."""
 
     type: str
     registers: int
@@ -129,7 +129,7 @@ class _Model:
         if self.scaled:
             shown = ", ".join(f"`{name}`" for name in self.scaled[:3]) + (" ..." if len(self.scaled) > 3 else "")
             text = f"message `{self.name}`: the factors of {len(self.scaled)} points stand in other registers: {shown}"
-            self.to.warn(RAW_ONLY, text, "raw values are held; their summaries say what to multiply them by", "note")
+            self.to.warn(RAW_ONLY, text, "raw values are imported; their summaries name the scale factor", "note")
         return {**told, "fields": fields}
 
     def block(self, group: dict[str, Any], fields: list[Item], at: int, before: str, depth: int) -> int:

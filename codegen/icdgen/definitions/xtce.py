@@ -115,7 +115,7 @@ class _Found:
         message = self.layout.laid_out(made, start, BIG, to)
         if self.layout.lost is not None:
             name, why = self.layout.lost
-            text = f"message `{self.name}`: from `{name}` on only bytes are held: {why}"
+            text = f"message `{self.name}`: from `{name}` on only bytes are imported: {why}"
             place = self.layout.names.place(self.element)
             to.warn(
                 AS_BYTES, text, why.help or "describe the rest by hand, or simplify the definition", "error", *place
@@ -129,7 +129,7 @@ class _Found:
 
 
 def _all(names: Names, types: Types, to: Definitions) -> Iterator[_Found]:
-    """Everything that is sent, in the order of the file; what is not held is noted."""
+    """Everything that is sent, in the order of the file; what is not imported is noted."""
     bases = _used(names, "BaseContainer")
     for element in _containers(names, bases):
         to.total += 1

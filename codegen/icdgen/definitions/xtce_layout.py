@@ -72,7 +72,7 @@ class Layout:
     at: int = 0
     behind: str = ""  # the entry just before, where it is not always there
     size: int = 0  # bits that every frame has, where that is said
-    lost: tuple[str, NotHeld] | None = None  # the entry from which on only bytes are held, and why
+    lost: tuple[str, NotHeld] | None = None  # the entry from which on only bytes are imported, and why
 
     def add(self, container: Element, within: tuple[Element, ...] = (), is_included: bool = False) -> None:
         """Adds the entries of a container behind those that it inherits. Raises `NotHeld`."""
@@ -221,9 +221,9 @@ class Layout:
 
     def _told(self, criteria: Element, seen_from: Element) -> Iterator[Told]:
         """Equalities that must all hold. Raises `NotHeld` for anything else."""
-        for told in self._all_of(criteria, seen_from, "it is told by"):
+        for told in self._all_of(criteria, seen_from, "it depends on"):
             if len(told) > 1:
-                raise NotHeld("it is told by more than equalities that must all hold")
+                raise NotHeld("it depends on more than equalities that must all be true")
             yield told[0]
 
     def _needs(self, condition: Element, seen_from: Element, named: str) -> Item:
@@ -274,7 +274,7 @@ class Layout:
         part = self._part(told)
         raw = self._raw(part, told)
         if part.item.get("const", raw) != raw:
-            raise NotHeld(f"it is told by `{told.reference.name}`, which is both {part.item['const']} and {raw}")
+            raise NotHeld(f"it depends on `{told.reference.name}`, which is both {part.item['const']} and {raw}")
         part.item["const"] = raw
         return raw
 
@@ -283,29 +283,29 @@ class Layout:
         part = next((one for one in reversed(self.parts) if one.reference == told.reference), None)
         if part is None and self.lost is not None:
             name, why = self.lost
-            text = f"it is told by `{told.reference.name}`, which is in or behind `{name}`: {why}"
+            text = f"it depends on `{told.reference.name}`, which is in or behind `{name}`: {why}"
             raise NotHeld(text, why.help)
         if part is None:
-            raise NotHeld(f"it is told by `{told.reference.name}`, which it does not have")
+            raise NotHeld(f"it depends on `{told.reference.name}`, which it does not have")
         return part
 
     def _raw(self, part: Part, told: Told) -> int:
         """The raw value that a comparison is about."""
         item, text, name = part.item, told.value.strip(), told.reference.name
         if part.piece.is_raw:
-            raise NotHeld(f"it is told by `{name}`, of which only the raw bits are held")
+            raise NotHeld(f"it depends on `{name}`, of which only the raw bits are imported")
         if "count" in item or item["type"] not in ("uint", "int", "enum", "bool"):
-            raise NotHeld(f"it is told by `{name}`, which is of the type {item['type']}")
+            raise NotHeld(f"it depends on `{name}`, which is of the type {item['type']}")
         if item.keys() & {"formula", "points"} and not told.is_raw:
-            raise NotHeld(f"it is told by the calibrated value of `{name}`")
+            raise NotHeld(f"it depends on the calibrated value of `{name}`")
         if text in part.piece.values and not told.is_raw:
             return part.piece.values[text]
         try:
             raw = int(text, 0) if text.lower().startswith(("0x", "-0x")) else int(text)
         except ValueError:
-            raise NotHeld(f"it is told by `{name}`, which is never `{line(text, 60)}`") from None
+            raise NotHeld(f"it depends on `{name}`, which is never `{line(text, 60)}`") from None
         if raw.bit_length() > part.piece.bits or (raw < 0 and item["type"] in ("uint", "bool")):
-            raise NotHeld(f"it is told by `{name}`, which is never {raw}")
+            raise NotHeld(f"it depends on `{name}`, which is never {raw}")
         return raw
 
     def laid_out(self, message: Item, start: int, order: str, to: Definitions) -> Item:
@@ -363,7 +363,7 @@ def _open(message: Item, part: Part, parts: list[Part], order: str, to: Definiti
         item["size" if "size" in item else "count"] = {"field": by, "plus": piece.plus} if piece.plus else by
     elif counter is not None:
         text = f"message `{message['name']}`: `{item['name']}` is as long as `{piece.size}` says"
-        to.warn(OPEN, text, "it is held up to the end of the frame")
+        to.warn(OPEN, text, "it is imported up to the end of the frame")
     is_other = item.get("bits", 8) > 8 and piece.order != message.get("byte_order", order)
     return again(
         item, {"at": 8 * message["length"], **item, **(ORDERS[piece.order] if is_other else {}), "up_to": most}

@@ -39,7 +39,7 @@ class Piece:
     plus: int | None = None  # so much more than it says; None where it does not count bytes or elements
     values: dict[str, int] = field(default_factory=dict)  # by label
     members: list[tuple[str, Element]] = field(default_factory=list)  # of an aggregate instead: names and types
-    is_raw: bool = False  # whether only the bits are held, not what they mean
+    is_raw: bool = False  # whether only the bits are imported, not what they mean
 
 
 @dataclass
@@ -146,7 +146,7 @@ class Types(Reading):
         bits = fixed(size) if default is None else number(encoding.get("sizeInBits", default), "a size")
         if bits is None or not (1 <= bits <= _WORD or (bits % 8 == 0 and 0 < bits <= 8 * MOST_BYTES)):
             raise why
-        self._raw_only(where, str(why), "its raw bits are held, without their meaning")
+        self._raw_only(where, str(why), "its raw bits are imported, without their meaning")
         for type_ in chain:
             settle(type_)
         return Piece({"type": "uint" if bits <= _WORD else "bytes"}, bits, is_raw=True)
@@ -183,7 +183,7 @@ class Types(Reading):
         self.enums.hold(made.item, made.bits, choices, called, self._owner(element), f"`{called}`", self.to)
 
     def _calibrated(self, made: Piece, chain: list[Element], encoding: Element | None, kind: str, where: str) -> bool:
-        """Adds the formula. False if there is a calibration that cannot be said, so that the raw value is all that is held."""
+        """Adds the formula. False if there is a calibration that cannot be said, so that the raw value is all that is imported."""
         try:
             is_time = kind in ("AbsoluteTime", "RelativeTime")
             said = _time(made.item, chain) if is_time else {} if encoding is None else calibration(encoding)
@@ -197,12 +197,12 @@ class Types(Reading):
         made.item |= said
         return True
 
-    def _raw_only(self, where: str, why: str, help: str = "its raw values are held, without the unit") -> None:
+    def _raw_only(self, where: str, why: str, help: str = "its raw values are imported, without the unit") -> None:
         if self.is_new(where):
             self.to.warn(RAW_ONLY, f"{where}: {why}", help)
 
     def _limits(self, item: Item, chain: list[Element]) -> Item:
-        """The keys of the range that is valid, if there is one and it is that of the value that is held."""
+        """The keys of the range that is valid, if there is one and it is that of the value that is imported."""
         ranges = [one for type_ in chain for path in _RANGES for one in type_.iterfind(path)]
         owners = [one for type_ in chain if (one := type_.find("ValidRangeSet")) is not None]
         of_raw = any(one.get("validRangeAppliesToCalibrated") == "false" for one in (*ranges, *owners))
