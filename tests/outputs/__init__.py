@@ -1,0 +1,1 @@
+"""Comparison of everything that two revisions of icdgen generate from the same ICDs."""
