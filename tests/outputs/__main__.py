@@ -39,15 +39,20 @@ def run(sources: Path, listed: Path, work: Path, jobs: int) -> dict[str, dict[st
 
 
 def differences(before: dict[str, dict[str, str]], after: dict[str, dict[str, str]]) -> list[str]:
-    """Name each output that differs, as `COMMAND: OUTPUT`."""
+    """Describe the commands whose outputs differ, a line each, with the names of some of these outputs."""
     lines = []
     for command in sorted(before.keys() | after.keys()):
         old, new = before.get(command, {}), after.get(command, {})
-        for output in sorted(old.keys() | new.keys()):
-            if old.get(output) != new.get(output):
-                word = "new" if output not in old else "gone" if output not in new else "differs"
-                lines.append(f"{command}: {output} {word}")
+        changed = [output for output in sorted(old.keys() | new.keys()) if old.get(output) != new.get(output)]
+        if changed:
+            shown = ", ".join(_described(output, old, new) for output in changed[:5])
+            lines.append(f"{command}: {len(changed)} of {len(old)} outputs differ: {shown}")
     return lines
+
+
+def _described(output: str, old: dict[str, str], new: dict[str, str]) -> str:
+    """Name an output; say if only one of the revisions has it."""
+    return f"{output} (new)" if output not in old else f"{output} (gone)" if output not in new else output
 
 
 def main() -> None:

@@ -2,23 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
-from itertools import chain
 from typing import Any
 
-from icdgen.icd import annex, conditions, curve, derived, division, floats, formula, model, tails, wire_ids
+from icdgen.icd import annex, conditions, curve, derived, division, flat, floats, formula, model, tails, wire_ids
 from icdgen.icd.display import display_of
 from icdgen.icd.errata import Applied
-from icdgen.icd.implied import implied_count
+from icdgen.icd.layout import (
+    Array,
+    Counted,
+    Derived,
+    FixedNode,
+    Layout,
+    Orders,
+    Overlay,
+    Rest,
+    Scalar,
+    Size,
+    StructRef,
+    VariableNode,
+    counter_of_rest,
+    overlay_of,
+    stride,
+)
 from icdgen.icd.located import Map, plain, unread
 from icdgen.icd.paths import members_of
 from icdgen.icd.trees import mappings
 from icdgen.icd.units import STANDARD, Unit
-
-Orders = tuple[str, str]
 
 _LIMITS = frozenset({"min", "max", "above", "below"})
 
@@ -29,11 +42,14 @@ class Scope:
     def __init__(self, included: Iterable[model.Node]) -> None:
         self.enums: dict[str, model.Enum] = {}
         self.structs: dict[str, model.Struct] = {}
+        self.layouts: dict[int, model.Struct] = {}
+        """The structs of all layouts that nodes of this scope refer to, by the identity of the layout."""
         self.units: dict[str, Unit] = dict(STANDARD)
         self.vocabulary: list[str] = []
         for node in included:
             self.enums.update((e.name, e) for e in node.enums)
             self.structs.update((one.name, one) for one in node.structs)
+            self.layouts.update((id(struct.layout), struct) for struct in node.structs)
             self.units.update((u.symbol, u) for u in node.units)
             self.vocabulary += node.vocabulary
 
@@ -128,25 +144,23 @@ class Builder:
         return tuple(made)
 
     def struct(self, item: Map) -> model.Struct:
-        return model.Struct(
+        struct = model.Struct(
             length=item["length"],
-            fields=self.all_fields(item),
+            fields=(),
+            layout=Layout(item["name"], item["length"], self.fixed_nodes(item), owner=self.name),
             table=_printed(item).get("table"),
             node=self.name,
             **self.named(item),
         )
+        self.scope.layouts[id(struct.layout)] = struct = flat.struct_with_lists(struct, self.scope.layouts)
+        return struct
 
     def message(self, item: Map) -> model.Message:
-        fields = self.all_fields(item)
-        parts, ends = self.open_parts(item)
-        for part in parts:
-            fields = part.counted_in(fields)
-        fields += ends
-        length = item["length"] + sum(part.most * part.step for part in parts)
-        return model.Message(
+        message = model.Message(
             kind=item["kind"],
-            length=length,
-            fields=self.with_derived(fields, length, item) if "derived" in item else fields,
+            length=item["length"],
+            fields=(),
+            layout=self.message_layout(item),
             id=_id(item, "id"),
             set_id=_id(item, "set_id"),
             get_id=_id(item, "get_id"),
@@ -159,109 +173,125 @@ class Builder:
             assumptions=tuple((key, str(why)) for key, why in (item.get("assumptions") or {}).items()),
             contains=tuple(model.Part(part["message"], part["at"]) for part in self.items("contains", item)),
             reserved=item.get("reserved", 0),
-            tail=parts[-1] if parts else None,
-            inner=parts[:-1],
             may_end_early=item.get("may_end_early", ""),
             node=self.name,
             **self.named(item),
         )
+        return flat.message_with_lists(message, self.scope.layouts)
 
-    def with_derived(self, fields: tuple[model.Field, ...], length: int, message: Map) -> tuple[model.Field, ...]:
-        """The fields, then what is derived from them, but for what cannot be."""
-        for item in self.items("derived", message):
+    def message_layout(self, item: Map) -> Layout:
+        """Return the layout of a message."""
+        layout = Layout(
+            name=item["name"],
+            length=item["length"],
+            fixed=self.fixed_nodes(item),
+            sequence=self.variable_nodes(item),
+            orders=Orders(*orders(item)),
+            may_end_early="may_end_early" in item,
+            owner=self.name,
+        )
+        for row in self.items("derived", item):
             with suppress(formula.FormulaError):
-                how = derived.of_fields(item["formula"], members_of(fields))
-                unit = self.scope.units.get(item.get("unit", ""))
-                fields += (derived_field(how, length, item, unit),)
-        return fields
+                members = members_of(flat.fields_of(layout, self.scope.layouts))
+                node = Derived(
+                    name=row["name"],
+                    identifier=row.get("identifier"),
+                    aliases=tuple(row.get("aliases", ())),
+                    summary=row.get("summary", ""),
+                    derivation=derived.of_fields(row["formula"], members),
+                    formula=row["formula"],
+                    display=display_of(row.get("display")),
+                    unit=self.scope.units.get(row.get("unit", "")),
+                    source=row,
+                )
+                layout = replace(layout, derived=(*layout.derived, node))
+        return layout
 
-    def open_parts(self, message: Map) -> tuple[tuple[model.Tail, ...], tuple[model.Field, ...]]:
-        """What is open in a message, and its fields: the elements, and how many there are where no field says so."""
+    def fixed_nodes(self, owner: Map) -> tuple[FixedNode, ...]:
+        """Return the nodes at fixed positions of a message or struct; a split field gives one for each of its parts."""
+        nodes: list[FixedNode] = []
+        for item in self.items("fields", owner):
+            if tails.is_open(item) or any(id(item.get(key)) in self.broken for key in ("when", "count", "size")):
+                continue
+            if "when" in item and item.keys().isdisjoint(("struct", "count")):
+                scalar = self.scalar(item, item["at"])
+                nodes.append(_overlaid(replace(scalar, present_if=conditions.of(owner, item, self.scope.enums)), item))
+            elif "struct" in item or "count" in item or "bitfields" not in item:
+                node = self.node_of(item, item["at"], item.get("count"))
+                nodes += () if node is None else (node,)
+            else:
+                nodes += self.parts_of_split_field(owner, item)
+        return tuple(nodes)
+
+    def parts_of_split_field(self, owner: Map, item: Map) -> Iterator[FixedNode]:
+        """Yield the parts of a split field at their bits of the frame; the field itself if it cannot be split."""
+        head = self.tree["node"]
+        own = orders(item, orders(owner))
+        used = own[0] or head["byte_order"], own[1] or head["bit_order"]
+        parts = division.parts_of(item)
+        if not parts or any(id(part) in self.broken for part in parts) or any(division.obstacles(item, *used)):
+            yield _overlaid(self.scalar(item, item["at"]), item)
+            return
+        for part in parts:
+            scalar = replace(
+                self.scalar(part, division.place(item, part, *used)),
+                summary=division.described(item, part),
+                orders=Orders(*orders(part, orders(item))),
+                errata=self.applied.about(item),
+            )
+            yield _overlaid(scalar, part)
+
+    def variable_nodes(self, message: Map) -> tuple[VariableNode, ...]:
+        """Return the nodes of variable length; none if one of them is wrong, because their positions depend on each other."""
         items = tails.open_parts(message)
-        known = {name: one.length for name, one in self.scope.structs.items()}
+        known = {name: struct.length for name, struct in self.scope.structs.items()}
         read = (*items, *(tails.counter_of(message, item) for item in items))
-        if any(id(one) in self.broken for one in read) or any(
-            any(tails.obstacles(message, one, known)) for one in items
-        ):
-            return (), ()
-        parts: tuple[model.Tail, ...] = ()
-        fields: tuple[model.Field, ...] = ()
-        begin = message["length"]
+        if any(id(item) in self.broken for item in read):
+            return ()
+        if any(any(tails.obstacles(message, item, known)) for item in items):
+            return ()
+        nodes: list[VariableNode] = []
         for item in items:
-            own = self.elements(message, item, begin)
-            bits, counter = tails.unit(item, known), tails.counter_of(message, item)
-            if not bits or not own:
-                return (), ()  # there is no such struct, or nothing of it can be read
-            name, plus = counter["name"] if counter else own[-1].name, tails.counting(item).plus
-            is_last = item is items[-1]
-            parts += (model.Tail(item["name"], name, bits // 8, item["up_to"], plus, 0 if is_last else begin),)
-            fields, begin = fields + own, begin + item["up_to"] * bits // 8
-        return parts, fields
+            counter, counting = tails.counter_of(message, item), tails.counting(item)
+            if counter is None:
+                most, is_array = item["up_to"], "count" in item
+                size: Size = Rest(counter_of_rest(item["name"], item.get("identifier"), is_array, most, item), most)
+            else:
+                size = Counted(counter["name"], item["up_to"], counting.plus)
+            node = self.node_of(item, item["at"], size)
+            if not isinstance(node, Array | Scalar) or not stride(node) or _is_without_fields(node):
+                return ()
+            nodes.append(node)
+        return tuple(nodes)
 
-    def elements(self, message: Map, item: Map, begin: int) -> tuple[model.Field, ...]:
-        """All elements of an open part that begins at a byte; behind them how many there are, where no field says so."""
-        most, struct = item["up_to"], self.scope.structs.get(item.get("struct", ""))
-        end = self.field(item, orders(message)) if struct is None else self.standing(item, struct, orders(message))
-        end = replace(end, at=8 * begin, **({"bits": 8 * most} if "size" in item else {"count": most}))
-        if not end.elements or tails.counter_of(message, item) is not None:
-            return end.elements
-        return (*end.elements, implied_count(end, begin + most * (end.bits // 8 if "size" not in item else 1)))
+    def node_of(self, item: Map, at: int, size: Size | None) -> FixedNode | None:
+        """Return the node of a line; None if it refers to a struct that does not exist.
 
-    def all_fields(self, owner: Map) -> tuple[model.Field, ...]:
-        """Those of a message or a struct, but for what is open."""
-        return tuple(chain.from_iterable(self.fields(owner, item) for item in self.items("fields", owner)))
-
-    def fields(self, message: Map, item: Map) -> tuple[model.Field, ...]:
-        """The field, the elements of an array, the fields of a struct, or the parts that it is divided into."""
-        around = orders(message)
-        if tails.is_open(item) or any(id(item.get(key)) in self.broken for key in ("when", "count", "size")):
-            return ()  # see `tail`
-        if "when" in item and item.keys().isdisjoint(("struct", "count")):
-            return (replace(self.field(item, around), when=conditions.of(message, item, self.scope.enums)),)
+        With a size it is an array, or bytes and text of variable length.
+        """
+        is_array = size is not None and "count" in item
+        node: Scalar | StructRef
         if "struct" in item:
             struct = self.scope.structs.get(item["struct"])
-            return () if struct is None else self.standing(item, struct, around).elements
-        if "count" in item:
-            return replace(self.field(item, around), count=item["count"]).elements
-        if "bitfields" not in item:
-            return (self.field(item, around),)
-        parts = division.parts_of(item)
-        own, head = orders(item, around), self.tree["node"]
-        used = own[0] or head["byte_order"], own[1] or head["bit_order"]
-        if not parts or any(id(p) in self.broken for p in parts) or any(division.obstacles(item, *used)):
-            return (self.field(item, around),)
-        errata = self.applied.about(item)
-        return tuple(
-            replace(
-                self.field(part, own),
-                at=division.place(item, part, *used),
-                summary=division.described(item, part),
-                errata=errata,
-            )
-            for part in parts
-        )
+            if struct is None:
+                return None
+            node = StructRef(layout=struct.layout, at=0 if is_array else at, **self.named(item))
+        else:
+            node = self.scalar(item, 0 if is_array else at)
+            if isinstance(size, Counted | Rest) and "size" in item:
+                node = replace(node, bits=8, length=size)
+        if size is not None and is_array:
+            return Array(at=at, item=node, size=size, orders=node.orders, **self.named(item))
+        return _overlaid(node, item) if isinstance(node, Scalar) else node
 
-    def standing(self, item: Map, struct: model.Struct, around: Orders) -> model.Field:
-        """A struct where it stands."""
-        return model.Field(
-            at=item["at"],
-            bits=struct.length * 8,
-            type="struct",
-            byte_order=around[0],
-            bit_order=around[1],
-            count=count if isinstance(count := item.get("count", 0), int) else 0,
-            struct=struct,
-            **self.named(item),
-        )
-
-    def field(self, item: Map, around: Orders) -> model.Field:
+    def scalar(self, item: Map, at: int) -> Scalar:
+        """Return the scalar of a line at a bit of its layout or array element."""
         get = item.get
-        kind = get("type", "uint")  # which parts of a field need not say
-        byte_order, bit_order = orders(item, around)
+        kind = get("type", "uint")  # optional for parts of a split field
         scale, line = calibration(get("formula"), kind) if "points" not in item else (None, table(item, kind))
-        return model.Field(
-            at=item["at"],
-            bits=get("bits", 0),  # open bytes and text: `tail` knows
+        return Scalar(
+            at=at,
+            bits=get("bits", 0),  # variable-length bytes and text have no `bits`
             type=kind,
             enum=self.scope.enums.get(get("enum", "")) if kind == "enum" else None,
             unit=self.scope.units.get(get("unit", "")),
@@ -272,9 +302,7 @@ class Builder:
             special=self.special(item, kind) if "special" in item else (),
             limits=limits(item),
             display=display_of(get("display")),
-            byte_order=byte_order,
-            bit_order=bit_order,
-            view=get("view", False),
+            orders=Orders(*orders(item)),
             **self.named(item),
         )
 
@@ -304,30 +332,21 @@ def _printed(item: Map) -> Map:
     return item.get("source") or unread()
 
 
-def derived_field(how: derived.Derivation, length: int, item: Map, unit: Unit | None) -> model.Field:
-    """What is derived in a message of so many bytes: a double that lies behind them."""
-    return model.Field(
-        name=item["name"],
-        at=8 * length,
-        bits=64,
-        type="float",
-        identifier=item.get("identifier"),
-        unit=unit,
-        formula=item["formula"],
-        display=display_of(item.get("display")),
-        summary=item.get("summary", ""),
-        aliases=tuple(item.get("aliases", ())),
-        view=True,
-        derived=how,
-        source=item,
-    )
+def _overlaid(scalar: Scalar, item: Map) -> Scalar | Overlay:
+    """Return the scalar, or the overlay that reads it if the line is one."""
+    return overlay_of(scalar) if item.get("view", False) else scalar
+
+
+def _is_without_fields(node: Array | Scalar) -> bool:
+    """Whether a variable-length array consists of structs none of whose fields can be read."""
+    return isinstance(node, Array) and isinstance(node.item, StructRef) and not node.item.layout.fixed
 
 
 def _id(item: Map, key: str) -> int | None:
     return wire_ids.number(item[key]) if key in item else None
 
 
-def orders(item: Map, around: Orders = ("", "")) -> Orders:
+def orders(item: Map, around: tuple[str, str] = ("", "")) -> tuple[str, str]:
     """Byte order and bit order that a mapping gives, or else the mapping around it."""
     return item.get("byte_order", around[0]), item.get("bit_order", around[1])
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import field, replace
-from fractions import Fraction
 from math import gcd
 from typing import Any
 
@@ -21,6 +20,10 @@ from icdgen.icd.enumeration import Enum as Enum
 from icdgen.icd.enumeration import Member as Member
 from icdgen.icd.erratum import Erratum as Erratum
 from icdgen.icd.formula import Scale
+from icdgen.icd.layout import Condition as Condition
+from icdgen.icd.layout import Layout
+from icdgen.icd.layout import Limits as Limits
+from icdgen.icd.layout import Special as Special
 from icdgen.icd.located import Map, unread
 from icdgen.icd.paths import Step, lines_of, members_of, name_of, placed
 from icdgen.icd.tail import Tail as Tail
@@ -39,32 +42,8 @@ KEYS_OF_IDS = {
 CAN_DATA_BYTES = 8  # of a packet
 CAN_PACKETS = 256  # of an extended message
 
-
-@dataclass(frozen=True, slots=True)
-class Special:
-    """A raw value with a meaning of its own, such as 0xFFFF for 'no time-out', or NaN for 'not known'."""
-
-    value: int  # of a float its bits
-    meaning: str
-    number: str = ""  # of a float: `nan`, `inf`, `-inf`, or the shortest decimal
-
-
-@dataclass(frozen=True, slots=True)
-class Limits:
-    """Bounds of the physical value (of the raw value where there is no scale); None where there is none."""
-
-    min: Fraction | None = None
-    max: Fraction | None = None
-    above: Fraction | None = None
-    below: Fraction | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Condition:
-    """What a field that is not always there needs: another one has one of these raw values."""
-
-    field: str
-    values: tuple[int, ...]
+NO_LAYOUT = Layout("", 0, ())
+"""Layout of a message or struct that was made from a list of fields and not from an ICD."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,6 +185,7 @@ class Struct:
     node: str = ""  # name of the node that declares it
     aliases: tuple[str, ...] = ()  # other names by which people look for it
     errata: tuple[Erratum, ...] = ()
+    layout: Layout = NO_LAYOUT
     source: Map = field(default_factory=unread, compare=False, repr=False)
 
     @property
@@ -269,6 +249,7 @@ class Message:
     node: str = ""  # name of the node that declares it
     aliases: tuple[str, ...] = ()  # other names by which people look for it
     errata: tuple[Erratum, ...] = ()
+    layout: Layout = NO_LAYOUT
     source: Map = field(default_factory=unread, compare=False, repr=False)
 
     @property

@@ -13,9 +13,10 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from icdgen.icd import model
+from icdgen.icd import layout, model
 from icdgen.icd.curve import Curve, Piece
 from icdgen.icd.derived import Derivation, Operation
+from icdgen.icd.flat import with_flat_lists
 from icdgen.icd.formula import Scale
 from icdgen.icd.units import Unit
 
@@ -23,9 +24,15 @@ _TUPLES = (Scale, Curve, Piece, Derivation, Operation, Unit)
 _SCALARS = frozenset((str, int, bool, float, type(None)))
 _CLASSES: dict[str, type[Any]] = {
     kind.__name__: kind
-    for kind in (*_TUPLES, *vars(model).values())
+    for kind in (*_TUPLES, *vars(layout).values(), *vars(model).values())
     if isinstance(kind, type) and (is_dataclass(kind) or kind in _TUPLES)
 }
+
+_COMPUTED: dict[type[Any], frozenset[str]] = {
+    model.Message: frozenset({"fields", "tail", "inner"}),
+    model.Struct: frozenset({"fields"}),
+}
+"""Attributes that are computed from the layout when a model is read, and not stored."""
 
 
 def text(icd: model.Icd, inputs: dict[Path, str]) -> bytes:
@@ -41,7 +48,7 @@ def read(data: bytes) -> tuple[model.Icd, dict[Path, str]] | None:
         found = {Path(path): str(seen) for path, seen in inputs}
     except (ValueError, TypeError, LookupError, ArithmeticError, RecursionError):
         return None
-    return (icd, found) if isinstance(icd, model.Icd) else None
+    return (with_flat_lists(icd), found) if isinstance(icd, model.Icd) else None
 
 
 class _Writer:
@@ -77,7 +84,7 @@ def _defaults(kind: Any) -> list[tuple[str, Any]]:
     return [
         (one.name, one.default if one.default_factory is MISSING else one.default_factory())
         for one in fields(kind)
-        if one.compare
+        if one.compare and one.name not in _COMPUTED.get(kind, ())
     ]
 
 
@@ -97,7 +104,8 @@ class _Reader:
         for key, value in made.items():
             if type(value) is list:
                 made[key] = _tuples(value)
-        self.known.append(_CLASSES[name](**made))
+        kind = _CLASSES[name]
+        self.known.append(kind(**made, fields=()) if kind in _COMPUTED else kind(**made))
         return self.known[-1]
 
 

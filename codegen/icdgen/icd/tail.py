@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Any, TypeAlias
-
 from icdgen.frozen import dataclass
-
-Field: TypeAlias = Any  # those of the model, which imports this
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,9 +33,3 @@ class Tail:
     def high(self) -> int:
         """The largest value of the counter."""
         return self.most - self.plus
-
-    def counted_in(self, fields: tuple[Field, ...]) -> tuple[Field, ...]:
-        """The fields of the message, the counter knowing what it counts from."""
-        if not self.low:
-            return fields
-        return tuple(replace(one, counts_from=self.low) if one.name == self.counter else one for one in fields)

@@ -13,11 +13,24 @@ from typing import Any, TypeVar
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.diff.inputs.side import Side
 from icdgen.errors import UserError, unreadable
-from icdgen.icd import annex, curve, derived, model, schema, source
-from icdgen.icd.build import derived_field
+from icdgen.icd import annex, curve, derived, flat, model, schema, source
 from icdgen.icd.display import display_of
 from icdgen.icd.formula import FormulaError, Scale
-from icdgen.icd.implied import implied_count
+from icdgen.icd.layout import (
+    Array,
+    Counted,
+    Derived,
+    FixedNode,
+    Layout,
+    Orders,
+    Overlay,
+    Rest,
+    Scalar,
+    Size,
+    StructRef,
+    counter_of_rest,
+    overlay_of,
+)
 from icdgen.icd.located import Map, Seq, plain
 from icdgen.icd.paths import members_of
 from icdgen.icd.units import STANDARD, Unit
@@ -122,6 +135,8 @@ class _Reader:
         self.before = before
         self.enums: dict[str, model.Enum] = {}
         self.structs: dict[str, model.Struct] = {}
+        self.layouts: dict[int, model.Struct] = {}
+        """The structs of all layouts that nodes refer to, by the identity of the layout."""
         self.units: dict[str, Unit] = dict(STANDARD)
         self.errata: dict[str, model.Erratum] = {}
 
@@ -130,6 +145,7 @@ class _Reader:
         for node in model.closure(self.before, item["includes"]):
             self.enums.update((enum.name, enum) for enum in node.enums)
             self.structs.update((one.name, one) for one in node.structs)
+            self.layouts.update((id(struct.layout), struct) for struct in node.structs)
             self.units.update((unit.symbol, unit) for unit in node.units)
         units = tuple(Unit(u["symbol"], u["identifier"], u["quantity"], u.get("summary", "")) for u in get("units", ()))
         self.units.update((unit.symbol, unit) for unit in units)
@@ -160,7 +176,7 @@ class _Reader:
     def about(self, item: Map) -> tuple[model.Erratum, ...]:
         return tuple(self.errata[id] for key in ("errata", "notes") for id in item.get(key, ()) if id in self.errata)
 
-    def row(self, kind: Callable[..., Thing], item: Map, **more: object) -> Thing:
+    def row(self, kind: Callable[..., Thing], item: Map, /, **more: object) -> Thing:
         """What has attributes that are shown as they are, and errata; ``more`` are the others."""
         if "aliases" in item:
             more["aliases"] = tuple(item["aliases"])
@@ -170,77 +186,105 @@ class _Reader:
         members = tuple(self.row(model.Member, member) for member in item["members"])
         return self.row(model.Enum, item, members=members, node=node)
 
-    def parts(self, item: Map) -> dict[str, Any]:
-        """Fields, and the open end, if there is one."""
-        fields, told = self.fields(item), item.get("tail")
-        if told is None:
-            return {"fields": fields}
-        counter = told.get("counter")
-        if counter is None:
-            end = next(one for one in members_of(fields) if one.name == told["part"])
-            implied = implied_count(end, item["length"])
-            counter, fields = implied.name, (*fields, implied)
-        tail = _open_part(told, counter)
-        inner = tuple(replace(_open_part(one, one["counter"]), begin=one["least"]) for one in item.get("inner", ()))
-        for one in (*inner, tail):
-            fields = one.counted_in(fields)
-        return {"fields": fields, "tail": tail, "inner": inner}
-
-    def with_derived(self, parts: dict[str, Any], item: Map) -> dict[str, Any]:
-        """The same parts, and what is derived from the fields."""
-        fields = parts["fields"]
-        for one in item.get("derived", ()):
+    def layout(self, item: Map, node: str) -> Layout:
+        """Return the layout of a message or struct."""
+        parts = [*item.get("inner", ()), item["tail"]] if "tail" in item else []
+        variable = {part["part"]: part for part in parts}
+        nodes = {field["name"]: self.layout_node(field, variable.get(field["name"])) for field in item["fields"]}
+        layout = Layout(
+            name=item["name"],
+            length=item["length"] - sum(part["most"] * part["step"] for part in parts),
+            fixed=tuple(one for name, one in nodes.items() if name not in variable),
+            sequence=tuple(one for name in variable if not isinstance(one := nodes[name], StructRef | Overlay)),
+            may_end_early="may_end_early" in item,
+            owner=node,
+        )
+        for row in item.get("derived", ()):
             try:
-                how = derived.of_fields(one["formula"], members_of(fields))
+                members = members_of(flat.fields_of(layout, self.layouts))
+                derivation = derived.of_fields(row["formula"], members)
             except FormulaError as error:
                 text = f"`formula` cannot be used: {error}"
-                raise Findings([Finding("ICD010", text, one.at("formula"), _HELP)]) from None
-            fields += (derived_field(how, item["length"], one, self.units.get(one.get("unit", ""))),)
-        return {**parts, "fields": fields}
+                raise Findings([Finding("ICD010", text, row.at("formula"), _HELP)]) from None
+            value = Derived(
+                name=row["name"],
+                identifier=row.get("identifier"),
+                aliases=tuple(row.get("aliases", ())),
+                summary=row.get("summary", ""),
+                derivation=derivation,
+                formula=row["formula"],
+                display=display_of(row.get("display")),
+                unit=self.units.get(row.get("unit", "")),
+                source=row,
+            )
+            layout = replace(layout, derived=(*layout.derived, value))
+        return layout
 
     def message(self, item: Map, node: str) -> model.Message:
-        return self.row(
+        message = self.row(
             model.Message,
             item,
-            **self.with_derived(self.parts(item), item),
+            fields=(),
+            layout=self.layout(item, node),
             acknowledge=item.get("acknowledge", True) is True,
             expects_reset=item.get("acknowledge") == "reset",
             contains=tuple(model.Part(part["message"], part["offset"]) for part in item.get("contains", ())),
             node=node,
         )
+        return flat.message_with_lists(message, self.layouts)
 
     def struct(self, item: Map, node: str) -> model.Struct:
-        return self.row(model.Struct, item, fields=self.fields(item), node=node)
+        struct = self.row(model.Struct, item, fields=(), layout=self.layout(item, node), node=node)
+        self.layouts[id(struct.layout)] = struct = flat.struct_with_lists(struct, self.layouts)
+        return struct
 
-    def fields(self, item: Map) -> tuple[model.Field, ...]:
-        return tuple(element for field in item["fields"] for element in self.field(field).elements)
+    def layout_node(self, item: Map, part: Map | None) -> FixedNode:
+        """Return the node of a field; `part` is what is shown of its size if that varies."""
+        is_array = "count" in item
+        at = 0 if is_array else item["offset"]
+        size: Size = item.get("count", 0)
+        if part is not None:
+            size = self.size(item, part)
+        orders = Orders(item.get("byte_order", ""), item.get("bit_order", ""))
+        node: Scalar | StructRef
+        if "struct" in item:
+            node = self.row(StructRef, item, at=at, orders=orders, layout=self.structs[item["struct"]].layout)
+        else:
+            node = self.scalar(item, at, orders, None if is_array or isinstance(size, int) else size)
+        if is_array:
+            return self.row(Array, item, at=item["offset"], orders=orders, item=node, size=size)
+        return overlay_of(node) if item.get("view", False) and isinstance(node, Scalar) else node
 
-    def field(self, item: Map) -> model.Field:
+    def size(self, item: Map, part: Map) -> Counted | Rest:
+        """Return the size of a variable-length field."""
+        if "counter" in part:
+            return Counted(part["counter"], part["most"], part.get("plus", 0))
+        name, identifier, most = item["name"], item.get("identifier"), part["most"]
+        return Rest(counter_of_rest(name, identifier, "count" in item, most, item), most)
+
+    def scalar(self, item: Map, at: int, orders: Orders, length: Counted | Rest | None) -> Scalar:
+        """Return the scalar of a field, or of an element of an array."""
         limits = {key: Fraction(value) for key, value in item.get("limits", {}).items()}
-        return self.row(
-            model.Field,
+        scalar = self.row(
+            Scalar,
             item,
-            at=item["offset"],
+            at=at,
+            orders=orders,
+            length=length,
             enum=self.enums.get(item.get("enum", "")),
-            struct=self.structs.get(item.get("struct", "")),
             unit=self.units.get(item.get("unit", "")),
-            formula=item.get("formula", ""),
             scale=_scale(item),
             curve=_curve(item),
             special=tuple(model.Special(**_as_it_is(model.Special, one)) for one in item.get("special", ())),
             display=display_of(item.get("display")),
             limits=model.Limits(**limits) if "limits" in item else None,
-            view=item.get("view", False),
-            when=tuple(model.Condition(name, tuple(values)) for name, values in item.get("when", {}).items()),
+            present_if=tuple(model.Condition(name, tuple(values)) for name, values in item.get("when", {}).items()),
         )
+        return scalar if length is None else replace(scalar, bits=8)
 
 
 def _as_it_is(kind: object, item: Map) -> dict[str, Any]:
     return {name: item[name] for name in machine.as_they_are(kind) if name in item}
-
-
-def _open_part(item: Map, counter: str) -> model.Tail:
-    return model.Tail(item["part"], counter, item["step"], item["most"], item.get("plus", 0))
 
 
 def _curve(item: Map) -> curve.Curve | None:

@@ -1,0 +1,346 @@
+"""Layout of a message or a struct as a tree with one node per line of the ICD.
+
+In: what `icdgen.icd.build` reads from the mappings of a file. Out: `walk` visits the declarations, `flatten` lists the
+scalars of one frame with their bit positions. Positions and orders stay as the ICD declares them; `walk` and `flatten`
+resolve the orders on the way down, because the same struct can stand in messages of different orders.
+
+Read `icdgen.layout` next, which turns the position of a scalar into runs of bits of bytes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import field
+from fractions import Fraction
+from math import gcd
+from typing import NamedTuple, TypeAlias
+
+from icdgen.frozen import dataclass
+from icdgen.icd.curve import Curve
+from icdgen.icd.derived import Derivation
+from icdgen.icd.display import Display
+from icdgen.icd.enumeration import Enum
+from icdgen.icd.erratum import Erratum
+from icdgen.icd.formula import Scale
+from icdgen.icd.located import Map, unread
+from icdgen.icd.units import Unit
+from icdgen.once import cached_property
+
+Sizes: TypeAlias = Mapping[str, int]
+"""Number of elements, or of bytes, of each variable-length node of one frame, by the name of the node."""
+
+
+@dataclass(frozen=True, slots=True)
+class Special:
+    """A raw value with a meaning of its own, such as 0xFFFF for 'no time-out', or NaN for 'not known'."""
+
+    value: int  # bits of the value if the scalar is a float
+    meaning: str
+    number: str = ""  # of a float: `nan`, `inf`, `-inf`, or the shortest decimal
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Bounds of the physical value (of the raw value if there is no scale); None where the ICD gives no bound."""
+
+    min: Fraction | None = None
+    max: Fraction | None = None
+    above: Fraction | None = None
+    below: Fraction | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """Requirement of an optional field: another field has one of these raw values."""
+
+    field: str
+    values: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Orders:
+    """Byte order and bit order as the ICD declares them in one place; empty where it declares none."""
+
+    byte: str = ""  # little | big
+    bit: str = ""  # lsb0 | msb0
+
+    def within(self, outer: Orders) -> Orders:
+        """Return the orders in effect: an order that is not declared here is taken from outside."""
+        return Orders(self.byte or outer.byte, self.bit or outer.bit)
+
+
+@dataclass(frozen=True, slots=True)
+class Counted:
+    """A size that a field of the fixed part gives: its raw value plus `plus`."""
+
+    counter: str  # name of the field
+    most: int
+    plus: int = 0
+
+    @property
+    def fewest(self) -> int:
+        """Elements of the shortest frame."""
+        return max(0, self.plus)
+
+
+@dataclass(frozen=True, slots=True)
+class Rest:
+    """A size that only the length of the frame gives; `counter` is what code calls the number of elements."""
+
+    counter: Scalar
+    most: int
+
+    @property
+    def fewest(self) -> int:
+        """Elements of the shortest frame: none."""
+        return 0
+
+
+Size: TypeAlias = "int | Counted | Rest"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LayoutNode:
+    """A line of the ICD: the attributes that all kinds of nodes have."""
+
+    name: str
+    at: int = 0  # bit of its layout, counted in its own bit order; of a sequence, where the fixed part ends
+    identifier: str | None = None
+    aliases: tuple[str, ...] = ()  # other names by which people look for it
+    summary: str = ""
+    orders: Orders = Orders()
+    present_if: tuple[Condition, ...] = ()
+    errata: tuple[Erratum, ...] = ()
+    source: Map = field(default_factory=unread, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scalar(LayoutNode):
+    """A number, flag, enumeration value, byte string or text of `bits` bits."""
+
+    type: str  # uint | int | bool | enum | float | bytes | text
+    bits: int  # of variable-length bytes and text those of one byte
+    length: Counted | Rest | None = None  # number of bytes of variable-length bytes and text
+    enum: Enum | None = None
+    unit: Unit | None = None
+    formula: str = ""  # as printed
+    scale: Scale | None = None
+    curve: Curve | None = None
+    const: int | None = None
+    special: tuple[Special, ...] = ()
+    limits: Limits | None = None
+    display: Display | None = None
+
+    @property
+    def is_signed(self) -> bool:
+        """Return whether the raw value is in two's complement."""
+        return self.type == "int" or (self.enum is not None and self.enum.signed)
+
+    @property
+    def is_bytes(self) -> bool:
+        """Return whether the raw value is bytes and not a number."""
+        return self.type in ("bytes", "text")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StructRef(LayoutNode):
+    """A place where a struct stands; all places share its layout."""
+
+    layout: Layout
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Array(LayoutNode):
+    """Elements of one kind, one after the other."""
+
+    item: Scalar | StructRef  # at bit 0 of an element
+    size: Size
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Overlay(LayoutNode):
+    """A number over bits that other nodes own."""
+
+    scalar: Scalar
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Derived(LayoutNode):
+    """A double that is computed from the values of other nodes."""
+
+    derivation: Derivation
+    formula: str
+    unit: Unit | None = None
+    display: Display | None = None
+
+
+FixedNode: TypeAlias = Scalar | Array | StructRef | Overlay
+VariableNode: TypeAlias = Scalar | Array
+
+
+@dataclass(frozen=True)
+class Layout:
+    """The nodes of a message or of a struct. A struct has fixed nodes only."""
+
+    name: str
+    length: int  # bytes of the fixed part
+    fixed: tuple[FixedNode, ...]  # at fixed bits, in the order of the ICD
+    sequence: tuple[VariableNode, ...] = ()  # behind the fixed part, one after the other
+    derived: tuple[Derived, ...] = ()
+    orders: Orders = Orders()  # as the message declares them
+    may_end_early: bool = False
+    owner: str = ""  # name of the ICD node that declares it
+
+    @cached_property
+    def nodes(self) -> tuple[LayoutNode, ...]:
+        """All nodes, in the order in which code declares them."""
+        return (*self.fixed, *self.sequence, *self.derived)
+
+    @property
+    def longest(self) -> int:
+        """Bytes of the longest frame."""
+        return self.length + sum(size_of(node).most * stride(node) // 8 for node in self.sequence)
+
+    @property
+    def shortest(self) -> int:
+        """Bytes of the shortest frame. A frame that may end early has at least one byte."""
+        least = self.length + sum(size_of(node).fewest * stride(node) // 8 for node in self.sequence)
+        return min(1, least) if self.may_end_early else least
+
+    @property
+    def lengths(self) -> range:
+        """Lengths that frames can have; with several variable parts, also some that their counters exclude."""
+        step = gcd(*(stride(node) // 8 for node in self.sequence)) or 1
+        return range(self.shortest, self.longest + 1, step)
+
+    def smallest_raw(self, counter: str) -> int:
+        """Return the smallest raw value of a field that counts; 0 for any other field."""
+        sizes = (size_of(node) for node in self.sequence)
+        plus = (size.plus for size in sizes if isinstance(size, Counted) and size.counter == counter)
+        return max((-value for value in plus if value < 0), default=0)
+
+
+def size_of(node: VariableNode) -> Counted | Rest:
+    """Return the size of a node of a sequence."""
+    size = node.size if isinstance(node, Array) else node.length
+    assert isinstance(size, Counted | Rest), "a sequence has nodes of variable length only"
+    return size
+
+
+def stride(node: LayoutNode) -> int:
+    """Return the bits from one element of an array to the next; the bits of any other node."""
+    match node:
+        case Array(item=item):
+            return stride(item)
+        case StructRef(layout=layout):
+            return 8 * layout.length
+        case Scalar(bits=bits) | Overlay(scalar=Scalar(bits=bits)):
+            return bits
+    raise TypeError(f"{node.name} has no bits")
+
+
+def overlay_of(scalar: Scalar) -> Overlay:
+    """Return the overlay that reads a scalar; both have the same name and position."""
+    return Overlay(scalar=scalar, **{name: getattr(scalar, name) for name in LayoutNode.__dataclass_fields__})
+
+
+def counter_of_rest(name: str, identifier: str | None, is_array: bool, most: int, source: Map) -> Scalar:
+    """Return the scalar by which code calls a number of elements, or bytes, that only the length of a frame gives."""
+    noun = "Count" if is_array else "Size"
+    return Scalar(
+        name=f"{name} {noun}",
+        identifier=f"{identifier} {noun}" if identifier else None,
+        type="uint",
+        bits=8 if most < 256 else 16,
+        source=source,
+    )
+
+
+class Visit(NamedTuple):
+    """A node on the way through a layout."""
+
+    node: LayoutNode
+    owners: tuple[LayoutNode, ...]  # arrays and struct references around it, the outermost first
+    orders: Orders  # in effect here
+
+
+def walk(layout: Layout, orders: Orders, owners: tuple[LayoutNode, ...] = ()) -> Iterator[Visit]:
+    """Visit each line of the ICD once, the nodes of a struct behind the node that refers to it.
+
+    `orders` are those of the ICD node.
+    """
+    orders = layout.orders.within(orders)
+    for node in layout.nodes:
+        own = node.orders.within(orders)
+        yield Visit(node, owners, own)
+        item = node.item if isinstance(node, Array) else node
+        if isinstance(item, StructRef):
+            yield from walk(item.layout, own, (*owners, node))
+
+
+@dataclass(frozen=True, slots=True)
+class PathStep:
+    """A node on the way to a scalar, and which element of it if it is an array."""
+
+    node: LayoutNode
+    element: int | None = None
+
+
+class Placed(NamedTuple):
+    """A scalar of one frame."""
+
+    steps: tuple[PathStep, ...]  # from the node of the message's own layout to the scalar
+    at: int  # bit of the frame, counted in the bit order in effect
+    bits: int
+    scalar: Scalar | Derived
+    orders: Orders  # in effect
+    role: str = "field"  # field | overlay | derived | count (number of elements that only the frame's length gives)
+
+    @property
+    def name(self) -> str:
+        """``Satellites[2].GNSS``"""
+        texts = (step.node.name if step.element is None else f"{step.node.name}[{step.element}]" for step in self.steps)
+        return ".".join(texts)
+
+
+def flatten(layout: Layout, orders: Orders, sizes: Sizes | None = None) -> list[Placed]:
+    """List the scalars of a frame with these sizes; without sizes those of the longest frame.
+
+    `orders` are those of the ICD node.
+    """
+    placed: list[Placed] = []
+    orders = layout.orders.within(orders)
+    for node in layout.fixed:
+        placed += _scalars(node, (PathStep(node),), node.at, node.orders.within(orders))
+    end = 8 * layout.length
+    for part in layout.sequence:
+        size = size_of(part)
+        number = size.most if sizes is None else sizes[part.name]
+        own = part.orders.within(orders)
+        if isinstance(part, Array):
+            for element in range(number):
+                placed += _scalars(part.item, (PathStep(part, element),), end + element * stride(part), own)
+        else:
+            placed.append(Placed((PathStep(part),), end, 8 * number, part, own))
+        end += number * stride(part)
+        if isinstance(size, Rest):
+            counter = size.counter
+            placed.append(Placed((PathStep(counter),), end, counter.bits, counter, own, "count"))
+    placed += (Placed((PathStep(node),), end, 64, node, orders, "derived") for node in layout.derived)
+    return placed
+
+
+def _scalars(node: FixedNode, steps: tuple[PathStep, ...], at: int, orders: Orders) -> Iterator[Placed]:
+    """List the scalars of a node of fixed size that begins at bit `at`."""
+    match node:
+        case Scalar(bits=bits):
+            yield Placed(steps, at, bits, node, orders)
+        case Overlay(scalar=scalar):
+            yield Placed(steps, at, scalar.bits, scalar, orders, "overlay")
+        case StructRef(layout=layout):
+            for inner in layout.fixed:
+                yield from _scalars(inner, (*steps, PathStep(inner)), at + inner.at, inner.orders.within(orders))
+        case Array(item=item, size=int(count)):
+            for element in range(count):
+                steps_to = (*steps[:-1], PathStep(node, element))
+                yield from _scalars(item, steps_to, at + element * stride(item), orders)
