@@ -1,4 +1,4 @@
-"""Loads ICDs with all checks, those of names in every language that icdgen generates included."""
+"""Load ICDs with all checks, including those of the names that generated code would declare."""
 
 from __future__ import annotations
 
@@ -15,8 +15,17 @@ if TYPE_CHECKING:
 
 
 def load(
-    paths: list[Path], check: bool = True, plug_ins: Sequence[Language] = (), unsaved: Mapping[Path, bytes] | None = None
-) -> Loaded:  # fmt: skip
-    """Like `icdgen.icd.load.load`: names must do for the languages of icdgen and for ``plug_ins``."""
-    languages: list[Language] = [*map(backends.get, backends.names()), *plug_ins] if check else []
-    return icd_files.load(paths, check, languages, unsaved)
+    paths: list[Path],
+    check: bool = True,
+    plug_ins: Sequence[Language] = (),
+    unsaved: Mapping[Path, bytes] | None = None,
+    languages: Sequence[str] | None = None,
+) -> Loaded:
+    """Load ICDs as `icdgen.icd.load.load` does, and check the names that generated code declares.
+
+    Names are checked for `plug_ins` and for the built-in `languages`; by default for all of these. Working out the names
+    of one language takes about as long as all other rules together, so commands ask for the languages they generate.
+    """
+    built_in = backends.names() if languages is None else languages
+    asked: list[Language] = [*map(backends.get, built_in), *plug_ins] if check else []
+    return icd_files.load(paths, check, asked, unsaved)

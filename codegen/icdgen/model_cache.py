@@ -16,25 +16,30 @@ if TYPE_CHECKING:
 KIND = "models"
 
 
-def load_checked(paths: list[Path], plug_ins: Sequence[Language] = (), with_positions: bool = False) -> Loaded:
-    """Like `icdgen.loading.load`. A remembered model carries no positions and comes without texts.
+def load_checked(
+    paths: list[Path],
+    languages: Sequence[str],
+    plug_ins: Sequence[Language] = (),
+    with_positions: bool = False,
+) -> Loaded:
+    """Load ICDs as `icdgen.loading.load` does. A remembered model carries no positions and comes without texts.
 
     With plug-ins nothing is remembered: what they say of names may change with any file of theirs.
     """
     if plug_ins or with_positions:
         from icdgen.loading import load
 
-        return load(paths, plug_ins=plug_ins)
+        return load(paths, plug_ins=plug_ins, languages=languages)
     from icdgen.icd import model_json
 
-    name = cache.key("model", os.getcwd(), *(str(path) for path in paths))
+    name = cache.key("model", os.getcwd(), *sorted(languages), "", *(str(path) for path in paths))
     data = cache.recall(KIND, name)
     remembered = model_json.read(data) if data is not None else None
     if remembered is not None:
         return Loaded(remembered[0], [], remembered[1])
     from icdgen.loading import load
 
-    loaded = load(paths)
+    loaded = load(paths, languages=languages)
     if not loaded.findings:
         files = {os.path.abspath(path): seen for path, seen in loaded.inputs.items()}
         cache.remember(KIND, name, model_json.text(loaded.icd, loaded.inputs), files)

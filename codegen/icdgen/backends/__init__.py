@@ -43,6 +43,7 @@ TITLES = {"c": "C", "python": "Python", "rust": "Rust"}
 class Backend(Language, Protocol):
     """What a backend offers: its ``name`` is as in ``--lang``, and that of its template folder."""
 
+    # Optional: `named_in`, the languages whose names its output contains, if not those of the backend itself alone.
     # Not of ours, but of plug-ins: `templates` and `runtime`, the folders (`Path`) of what it renders and of what it copies.
     # Files of `--templates` go before those of either.
 
@@ -100,6 +101,12 @@ def get(name: str) -> Backend:
 def not_ours(languages: Iterable[str]) -> list[Backend]:
     """Those of the languages that are not built in. Raises like `get`."""
     return [get(name) for name in dict.fromkeys(languages) if name not in _BUILT_IN]
+
+
+def named_in(chosen: Iterable[Backend]) -> tuple[str, ...]:
+    """Return the built-in languages whose declared names the output of these backends contains."""
+    languages = (name for backend in chosen for name in getattr(backend, "named_in", (backend.name,)))
+    return tuple(name for name in dict.fromkeys(languages) if name in _BUILT_IN)
 
 
 def _load(target: str) -> Backend:

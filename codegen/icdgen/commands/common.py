@@ -137,10 +137,13 @@ def _short(path: Path) -> Path:
 
 
 def load_or_exit(icds: tuple[Path, ...]) -> Loaded:
-    """The checked ICDs; prints what is wrong and exits with 1 if anything is."""
+    """Return the checked ICDs; print the findings and exit with 1 if one is an error.
+
+    For commands that generate no code: names that clash in a language are not looked for.
+    """
     from icdgen.model_cache import load_checked
 
-    return right_or_exit(load_checked(chosen(icds)[0]))
+    return right_or_exit(load_checked(chosen(icds)[0], languages=()))
 
 
 def right_or_exit(loaded: Loaded) -> Loaded:

@@ -54,7 +54,9 @@ def run(job: Job) -> Outcome:
         raise UserError("measurements go into the assurance pack only", help)
     plug_ins = [backend for backend in chosen if backend.name not in backends.names()]
     lined = any(getattr(backend, "needs_lines", False) for backend in chosen)
-    outcome = Outcome(load_checked(job.icds, plug_ins, lined), may_be_remembered=not plug_ins and not lined)
+    outcome = Outcome(
+        load_checked(job.icds, backends.named_in(chosen), plug_ins, lined), may_be_remembered=not plug_ins and not lined
+    )
     if not outcome.loaded.ok:
         return outcome
     outcome.inputs = outcome.loaded.inputs | job.configs

@@ -35,7 +35,7 @@ def make(
 
     Raises `UserError` where a file can't be read or a template is bad.
     """
-    loaded = load_checked(icds)
+    loaded = load_checked(icds, HtmlBackend.named_in)
     made = Site(loaded.ok, list(loaded.findings), dict(loaded.texts), inputs=dict(loaded.inputs))
     older = _older(made, previous, icds) if made.ok and previous is not None else None
     if made.ok:

@@ -18,6 +18,7 @@ class AssuranceBackend:
 
     name = "assurance"
     reserved: frozenset[str] = frozenset()
+    named_in = ("c", "python", "rust")
     needs_lines = True  # of the ICDs: a model that was remembered has none
 
     def __init__(self) -> None:

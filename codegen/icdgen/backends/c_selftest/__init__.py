@@ -20,6 +20,7 @@ class CSelftestBackend:
 
     name = "c-selftest"
     reserved: frozenset[str] = frozenset()
+    named_in = ("c",)
 
     def __init__(self) -> None:
         self.packages = Packages()

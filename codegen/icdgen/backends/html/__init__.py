@@ -26,6 +26,7 @@ class HtmlBackend:
 
     name = "html"
     reserved: frozenset[str] = frozenset()
+    named_in = ("c", "python", "rust")
 
     def __init__(self, previous: Side | None = None) -> None:
         self.previous = previous

@@ -1,0 +1,44 @@
+"""A command checks names in the languages that it generates, and `icdgen check` those of all languages."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.conftest import DEMO
+
+
+@pytest.fixture
+def restrict(demo):
+    """An ICD with a field whose name is a reserved word in C alone."""
+    demo.write_text(DEMO.replace("name: Mode,       type: enum, enum: Mode", "name: Restrict, type: uint"))
+    return demo
+
+
+def test_check_reports_a_name_that_fails_in_any_language(icdgen, restrict):
+    result = icdgen("check", restrict)
+    assert result.status == 1
+    assert "ICD070" in result.out + result.err and "reserved word in c" in result.out + result.err
+
+
+@pytest.mark.parametrize("language", ["c", "c-selftest", "html", "assurance"])
+def test_an_output_with_c_names_is_not_generated_with_a_reserved_word_of_c(icdgen, restrict, tmp_path, language):
+    result = icdgen("--lang", language, "--out", "out", restrict)
+    assert result.status == 1
+    assert "reserved word in c" in result.err
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("language", ["python", "rust", "vectors", "xtce"])
+def test_a_language_is_generated_whatever_others_reserve(icdgen, restrict, tmp_path, language):
+    assert icdgen("--lang", language, "--out", "out", restrict).status == 0
+    assert (tmp_path / "out").exists()
+
+
+def test_a_model_that_was_checked_for_one_language_is_checked_again_for_another(icdgen, restrict):
+    assert icdgen("--lang", "rust", "--out", "rust", restrict).status == 0
+    assert icdgen("--lang", "rust", "--lang", "c", "--out", "both", restrict).status == 1
+
+
+def test_commands_that_generate_no_code_ask_no_language(icdgen, restrict):
+    assert icdgen("show", "--icd", restrict, "demo", "146").status == 0
+    assert icdgen("decode", "--icd", restrict, "demo", "146", "000000").status == 0
