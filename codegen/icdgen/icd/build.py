@@ -12,6 +12,7 @@ from icdgen.icd import annex, conditions, curve, derived, division, flat, floats
 from icdgen.icd.display import display_of
 from icdgen.icd.errata import Applied
 from icdgen.icd.layout import (
+    UNDECLARED,
     Array,
     Counted,
     Derived,
@@ -186,7 +187,7 @@ class Builder:
             length=item["length"],
             fixed=self.fixed_nodes(item),
             sequence=self.variable_nodes(item),
-            orders=Orders(*orders(item)),
+            orders=declared_orders(item),
             may_end_early="may_end_early" in item,
             owner=self.name,
         )
@@ -302,7 +303,7 @@ class Builder:
             special=self.special(item, kind) if "special" in item else (),
             limits=limits(item),
             display=display_of(get("display")),
-            orders=Orders(*orders(item)),
+            orders=declared_orders(item),
             **self.named(item),
         )
 
@@ -349,6 +350,12 @@ def _id(item: Map, key: str) -> int | None:
 def orders(item: Map, around: tuple[str, str] = ("", "")) -> tuple[str, str]:
     """Byte order and bit order that a mapping gives, or else the mapping around it."""
     return item.get("byte_order", around[0]), item.get("bit_order", around[1])
+
+
+def declared_orders(item: Map) -> Orders:
+    """Return the byte order and bit order that a mapping declares."""
+    declared = orders(item)
+    return Orders(*declared) if any(declared) else UNDECLARED
 
 
 def calibration(text: str | None, kind: str) -> tuple[formula.Scale | None, curve.Curve | None]:

@@ -66,7 +66,12 @@ class Orders:
 
     def within(self, outer: Orders) -> Orders:
         """Return the orders in effect: an order that is not declared here is taken from outside."""
+        if self is UNDECLARED:  # most lines of an ICD declare none
+            return outer
         return Orders(self.byte or outer.byte, self.bit or outer.bit)
+
+
+UNDECLARED = Orders()
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +113,7 @@ class LayoutNode:
     identifier: str | None = None
     aliases: tuple[str, ...] = ()  # other names by which people look for it
     summary: str = ""
-    orders: Orders = Orders()
+    orders: Orders = UNDECLARED
     present_if: tuple[Condition, ...] = ()
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
@@ -187,7 +192,7 @@ class Layout:
     fixed: tuple[FixedNode, ...]  # at fixed bits, in the order of the ICD
     sequence: tuple[VariableNode, ...] = ()  # behind the fixed part, one after the other
     derived: tuple[Derived, ...] = ()
-    orders: Orders = Orders()  # as the message declares them
+    orders: Orders = UNDECLARED  # as the message declares them
     may_end_early: bool = False
     owner: str = ""  # name of the ICD node that declares it
 
