@@ -303,7 +303,11 @@ class Builder:
             edges = columns.boundaries(own, body, *piece.extent)
             for band in _bands(piece, edges):
                 if not headings.repeats(band.texts(self.known), header, self.profile):
-                    draft.table.rows += bands.rows(band, header, self.known)
+                    rows = bands.rows(band, header, self.known)
+                    for row in rows:
+                        if row.printed:
+                            row.printed.edges = ()  # columns are found on each page anew: cells go by their number
+                    draft.table.rows += rows
 
 
 def _bands(piece: Piece, edges: list[float]) -> list[Band]:

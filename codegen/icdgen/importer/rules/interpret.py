@@ -11,12 +11,12 @@ from icdgen.importer.rules import attach, build, lists
 from icdgen.importer.rules.bit_order import Order
 from icdgen.importer.rules.cells import Roles, read_roles
 from icdgen.importer.rules.fields import FieldReader
-from icdgen.importer.rules.language import MESSAGE_ROLES, cell_text, normalised, take, whole_number
+from icdgen.importer.rules.language import MESSAGE_ROLES, Pattern, cell_text, normalised, take, whole_number
 from icdgen.importer.rules.notes import Notes
 from icdgen.importer.rules.parts import Part
 from icdgen.importer.rules.rows import read_rows
 from icdgen.importer.rules.rule import Rule
-from icdgen.importer.rules.selection import Choice, choose, why_not
+from icdgen.importer.rules.selection import Choice, choose, heading_row, texts_of, why_not
 from icdgen.importer.source_tables import SourceTable, count_runs, kinds, texts
 from icdgen.importer.understand.survey import BACKGROUND, UNKNOWN, Found, Survey
 
@@ -139,42 +139,44 @@ class _Interpreter:
     def around(self, rule: Rule, table: SourceTable) -> dict[str, str]:
         """The roles that the rule states, or finds in texts around the table and in its rows; the nearest text first."""
         given = dict(rule.literals)
+        missing: list[tuple[str, Pattern]] = []
         for source, patterns in rule.sources.items():
             for pattern in patterns:
                 if pattern.roles <= set(given):
                     continue
-                for text in self.texts(table, source):
-                    taken = take([pattern], text)
-                    if taken is None:
-                        continue
-                    self.doubt(rule, table, taken.roles, taken.left)
-                    given.update({role: value for role, value in taken.roles.items() if role not in given})
-                    break
-                else:
-                    if source not in rule.optional:
-                        self.notes.error(
-                            "IMP103",
-                            f"{table.title}: no text of `{source}` matches `{pattern.text[:60]}` of rule "
-                            f"`{rule.name}`",
-                            table.spot,
-                            f"correct the pattern; `{source}?` makes it optional",
-                            pattern.place,
-                        )
+                taken = next((t for text in self.texts(rule, table, source) if (t := take([pattern], text))), None)
+                if taken is None:
+                    missing.append((source, pattern))
+                    continue
+                self.doubt(rule, table, taken.roles, taken.left)
+                given.update({role: value for role, value in taken.roles.items() if role not in given})
+        for source, pattern in missing:
+            if source not in rule.optional and not pattern.roles <= set(given):
+                self.notes.error(
+                    "IMP103",
+                    f"{table.title}: no text of `{source}` matches `{pattern.text[:60]}` of rule `{rule.name}`",
+                    table.spot,
+                    f"correct the pattern; `{source}?` makes it optional",
+                    pattern.place,
+                )
         for role, words in rule.map.items():
             if (meaning := words.get(given.get(role, "").casefold())) is not None:
                 given[role] = meaning
         return given
 
-    def texts(self, table: SourceTable, source: str) -> list[str]:
-        found = {
-            "caption": lambda: [table.caption],
-            "heading": lambda: table.headings[::-1],
-            "before": lambda: table.before[::-1],
-            "sheet": lambda: [table.sheet],
-            "row": lambda: [
-                " | ".join(filter(None, (cell_text(c.text, self.known) for c in row.cells))) for row in table.rows
-            ],
-        }[source]()
+    def texts(self, rule: Rule, table: SourceTable, source: str) -> list[str]:
+        """The texts of a source, the nearest first. Of rows: each of them, then those above the headings as one text."""
+        if source == "row":
+            found = [" | ".join(filter(None, (cell_text(c.text, self.known) for c in r.cells))) for r in table.rows]
+            head = heading_row(rule, texts_of(table, rule.transpose))
+            found.append(" | ".join(filter(None, found if head is None or head < 0 else found[:head])))
+        else:
+            found = {
+                "caption": [table.caption],
+                "heading": table.headings[::-1],
+                "before": table.before[::-1],
+                "sheet": [table.sheet],
+            }[source]
         return [normalised(text) for text in found]
 
     def doubt(self, rule: Rule, table: SourceTable, roles: dict[str, str], left: str) -> None:
