@@ -25,7 +25,7 @@
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
 #define BOOTLOADER_ICD_DIGEST "d2e4997b46248f80"
-/** What the node answers when asked for its type. */
+/** Type that the node reports. */
 #define BOOTLOADER_NODE_TYPE 110u
 /** Version of the interface that it reports. */
 #define BOOTLOADER_INTERFACE_VERSION 3u
@@ -235,7 +235,7 @@ static inline icd_status_t bootloader_telemetry_length(uint8_t id, size_t *lengt
     }
 }
 
-/** Reads the frame that came under an id. The message is of use only if the result is ICD_OK. */
+/** Decodes a frame by its id. The message is valid only if the result is ICD_OK. */
 static inline icd_status_t bootloader_telemetry_decode(
     bootloader_telemetry_t *ICDGEN_RESTRICT message,
     uint8_t id,
@@ -613,7 +613,7 @@ static inline icd_status_t bootloader_telecommand_length(uint8_t id, size_t *len
     }
 }
 
-/** Reads the frame that came under an id. The message is of use only if the result is ICD_OK. */
+/** Decodes a frame by its id. The message is valid only if the result is ICD_OK. */
 static inline icd_status_t bootloader_telecommand_decode(
     bootloader_telecommand_t *ICDGEN_RESTRICT message,
     uint8_t id,

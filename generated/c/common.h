@@ -245,7 +245,7 @@ static inline icd_status_t common_telemetry_length(uint8_t id, size_t *length)
     }
 }
 
-/** Reads the frame that came under an id. The message is of use only if the result is ICD_OK. */
+/** Decodes a frame by its id. The message is valid only if the result is ICD_OK. */
 static inline icd_status_t common_telemetry_decode(
     common_telemetry_t *ICDGEN_RESTRICT message,
     uint8_t id,
@@ -575,7 +575,7 @@ static inline icd_status_t common_telecommand_length(uint8_t id, size_t *length)
     }
 }
 
-/** Reads the frame that came under an id. The message is of use only if the result is ICD_OK. */
+/** Decodes a frame by its id. The message is valid only if the result is ICD_OK. */
 static inline icd_status_t common_telecommand_decode(
     common_telecommand_t *ICDGEN_RESTRICT message,
     uint8_t id,

@@ -132,7 +132,7 @@
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
 #define CUBEACP_ICD_DIGEST "968abd943efa63cb"
-/** What the node answers when asked for its type. */
+/** Type that the node reports. */
 #define CUBEACP_NODE_TYPE 10u
 /** Version of the interface that it reports. */
 #define CUBEACP_INTERFACE_VERSION 7u
@@ -918,7 +918,7 @@ static inline icd_status_t cubeacp_telemetry_length(uint8_t id, size_t *length)
     }
 }
 
-/** Reads the frame that came under an id. The message is of use only if the result is ICD_OK. */
+/** Decodes a frame by its id. The message is valid only if the result is ICD_OK. */
 static inline icd_status_t cubeacp_telemetry_decode(
     cubeacp_telemetry_t *ICDGEN_RESTRICT message,
     uint8_t id,
@@ -1971,7 +1971,7 @@ static inline icd_status_t cubeacp_telecommand_length(uint8_t id, size_t *length
     }
 }
 
-/** Reads the frame that came under an id. The message is of use only if the result is ICD_OK. */
+/** Decodes a frame by its id. The message is valid only if the result is ICD_OK. */
 static inline icd_status_t cubeacp_telecommand_decode(
     cubeacp_telecommand_t *ICDGEN_RESTRICT message,
     uint8_t id,

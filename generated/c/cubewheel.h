@@ -61,7 +61,7 @@ static inline icd_status_t cubewheel_telemetry_length(uint8_t id, size_t *length
     }
 }
 
-/** Reads the frame that came under an id. The message is of use only if the result is ICD_OK. */
+/** Decodes a frame by its id. The message is valid only if the result is ICD_OK. */
 static inline icd_status_t cubewheel_telemetry_decode(
     cubewheel_telemetry_t *ICDGEN_RESTRICT message,
     uint8_t id,

@@ -818,7 +818,7 @@ static inline icd_status_t bootloader_request_identification(bootloader_client_t
     return icd_client_request(&client->client, now, COMMON_IDENTIFICATION_ID);
 }
 
-/** Reads Identification from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Identification from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_identification(common_identification_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_IDENTIFICATION_ID)) {
@@ -835,7 +835,7 @@ static inline icd_status_t bootloader_request_boot_and_running_program_status(bo
     return icd_client_request(&client->client, now, COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_ID);
 }
 
-/** Reads Boot And Running Program Status from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Boot And Running Program Status from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_boot_and_running_program_status(
     common_boot_and_running_program_status_t *message,
     const icd_event_t *event)
@@ -854,7 +854,7 @@ static inline icd_status_t bootloader_request_boot_index_and_status(bootloader_c
     return icd_client_request(&client->client, now, COMMON_BOOT_INDEX_AND_STATUS_ID);
 }
 
-/** Reads Boot Index and Status from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Boot Index and Status from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_boot_index_and_status(
     common_boot_index_and_status_t *message,
     const icd_event_t *event)
@@ -873,7 +873,7 @@ static inline icd_status_t bootloader_request_last_logged_event(bootloader_clien
     return icd_client_request(&client->client, now, COMMON_LAST_LOGGED_EVENT_ID);
 }
 
-/** Reads Last Logged Event from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Last Logged Event from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_last_logged_event(
     common_last_logged_event_t *message,
     const icd_event_t *event)
@@ -892,7 +892,7 @@ static inline icd_status_t bootloader_request_sram_latchup_counters(bootloader_c
     return icd_client_request(&client->client, now, COMMON_SRAM_LATCHUP_COUNTERS_ID);
 }
 
-/** Reads SRAM Latchup counters from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads SRAM Latchup counters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_sram_latchup_counters(
     common_sram_latchup_counters_t *message,
     const icd_event_t *event)
@@ -911,7 +911,7 @@ static inline icd_status_t bootloader_request_edac_error_counters(bootloader_cli
     return icd_client_request(&client->client, now, COMMON_EDAC_ERROR_COUNTERS_ID);
 }
 
-/** Reads EDAC Error Counters from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads EDAC Error Counters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_edac_error_counters(
     common_edac_error_counters_t *message,
     const icd_event_t *event)
@@ -930,7 +930,7 @@ static inline icd_status_t bootloader_request_communication_status(bootloader_cl
     return icd_client_request(&client->client, now, COMMON_COMMUNICATION_STATUS_ID);
 }
 
-/** Reads Communication Status from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Communication Status from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_communication_status(
     common_communication_status_t *message,
     const icd_event_t *event)
@@ -949,7 +949,7 @@ static inline icd_status_t bootloader_request_sd_card_format_erase_progress(boot
     return icd_client_request(&client->client, now, COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_ID);
 }
 
-/** Reads SD card format/erase progress from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads SD card format/erase progress from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_sd_card_format_erase_progress(
     common_sd_card_format_erase_progress_t *message,
     const icd_event_t *event)
@@ -968,7 +968,7 @@ static inline icd_status_t bootloader_request_telecommand_acknowledge(bootloader
     return icd_client_request(&client->client, now, COMMON_TELECOMMAND_ACKNOWLEDGE_ID);
 }
 
-/** Reads Telecommand Acknowledge from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Telecommand Acknowledge from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_telecommand_acknowledge(
     common_telecommand_acknowledge_t *message,
     const icd_event_t *event)
@@ -989,10 +989,7 @@ static inline icd_status_t bootloader_request_file_download_buffer_with_file_con
     return icd_client_request(&client->client, now, COMMON_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS_ID);
 }
 
-/**
- * Reads File Download Buffer with File Contents from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does
- * not.
- */
+/** Reads File Download Buffer with File Contents from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_file_download_buffer_with_file_contents(
     common_file_download_buffer_with_file_contents_t *message,
     const icd_event_t *event)
@@ -1011,7 +1008,7 @@ static inline icd_status_t bootloader_request_download_block_ready(bootloader_cl
     return icd_client_request(&client->client, now, COMMON_DOWNLOAD_BLOCK_READY_ID);
 }
 
-/** Reads Download Block Ready from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Download Block Ready from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_download_block_ready(
     common_download_block_ready_t *message,
     const icd_event_t *event)
@@ -1030,7 +1027,7 @@ static inline icd_status_t bootloader_request_file_information(bootloader_client
     return icd_client_request(&client->client, now, COMMON_FILE_INFORMATION_ID);
 }
 
-/** Reads File Information from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads File Information from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_file_information(
     common_file_information_t *message,
     const icd_event_t *event)
@@ -1049,7 +1046,7 @@ static inline icd_status_t bootloader_request_initialize_upload_complete(bootloa
     return icd_client_request(&client->client, now, COMMON_INITIALIZE_UPLOAD_COMPLETE_ID);
 }
 
-/** Reads Initialize Upload Complete from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Initialize Upload Complete from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_initialize_upload_complete(
     common_initialize_upload_complete_t *message,
     const icd_event_t *event)
@@ -1068,7 +1065,7 @@ static inline icd_status_t bootloader_request_upload_block_complete(bootloader_c
     return icd_client_request(&client->client, now, COMMON_UPLOAD_BLOCK_COMPLETE_ID);
 }
 
-/** Reads Upload Block Complete from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Upload Block Complete from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_upload_block_complete(
     common_upload_block_complete_t *message,
     const icd_event_t *event)
@@ -1087,7 +1084,7 @@ static inline icd_status_t bootloader_request_block_checksum(bootloader_client_t
     return icd_client_request(&client->client, now, COMMON_BLOCK_CHECKSUM_ID);
 }
 
-/** Reads Block Checksum from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Block Checksum from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_block_checksum(common_block_checksum_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_BLOCK_CHECKSUM_ID)) {
@@ -1104,7 +1101,7 @@ static inline icd_status_t bootloader_request_cache_enabled_state(bootloader_cli
     return icd_client_request(&client->client, now, COMMON_CACHE_ENABLED_STATE_GET_ID);
 }
 
-/** Reads Cache enabled state from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Cache enabled state from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_cache_enabled_state(
     common_cache_enabled_state_t *message,
     const icd_event_t *event)
@@ -1123,7 +1120,7 @@ static inline icd_status_t bootloader_request_sram_scrub_parameters(bootloader_c
     return icd_client_request(&client->client, now, COMMON_SRAM_SCRUB_PARAMETERS_GET_ID);
 }
 
-/** Reads SRAM Scrub Parameters from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads SRAM Scrub Parameters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_sram_scrub_parameters(
     common_sram_scrub_parameters_t *message,
     const icd_event_t *event)
@@ -1142,7 +1139,7 @@ static inline icd_status_t bootloader_request_current_unix_time(bootloader_clien
     return icd_client_request(&client->client, now, COMMON_CURRENT_UNIX_TIME_GET_ID);
 }
 
-/** Reads Current Unix Time from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Current Unix Time from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_current_unix_time(
     common_current_unix_time_t *message,
     const icd_event_t *event)
@@ -1161,7 +1158,7 @@ static inline icd_status_t bootloader_request_unix_time_save_to_flash(bootloader
     return icd_client_request(&client->client, now, COMMON_UNIX_TIME_SAVE_TO_FLASH_GET_ID);
 }
 
-/** Reads Unix Time Save to Flash from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Unix Time Save to Flash from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_unix_time_save_to_flash(
     common_unix_time_save_to_flash_t *message,
     const icd_event_t *event)
@@ -1180,7 +1177,7 @@ static inline icd_status_t bootloader_request_hole_map_1(bootloader_client_t *cl
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_1_GET_ID);
 }
 
-/** Reads Hole Map 1 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Hole Map 1 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_hole_map_1(common_hole_map_1_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_1_GET_ID)) {
@@ -1197,7 +1194,7 @@ static inline icd_status_t bootloader_request_hole_map_2(bootloader_client_t *cl
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_2_GET_ID);
 }
 
-/** Reads Hole Map 2 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Hole Map 2 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_hole_map_2(common_hole_map_2_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_2_GET_ID)) {
@@ -1214,7 +1211,7 @@ static inline icd_status_t bootloader_request_hole_map_3(bootloader_client_t *cl
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_3_GET_ID);
 }
 
-/** Reads Hole Map 3 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Hole Map 3 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_hole_map_3(common_hole_map_3_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_3_GET_ID)) {
@@ -1231,7 +1228,7 @@ static inline icd_status_t bootloader_request_hole_map_4(bootloader_client_t *cl
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_4_GET_ID);
 }
 
-/** Reads Hole Map 4 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Hole Map 4 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_hole_map_4(common_hole_map_4_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_4_GET_ID)) {
@@ -1248,7 +1245,7 @@ static inline icd_status_t bootloader_request_hole_map_5(bootloader_client_t *cl
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_5_GET_ID);
 }
 
-/** Reads Hole Map 5 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Hole Map 5 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_hole_map_5(common_hole_map_5_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_5_GET_ID)) {
@@ -1265,7 +1262,7 @@ static inline icd_status_t bootloader_request_hole_map_6(bootloader_client_t *cl
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_6_GET_ID);
 }
 
-/** Reads Hole Map 6 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Hole Map 6 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_hole_map_6(common_hole_map_6_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_6_GET_ID)) {
@@ -1282,7 +1279,7 @@ static inline icd_status_t bootloader_request_hole_map_7(bootloader_client_t *cl
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_7_GET_ID);
 }
 
-/** Reads Hole Map 7 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Hole Map 7 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_hole_map_7(common_hole_map_7_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_7_GET_ID)) {
@@ -1299,7 +1296,7 @@ static inline icd_status_t bootloader_request_hole_map_8(bootloader_client_t *cl
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_8_GET_ID);
 }
 
-/** Reads Hole Map 8 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Hole Map 8 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_hole_map_8(common_hole_map_8_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_8_GET_ID)) {
@@ -1316,7 +1313,7 @@ static inline icd_status_t bootloader_request_state(bootloader_client_t *client,
     return icd_client_request(&client->client, now, BOOTLOADER_STATE_ID);
 }
 
-/** Reads Bootloader State from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Bootloader State from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_state(bootloader_state_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, BOOTLOADER_NODE, BOOTLOADER_STATE_ID)) {
@@ -1333,7 +1330,7 @@ static inline icd_status_t bootloader_request_program_information(bootloader_cli
     return icd_client_request(&client->client, now, BOOTLOADER_PROGRAM_INFORMATION_ID);
 }
 
-/** Reads Program Information from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Program Information from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_program_information(
     bootloader_program_information_t *message,
     const icd_event_t *event)
@@ -1352,7 +1349,7 @@ static inline icd_status_t bootloader_request_copy_to_internal_flash_progress(bo
     return icd_client_request(&client->client, now, BOOTLOADER_COPY_TO_INTERNAL_FLASH_PROGRESS_ID);
 }
 
-/** Reads Copy To Internal Flash Progress from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Copy To Internal Flash Progress from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_copy_to_internal_flash_progress(
     bootloader_copy_to_internal_flash_progress_t *message,
     const icd_event_t *event)

@@ -23,7 +23,7 @@
 /** Bytes of a bit for each packet of such a block. */
 #define BOOTLOADER_BLOCK_BITMAP_BYTES 128u
 
-/** What the wire layer needs to know about Bootloader. */
+/** Facts of the link of Bootloader. */
 ICDGEN_API const icd_link_t *bootloader_link(void);
 
 #ifndef ICDGEN_SHARED

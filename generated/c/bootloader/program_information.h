@@ -46,13 +46,13 @@ typedef struct {
     uint16_t checksum;
 } bootloader_program_information_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void bootloader_program_information_init(bootloader_program_information_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 8 bytes. */
+/** Decodes a frame of 8 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t bootloader_program_information_decode(
     bootloader_program_information_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -68,7 +68,7 @@ static inline icd_status_t bootloader_program_information_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 8 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 8 bytes, reserved bits 0; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t bootloader_program_information_encode(
     const bootloader_program_information_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -84,7 +84,7 @@ static inline icd_status_t bootloader_program_information_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *bootloader_program_information_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

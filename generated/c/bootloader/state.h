@@ -67,13 +67,13 @@ typedef struct {
     bool communications_error_with_radio;
 } bootloader_state_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void bootloader_state_init(bootloader_state_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
+/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t bootloader_state_decode(
     bootloader_state_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -106,7 +106,7 @@ static inline icd_status_t bootloader_state_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 6 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 6 bytes, reserved bits 0; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t bootloader_state_encode(
     const bootloader_state_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -139,7 +139,7 @@ static inline icd_status_t bootloader_state_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *bootloader_state_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -26,13 +26,13 @@ typedef struct {
     uint8_t empty;
 } common_advance_log_pointer_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void common_advance_log_pointer_init(common_advance_log_pointer_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 0 bytes. */
+/** Decodes a frame of 0 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t common_advance_log_pointer_decode(
     common_advance_log_pointer_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -46,7 +46,7 @@ static inline icd_status_t common_advance_log_pointer_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 0 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 0 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t common_advance_log_pointer_encode(
     const common_advance_log_pointer_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -58,7 +58,7 @@ static inline icd_status_t common_advance_log_pointer_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *common_advance_log_pointer_fields(size_t *count)
 {
     *count = 0u;

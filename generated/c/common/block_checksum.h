@@ -30,13 +30,13 @@ typedef struct {
     uint16_t checksum;
 } common_block_checksum_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void common_block_checksum_init(common_block_checksum_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 2 bytes. */
+/** Decodes a frame of 2 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t common_block_checksum_decode(
     common_block_checksum_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -49,7 +49,7 @@ static inline icd_status_t common_block_checksum_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 2 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 2 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t common_block_checksum_encode(
     const common_block_checksum_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -62,7 +62,7 @@ static inline icd_status_t common_block_checksum_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *common_block_checksum_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -55,13 +55,13 @@ typedef struct {
     uint8_t firmware_version_minor;
 } common_boot_and_running_program_status_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void common_boot_and_running_program_status_init(common_boot_and_running_program_status_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
+/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t common_boot_and_running_program_status_decode(
     common_boot_and_running_program_status_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -118,7 +118,7 @@ static inline icd_status_t common_boot_and_running_program_status_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *common_boot_and_running_program_status_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

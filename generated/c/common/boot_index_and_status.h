@@ -29,13 +29,13 @@ typedef struct {
     common_boot_status_t boot_status;
 } common_boot_index_and_status_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void common_boot_index_and_status_init(common_boot_index_and_status_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 2 bytes. */
+/** Decodes a frame of 2 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t common_boot_index_and_status_decode(
     common_boot_index_and_status_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -49,7 +49,7 @@ static inline icd_status_t common_boot_index_and_status_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 2 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 2 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t common_boot_index_and_status_encode(
     const common_boot_index_and_status_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -63,7 +63,7 @@ static inline icd_status_t common_boot_index_and_status_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *common_boot_index_and_status_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

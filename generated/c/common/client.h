@@ -725,7 +725,7 @@ static inline icd_status_t common_request_identification(common_client_t *client
     return icd_client_request(&client->client, now, COMMON_IDENTIFICATION_ID);
 }
 
-/** Reads Identification from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Identification from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_identification(common_identification_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, COMMON_NODE, COMMON_IDENTIFICATION_ID)) {
@@ -742,7 +742,7 @@ static inline icd_status_t common_request_boot_and_running_program_status(common
     return icd_client_request(&client->client, now, COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_ID);
 }
 
-/** Reads Boot And Running Program Status from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Boot And Running Program Status from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_boot_and_running_program_status(
     common_boot_and_running_program_status_t *message,
     const icd_event_t *event)
@@ -761,7 +761,7 @@ static inline icd_status_t common_request_boot_index_and_status(common_client_t 
     return icd_client_request(&client->client, now, COMMON_BOOT_INDEX_AND_STATUS_ID);
 }
 
-/** Reads Boot Index and Status from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Boot Index and Status from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_boot_index_and_status(
     common_boot_index_and_status_t *message,
     const icd_event_t *event)
@@ -780,7 +780,7 @@ static inline icd_status_t common_request_last_logged_event(common_client_t *cli
     return icd_client_request(&client->client, now, COMMON_LAST_LOGGED_EVENT_ID);
 }
 
-/** Reads Last Logged Event from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Last Logged Event from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_last_logged_event(
     common_last_logged_event_t *message,
     const icd_event_t *event)
@@ -799,7 +799,7 @@ static inline icd_status_t common_request_sram_latchup_counters(common_client_t 
     return icd_client_request(&client->client, now, COMMON_SRAM_LATCHUP_COUNTERS_ID);
 }
 
-/** Reads SRAM Latchup counters from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads SRAM Latchup counters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_sram_latchup_counters(
     common_sram_latchup_counters_t *message,
     const icd_event_t *event)
@@ -818,7 +818,7 @@ static inline icd_status_t common_request_edac_error_counters(common_client_t *c
     return icd_client_request(&client->client, now, COMMON_EDAC_ERROR_COUNTERS_ID);
 }
 
-/** Reads EDAC Error Counters from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads EDAC Error Counters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_edac_error_counters(
     common_edac_error_counters_t *message,
     const icd_event_t *event)
@@ -837,7 +837,7 @@ static inline icd_status_t common_request_communication_status(common_client_t *
     return icd_client_request(&client->client, now, COMMON_COMMUNICATION_STATUS_ID);
 }
 
-/** Reads Communication Status from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Communication Status from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_communication_status(
     common_communication_status_t *message,
     const icd_event_t *event)
@@ -856,7 +856,7 @@ static inline icd_status_t common_request_sd_card_format_erase_progress(common_c
     return icd_client_request(&client->client, now, COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_ID);
 }
 
-/** Reads SD card format/erase progress from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads SD card format/erase progress from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_sd_card_format_erase_progress(
     common_sd_card_format_erase_progress_t *message,
     const icd_event_t *event)
@@ -875,7 +875,7 @@ static inline icd_status_t common_request_telecommand_acknowledge(common_client_
     return icd_client_request(&client->client, now, COMMON_TELECOMMAND_ACKNOWLEDGE_ID);
 }
 
-/** Reads Telecommand Acknowledge from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Telecommand Acknowledge from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_telecommand_acknowledge(
     common_telecommand_acknowledge_t *message,
     const icd_event_t *event)
@@ -894,10 +894,7 @@ static inline icd_status_t common_request_file_download_buffer_with_file_content
     return icd_client_request(&client->client, now, COMMON_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS_ID);
 }
 
-/**
- * Reads File Download Buffer with File Contents from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does
- * not.
- */
+/** Reads File Download Buffer with File Contents from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_file_download_buffer_with_file_contents(
     common_file_download_buffer_with_file_contents_t *message,
     const icd_event_t *event)
@@ -916,7 +913,7 @@ static inline icd_status_t common_request_download_block_ready(common_client_t *
     return icd_client_request(&client->client, now, COMMON_DOWNLOAD_BLOCK_READY_ID);
 }
 
-/** Reads Download Block Ready from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Download Block Ready from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_download_block_ready(
     common_download_block_ready_t *message,
     const icd_event_t *event)
@@ -935,7 +932,7 @@ static inline icd_status_t common_request_file_information(common_client_t *clie
     return icd_client_request(&client->client, now, COMMON_FILE_INFORMATION_ID);
 }
 
-/** Reads File Information from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads File Information from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_file_information(common_file_information_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, COMMON_NODE, COMMON_FILE_INFORMATION_ID)) {
@@ -952,7 +949,7 @@ static inline icd_status_t common_request_initialize_upload_complete(common_clie
     return icd_client_request(&client->client, now, COMMON_INITIALIZE_UPLOAD_COMPLETE_ID);
 }
 
-/** Reads Initialize Upload Complete from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Initialize Upload Complete from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_initialize_upload_complete(
     common_initialize_upload_complete_t *message,
     const icd_event_t *event)
@@ -971,7 +968,7 @@ static inline icd_status_t common_request_upload_block_complete(common_client_t 
     return icd_client_request(&client->client, now, COMMON_UPLOAD_BLOCK_COMPLETE_ID);
 }
 
-/** Reads Upload Block Complete from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Upload Block Complete from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_upload_block_complete(
     common_upload_block_complete_t *message,
     const icd_event_t *event)
@@ -990,7 +987,7 @@ static inline icd_status_t common_request_block_checksum(common_client_t *client
     return icd_client_request(&client->client, now, COMMON_BLOCK_CHECKSUM_ID);
 }
 
-/** Reads Block Checksum from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Block Checksum from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_block_checksum(common_block_checksum_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, COMMON_NODE, COMMON_BLOCK_CHECKSUM_ID)) {
@@ -1007,7 +1004,7 @@ static inline icd_status_t common_request_cache_enabled_state(common_client_t *c
     return icd_client_request(&client->client, now, COMMON_CACHE_ENABLED_STATE_GET_ID);
 }
 
-/** Reads Cache enabled state from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Cache enabled state from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_cache_enabled_state(
     common_cache_enabled_state_t *message,
     const icd_event_t *event)
@@ -1026,7 +1023,7 @@ static inline icd_status_t common_request_sram_scrub_parameters(common_client_t 
     return icd_client_request(&client->client, now, COMMON_SRAM_SCRUB_PARAMETERS_GET_ID);
 }
 
-/** Reads SRAM Scrub Parameters from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads SRAM Scrub Parameters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_sram_scrub_parameters(
     common_sram_scrub_parameters_t *message,
     const icd_event_t *event)
@@ -1045,7 +1042,7 @@ static inline icd_status_t common_request_current_unix_time(common_client_t *cli
     return icd_client_request(&client->client, now, COMMON_CURRENT_UNIX_TIME_GET_ID);
 }
 
-/** Reads Current Unix Time from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Current Unix Time from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_current_unix_time(
     common_current_unix_time_t *message,
     const icd_event_t *event)
@@ -1064,7 +1061,7 @@ static inline icd_status_t common_request_unix_time_save_to_flash(common_client_
     return icd_client_request(&client->client, now, COMMON_UNIX_TIME_SAVE_TO_FLASH_GET_ID);
 }
 
-/** Reads Unix Time Save to Flash from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Unix Time Save to Flash from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_unix_time_save_to_flash(
     common_unix_time_save_to_flash_t *message,
     const icd_event_t *event)
@@ -1083,7 +1080,7 @@ static inline icd_status_t common_request_hole_map_1(common_client_t *client, ui
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_1_GET_ID);
 }
 
-/** Reads Hole Map 1 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Hole Map 1 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_hole_map_1(common_hole_map_1_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, COMMON_NODE, COMMON_HOLE_MAP_1_GET_ID)) {
@@ -1100,7 +1097,7 @@ static inline icd_status_t common_request_hole_map_2(common_client_t *client, ui
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_2_GET_ID);
 }
 
-/** Reads Hole Map 2 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Hole Map 2 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_hole_map_2(common_hole_map_2_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, COMMON_NODE, COMMON_HOLE_MAP_2_GET_ID)) {
@@ -1117,7 +1114,7 @@ static inline icd_status_t common_request_hole_map_3(common_client_t *client, ui
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_3_GET_ID);
 }
 
-/** Reads Hole Map 3 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Hole Map 3 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_hole_map_3(common_hole_map_3_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, COMMON_NODE, COMMON_HOLE_MAP_3_GET_ID)) {
@@ -1134,7 +1131,7 @@ static inline icd_status_t common_request_hole_map_4(common_client_t *client, ui
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_4_GET_ID);
 }
 
-/** Reads Hole Map 4 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Hole Map 4 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_hole_map_4(common_hole_map_4_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, COMMON_NODE, COMMON_HOLE_MAP_4_GET_ID)) {
@@ -1151,7 +1148,7 @@ static inline icd_status_t common_request_hole_map_5(common_client_t *client, ui
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_5_GET_ID);
 }
 
-/** Reads Hole Map 5 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Hole Map 5 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_hole_map_5(common_hole_map_5_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, COMMON_NODE, COMMON_HOLE_MAP_5_GET_ID)) {
@@ -1168,7 +1165,7 @@ static inline icd_status_t common_request_hole_map_6(common_client_t *client, ui
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_6_GET_ID);
 }
 
-/** Reads Hole Map 6 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Hole Map 6 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_hole_map_6(common_hole_map_6_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, COMMON_NODE, COMMON_HOLE_MAP_6_GET_ID)) {
@@ -1185,7 +1182,7 @@ static inline icd_status_t common_request_hole_map_7(common_client_t *client, ui
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_7_GET_ID);
 }
 
-/** Reads Hole Map 7 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Hole Map 7 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_hole_map_7(common_hole_map_7_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, COMMON_NODE, COMMON_HOLE_MAP_7_GET_ID)) {
@@ -1202,7 +1199,7 @@ static inline icd_status_t common_request_hole_map_8(common_client_t *client, ui
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_8_GET_ID);
 }
 
-/** Reads Hole Map 8 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Hole Map 8 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_hole_map_8(common_hole_map_8_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, COMMON_NODE, COMMON_HOLE_MAP_8_GET_ID)) {

@@ -34,13 +34,13 @@ typedef struct {
     bool erase_all;
 } common_erase_file_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void common_erase_file_init(common_erase_file_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 3 bytes. */
+/** Decodes a frame of 3 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t common_erase_file_decode(
     common_erase_file_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -55,7 +55,7 @@ static inline icd_status_t common_erase_file_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 3 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 3 bytes, reserved bits 0; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t common_erase_file_encode(
     const common_erase_file_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -70,7 +70,7 @@ static inline icd_status_t common_erase_file_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *common_erase_file_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -59,13 +59,13 @@ typedef struct {
     uint16_t file_crc16_checksum;
 } common_file_information_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void common_file_information_init(common_file_information_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 12 bytes. */
+/** Decodes a frame of 12 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t common_file_information_decode(
     common_file_information_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -117,7 +117,7 @@ static inline icd_status_t common_file_information_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *common_file_information_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

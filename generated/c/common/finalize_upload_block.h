@@ -40,13 +40,13 @@ typedef struct {
     uint16_t block_length;
 } common_finalize_upload_block_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void common_finalize_upload_block_init(common_finalize_upload_block_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 7 bytes. */
+/** Decodes a frame of 7 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t common_finalize_upload_block_decode(
     common_finalize_upload_block_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -61,7 +61,7 @@ static inline icd_status_t common_finalize_upload_block_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 7 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 7 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t common_finalize_upload_block_encode(
     const common_finalize_upload_block_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -76,7 +76,7 @@ static inline icd_status_t common_finalize_upload_block_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *common_finalize_upload_block_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

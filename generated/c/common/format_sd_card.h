@@ -25,14 +25,14 @@ typedef struct {
     uint8_t magic_number;
 } common_format_sd_card_t;
 
-/** Makes every raw value 0, or the only valid one. */
+/** Sets all raw values to 0, or the only valid one. */
 static inline void common_format_sd_card_init(common_format_sd_card_t *message)
 {
     (void)memset(message, 0, sizeof *message);
     message->magic_number = COMMON_FORMAT_SD_CARD_MAGIC_NUMBER_CONST;
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 1 byte. */
+/** Decodes a frame of 1 byte; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t common_format_sd_card_decode(
     common_format_sd_card_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -45,7 +45,7 @@ static inline icd_status_t common_format_sd_card_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 1 byte; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 1 byte; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t common_format_sd_card_encode(
     const common_format_sd_card_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -58,7 +58,7 @@ static inline icd_status_t common_format_sd_card_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *common_format_sd_card_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

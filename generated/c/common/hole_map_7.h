@@ -33,13 +33,13 @@ typedef struct {
     uint8_t hole_map[16];
 } common_hole_map_7_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void common_hole_map_7_init(common_hole_map_7_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 16 bytes. */
+/** Decodes a frame of 16 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t common_hole_map_7_decode(
     common_hole_map_7_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -52,7 +52,7 @@ static inline icd_status_t common_hole_map_7_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 16 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 16 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t common_hole_map_7_encode(
     const common_hole_map_7_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -65,7 +65,7 @@ static inline icd_status_t common_hole_map_7_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *common_hole_map_7_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

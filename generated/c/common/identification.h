@@ -49,13 +49,13 @@ typedef struct {
     uint16_t runtime_milliseconds;
 } common_identification_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void common_identification_init(common_identification_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 8 bytes. */
+/** Decodes a frame of 8 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t common_identification_decode(
     common_identification_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -73,7 +73,7 @@ static inline icd_status_t common_identification_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 8 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 8 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t common_identification_encode(
     const common_identification_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -91,7 +91,7 @@ static inline icd_status_t common_identification_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *common_identification_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -37,13 +37,13 @@ typedef struct {
     bool ignore_hole_map;
 } common_initiate_download_burst_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void common_initiate_download_burst_init(common_initiate_download_burst_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 2 bytes. */
+/** Decodes a frame of 2 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t common_initiate_download_burst_decode(
     common_initiate_download_burst_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -57,7 +57,7 @@ static inline icd_status_t common_initiate_download_burst_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 2 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 2 bytes, reserved bits 0; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t common_initiate_download_burst_encode(
     const common_initiate_download_burst_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -71,7 +71,7 @@ static inline icd_status_t common_initiate_download_burst_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *common_initiate_download_burst_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

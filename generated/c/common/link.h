@@ -23,7 +23,7 @@
 /** Bytes of a bit for each packet of such a block. */
 #define COMMON_BLOCK_BITMAP_BYTES 128u
 
-/** What the wire layer needs to know about Common messages. */
+/** Facts of the link of Common messages. */
 ICDGEN_API const icd_link_t *common_link(void);
 
 #ifndef ICDGEN_SHARED

@@ -33,14 +33,14 @@ typedef struct {
     uint8_t magic_number;
 } common_reset_t;
 
-/** Makes every raw value 0, or the only valid one. */
+/** Sets all raw values to 0, or the only valid one. */
 static inline void common_reset_init(common_reset_t *message)
 {
     (void)memset(message, 0, sizeof *message);
     message->magic_number = COMMON_RESET_MAGIC_NUMBER_CONST;
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 1 byte. */
+/** Decodes a frame of 1 byte; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t common_reset_decode(
     common_reset_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -53,7 +53,7 @@ static inline icd_status_t common_reset_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 1 byte; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 1 byte; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t common_reset_encode(
     const common_reset_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -66,7 +66,7 @@ static inline icd_status_t common_reset_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *common_reset_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

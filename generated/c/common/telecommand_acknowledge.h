@@ -55,13 +55,13 @@ typedef struct {
     uint8_t tc_parameter_error_index;
 } common_telecommand_acknowledge_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void common_telecommand_acknowledge_init(common_telecommand_acknowledge_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 4 bytes. */
+/** Decodes a frame of 4 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t common_telecommand_acknowledge_decode(
     common_telecommand_acknowledge_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -77,7 +77,7 @@ static inline icd_status_t common_telecommand_acknowledge_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 4 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 4 bytes, reserved bits 0; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t common_telecommand_acknowledge_encode(
     const common_telecommand_acknowledge_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -93,7 +93,7 @@ static inline icd_status_t common_telecommand_acknowledge_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *common_telecommand_acknowledge_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -39,13 +39,13 @@ typedef struct {
     bool error;
 } common_upload_block_complete_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void common_upload_block_complete_init(common_upload_block_complete_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 1 byte. */
+/** Decodes a frame of 1 byte; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t common_upload_block_complete_decode(
     common_upload_block_complete_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -59,7 +59,7 @@ static inline icd_status_t common_upload_block_complete_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 1 byte, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 1 byte, reserved bits 0; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t common_upload_block_complete_encode(
     const common_upload_block_complete_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -72,7 +72,7 @@ static inline icd_status_t common_upload_block_complete_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *common_upload_block_complete_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -25,13 +25,13 @@ typedef struct {
     cubeacp_execution_waypoints_t current_execution_point;
 } cubeacp_acp_execution_state_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void cubeacp_acp_execution_state_init(cubeacp_acp_execution_state_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 3 bytes. */
+/** Decodes a frame of 3 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t cubeacp_acp_execution_state_decode(
     cubeacp_acp_execution_state_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -45,7 +45,7 @@ static inline icd_status_t cubeacp_acp_execution_state_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 3 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 3 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t cubeacp_acp_execution_state_encode(
     const cubeacp_acp_execution_state_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -59,7 +59,7 @@ static inline icd_status_t cubeacp_acp_execution_state_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *cubeacp_acp_execution_state_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -309,13 +309,13 @@ typedef struct {
     cubeacp_gpio_port_pin_t cubewheel3_enable_pin;
 } cubeacp_adcs_system_configuration_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void cubeacp_adcs_system_configuration_init(cubeacp_adcs_system_configuration_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 173 bytes. */
+/** Decodes a frame of 173 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t cubeacp_adcs_system_configuration_decode(
     cubeacp_adcs_system_configuration_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -504,7 +504,7 @@ static inline icd_status_t cubeacp_adcs_system_configuration_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *cubeacp_adcs_system_configuration_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -76,13 +76,13 @@ typedef struct {
     float asgp4_bstar;
 } cubeacp_asgp4_tles_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void cubeacp_asgp4_tles_init(cubeacp_asgp4_tles_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 33 bytes. */
+/** Decodes a frame of 33 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t cubeacp_asgp4_tles_decode(
     cubeacp_asgp4_tles_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -128,7 +128,7 @@ static inline icd_status_t cubeacp_asgp4_tles_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *cubeacp_asgp4_tles_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

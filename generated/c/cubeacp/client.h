@@ -1874,7 +1874,7 @@ static inline icd_status_t cubeacp_request_identification(cubeacp_client_t *clie
     return icd_client_request(&client->client, now, COMMON_IDENTIFICATION_ID);
 }
 
-/** Reads Identification from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Identification from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_identification(common_identification_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, COMMON_IDENTIFICATION_ID)) {
@@ -1891,7 +1891,7 @@ static inline icd_status_t cubeacp_request_boot_and_running_program_status(cubea
     return icd_client_request(&client->client, now, COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_ID);
 }
 
-/** Reads Boot And Running Program Status from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Boot And Running Program Status from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_boot_and_running_program_status(
     common_boot_and_running_program_status_t *message,
     const icd_event_t *event)
@@ -1910,7 +1910,7 @@ static inline icd_status_t cubeacp_request_boot_index_and_status(cubeacp_client_
     return icd_client_request(&client->client, now, COMMON_BOOT_INDEX_AND_STATUS_ID);
 }
 
-/** Reads Boot Index and Status from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Boot Index and Status from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_boot_index_and_status(
     common_boot_index_and_status_t *message,
     const icd_event_t *event)
@@ -1929,7 +1929,7 @@ static inline icd_status_t cubeacp_request_last_logged_event(cubeacp_client_t *c
     return icd_client_request(&client->client, now, COMMON_LAST_LOGGED_EVENT_ID);
 }
 
-/** Reads Last Logged Event from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Last Logged Event from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_last_logged_event(
     common_last_logged_event_t *message,
     const icd_event_t *event)
@@ -1948,7 +1948,7 @@ static inline icd_status_t cubeacp_request_sram_latchup_counters(cubeacp_client_
     return icd_client_request(&client->client, now, COMMON_SRAM_LATCHUP_COUNTERS_ID);
 }
 
-/** Reads SRAM Latchup counters from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads SRAM Latchup counters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_sram_latchup_counters(
     common_sram_latchup_counters_t *message,
     const icd_event_t *event)
@@ -1967,7 +1967,7 @@ static inline icd_status_t cubeacp_request_edac_error_counters(cubeacp_client_t 
     return icd_client_request(&client->client, now, COMMON_EDAC_ERROR_COUNTERS_ID);
 }
 
-/** Reads EDAC Error Counters from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads EDAC Error Counters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_edac_error_counters(
     common_edac_error_counters_t *message,
     const icd_event_t *event)
@@ -1986,7 +1986,7 @@ static inline icd_status_t cubeacp_request_communication_status(cubeacp_client_t
     return icd_client_request(&client->client, now, COMMON_COMMUNICATION_STATUS_ID);
 }
 
-/** Reads Communication Status from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Communication Status from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_communication_status(
     common_communication_status_t *message,
     const icd_event_t *event)
@@ -2005,7 +2005,7 @@ static inline icd_status_t cubeacp_request_sd_card_format_erase_progress(cubeacp
     return icd_client_request(&client->client, now, COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_ID);
 }
 
-/** Reads SD card format/erase progress from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads SD card format/erase progress from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_sd_card_format_erase_progress(
     common_sd_card_format_erase_progress_t *message,
     const icd_event_t *event)
@@ -2024,7 +2024,7 @@ static inline icd_status_t cubeacp_request_telecommand_acknowledge(cubeacp_clien
     return icd_client_request(&client->client, now, COMMON_TELECOMMAND_ACKNOWLEDGE_ID);
 }
 
-/** Reads Telecommand Acknowledge from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Telecommand Acknowledge from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_telecommand_acknowledge(
     common_telecommand_acknowledge_t *message,
     const icd_event_t *event)
@@ -2045,10 +2045,7 @@ static inline icd_status_t cubeacp_request_file_download_buffer_with_file_conten
     return icd_client_request(&client->client, now, COMMON_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS_ID);
 }
 
-/**
- * Reads File Download Buffer with File Contents from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does
- * not.
- */
+/** Reads File Download Buffer with File Contents from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_file_download_buffer_with_file_contents(
     common_file_download_buffer_with_file_contents_t *message,
     const icd_event_t *event)
@@ -2067,7 +2064,7 @@ static inline icd_status_t cubeacp_request_download_block_ready(cubeacp_client_t
     return icd_client_request(&client->client, now, COMMON_DOWNLOAD_BLOCK_READY_ID);
 }
 
-/** Reads Download Block Ready from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Download Block Ready from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_download_block_ready(
     common_download_block_ready_t *message,
     const icd_event_t *event)
@@ -2086,7 +2083,7 @@ static inline icd_status_t cubeacp_request_file_information(cubeacp_client_t *cl
     return icd_client_request(&client->client, now, COMMON_FILE_INFORMATION_ID);
 }
 
-/** Reads File Information from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads File Information from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_file_information(
     common_file_information_t *message,
     const icd_event_t *event)
@@ -2105,7 +2102,7 @@ static inline icd_status_t cubeacp_request_initialize_upload_complete(cubeacp_cl
     return icd_client_request(&client->client, now, COMMON_INITIALIZE_UPLOAD_COMPLETE_ID);
 }
 
-/** Reads Initialize Upload Complete from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Initialize Upload Complete from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_initialize_upload_complete(
     common_initialize_upload_complete_t *message,
     const icd_event_t *event)
@@ -2124,7 +2121,7 @@ static inline icd_status_t cubeacp_request_upload_block_complete(cubeacp_client_
     return icd_client_request(&client->client, now, COMMON_UPLOAD_BLOCK_COMPLETE_ID);
 }
 
-/** Reads Upload Block Complete from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Upload Block Complete from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_upload_block_complete(
     common_upload_block_complete_t *message,
     const icd_event_t *event)
@@ -2143,7 +2140,7 @@ static inline icd_status_t cubeacp_request_block_checksum(cubeacp_client_t *clie
     return icd_client_request(&client->client, now, COMMON_BLOCK_CHECKSUM_ID);
 }
 
-/** Reads Block Checksum from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Block Checksum from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_block_checksum(common_block_checksum_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, COMMON_BLOCK_CHECKSUM_ID)) {
@@ -2160,7 +2157,7 @@ static inline icd_status_t cubeacp_request_cache_enabled_state(cubeacp_client_t 
     return icd_client_request(&client->client, now, COMMON_CACHE_ENABLED_STATE_GET_ID);
 }
 
-/** Reads Cache enabled state from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Cache enabled state from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_cache_enabled_state(
     common_cache_enabled_state_t *message,
     const icd_event_t *event)
@@ -2179,7 +2176,7 @@ static inline icd_status_t cubeacp_request_sram_scrub_parameters(cubeacp_client_
     return icd_client_request(&client->client, now, COMMON_SRAM_SCRUB_PARAMETERS_GET_ID);
 }
 
-/** Reads SRAM Scrub Parameters from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads SRAM Scrub Parameters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_sram_scrub_parameters(
     common_sram_scrub_parameters_t *message,
     const icd_event_t *event)
@@ -2198,7 +2195,7 @@ static inline icd_status_t cubeacp_request_current_unix_time(cubeacp_client_t *c
     return icd_client_request(&client->client, now, COMMON_CURRENT_UNIX_TIME_GET_ID);
 }
 
-/** Reads Current Unix Time from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Current Unix Time from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_current_unix_time(
     common_current_unix_time_t *message,
     const icd_event_t *event)
@@ -2217,7 +2214,7 @@ static inline icd_status_t cubeacp_request_unix_time_save_to_flash(cubeacp_clien
     return icd_client_request(&client->client, now, COMMON_UNIX_TIME_SAVE_TO_FLASH_GET_ID);
 }
 
-/** Reads Unix Time Save to Flash from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Unix Time Save to Flash from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_unix_time_save_to_flash(
     common_unix_time_save_to_flash_t *message,
     const icd_event_t *event)
@@ -2236,7 +2233,7 @@ static inline icd_status_t cubeacp_request_hole_map_1(cubeacp_client_t *client, 
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_1_GET_ID);
 }
 
-/** Reads Hole Map 1 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Hole Map 1 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_hole_map_1(common_hole_map_1_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, COMMON_HOLE_MAP_1_GET_ID)) {
@@ -2253,7 +2250,7 @@ static inline icd_status_t cubeacp_request_hole_map_2(cubeacp_client_t *client, 
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_2_GET_ID);
 }
 
-/** Reads Hole Map 2 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Hole Map 2 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_hole_map_2(common_hole_map_2_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, COMMON_HOLE_MAP_2_GET_ID)) {
@@ -2270,7 +2267,7 @@ static inline icd_status_t cubeacp_request_hole_map_3(cubeacp_client_t *client, 
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_3_GET_ID);
 }
 
-/** Reads Hole Map 3 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Hole Map 3 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_hole_map_3(common_hole_map_3_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, COMMON_HOLE_MAP_3_GET_ID)) {
@@ -2287,7 +2284,7 @@ static inline icd_status_t cubeacp_request_hole_map_4(cubeacp_client_t *client, 
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_4_GET_ID);
 }
 
-/** Reads Hole Map 4 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Hole Map 4 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_hole_map_4(common_hole_map_4_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, COMMON_HOLE_MAP_4_GET_ID)) {
@@ -2304,7 +2301,7 @@ static inline icd_status_t cubeacp_request_hole_map_5(cubeacp_client_t *client, 
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_5_GET_ID);
 }
 
-/** Reads Hole Map 5 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Hole Map 5 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_hole_map_5(common_hole_map_5_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, COMMON_HOLE_MAP_5_GET_ID)) {
@@ -2321,7 +2318,7 @@ static inline icd_status_t cubeacp_request_hole_map_6(cubeacp_client_t *client, 
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_6_GET_ID);
 }
 
-/** Reads Hole Map 6 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Hole Map 6 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_hole_map_6(common_hole_map_6_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, COMMON_HOLE_MAP_6_GET_ID)) {
@@ -2338,7 +2335,7 @@ static inline icd_status_t cubeacp_request_hole_map_7(cubeacp_client_t *client, 
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_7_GET_ID);
 }
 
-/** Reads Hole Map 7 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Hole Map 7 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_hole_map_7(common_hole_map_7_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, COMMON_HOLE_MAP_7_GET_ID)) {
@@ -2355,7 +2352,7 @@ static inline icd_status_t cubeacp_request_hole_map_8(cubeacp_client_t *client, 
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_8_GET_ID);
 }
 
-/** Reads Hole Map 8 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Hole Map 8 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_hole_map_8(common_hole_map_8_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, COMMON_HOLE_MAP_8_GET_ID)) {
@@ -2372,7 +2369,7 @@ static inline icd_status_t cubeacp_request_current_adcs_state(cubeacp_client_t *
     return icd_client_request(&client->client, now, CUBEACP_CURRENT_ADCS_STATE_ID);
 }
 
-/** Reads Current ADCS State from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Current ADCS State from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_current_adcs_state(
     cubeacp_current_adcs_state_t *message,
     const icd_event_t *event)
@@ -2391,7 +2388,7 @@ static inline icd_status_t cubeacp_request_jpg_conversion_progress(cubeacp_clien
     return icd_client_request(&client->client, now, CUBEACP_JPG_CONVERSION_PROGRESS_ID);
 }
 
-/** Reads JPG Conversion Progress from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads JPG Conversion Progress from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_jpg_conversion_progress(
     cubeacp_jpg_conversion_progress_t *message,
     const icd_event_t *event)
@@ -2410,7 +2407,7 @@ static inline icd_status_t cubeacp_request_state(cubeacp_client_t *client, uint3
     return icd_client_request(&client->client, now, CUBEACP_STATE_ID);
 }
 
-/** Reads CubeACP State from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads CubeACP State from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_state(cubeacp_state_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STATE_ID)) {
@@ -2427,7 +2424,7 @@ static inline icd_status_t cubeacp_request_estimated_attitude_angles(cubeacp_cli
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATED_ATTITUDE_ANGLES_ID);
 }
 
-/** Reads Estimated Attitude Angles from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Estimated Attitude Angles from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_estimated_attitude_angles(
     cubeacp_estimated_attitude_angles_t *message,
     const icd_event_t *event)
@@ -2446,7 +2443,7 @@ static inline icd_status_t cubeacp_request_estimated_angular_rates(cubeacp_clien
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATED_ANGULAR_RATES_ID);
 }
 
-/** Reads Estimated Angular Rates from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Estimated Angular Rates from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_estimated_angular_rates(
     cubeacp_estimated_angular_rates_t *message,
     const icd_event_t *event)
@@ -2465,7 +2462,7 @@ static inline icd_status_t cubeacp_request_satellite_position_eci(cubeacp_client
     return icd_client_request(&client->client, now, CUBEACP_SATELLITE_POSITION_ECI_ID);
 }
 
-/** Reads Satellite Position (ECI) from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Satellite Position (ECI) from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_satellite_position_eci(
     cubeacp_satellite_position_eci_t *message,
     const icd_event_t *event)
@@ -2484,7 +2481,7 @@ static inline icd_status_t cubeacp_request_satellite_velocity_eci(cubeacp_client
     return icd_client_request(&client->client, now, CUBEACP_SATELLITE_VELOCITY_ECI_ID);
 }
 
-/** Reads Satellite Velocity (ECI) from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Satellite Velocity (ECI) from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_satellite_velocity_eci(
     cubeacp_satellite_velocity_eci_t *message,
     const icd_event_t *event)
@@ -2503,7 +2500,7 @@ static inline icd_status_t cubeacp_request_satellite_position_llh(cubeacp_client
     return icd_client_request(&client->client, now, CUBEACP_SATELLITE_POSITION_LLH_ID);
 }
 
-/** Reads Satellite Position (LLH) from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Satellite Position (LLH) from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_satellite_position_llh(
     cubeacp_satellite_position_llh_t *message,
     const icd_event_t *event)
@@ -2522,7 +2519,7 @@ static inline icd_status_t cubeacp_request_magnetic_field_vector(cubeacp_client_
     return icd_client_request(&client->client, now, CUBEACP_MAGNETIC_FIELD_VECTOR_ID);
 }
 
-/** Reads Magnetic Field Vector from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Magnetic Field Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_magnetic_field_vector(
     cubeacp_magnetic_field_vector_t *message,
     const icd_event_t *event)
@@ -2541,7 +2538,7 @@ static inline icd_status_t cubeacp_request_coarse_sun_vector(cubeacp_client_t *c
     return icd_client_request(&client->client, now, CUBEACP_COARSE_SUN_VECTOR_ID);
 }
 
-/** Reads Coarse Sun Vector from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Coarse Sun Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_coarse_sun_vector(
     cubeacp_coarse_sun_vector_t *message,
     const icd_event_t *event)
@@ -2560,7 +2557,7 @@ static inline icd_status_t cubeacp_request_fine_sun_vector(cubeacp_client_t *cli
     return icd_client_request(&client->client, now, CUBEACP_FINE_SUN_VECTOR_ID);
 }
 
-/** Reads Fine Sun Vector from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Fine Sun Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_fine_sun_vector(cubeacp_fine_sun_vector_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_FINE_SUN_VECTOR_ID)) {
@@ -2577,7 +2574,7 @@ static inline icd_status_t cubeacp_request_nadir_vector(cubeacp_client_t *client
     return icd_client_request(&client->client, now, CUBEACP_NADIR_VECTOR_ID);
 }
 
-/** Reads Nadir Vector from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Nadir Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_nadir_vector(cubeacp_nadir_vector_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_NADIR_VECTOR_ID)) {
@@ -2594,7 +2591,7 @@ static inline icd_status_t cubeacp_request_rate_sensor_rates(cubeacp_client_t *c
     return icd_client_request(&client->client, now, CUBEACP_RATE_SENSOR_RATES_ID);
 }
 
-/** Reads Rate Sensor Rates from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Rate Sensor Rates from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_rate_sensor_rates(
     cubeacp_rate_sensor_rates_t *message,
     const icd_event_t *event)
@@ -2613,7 +2610,7 @@ static inline icd_status_t cubeacp_request_wheel_speed(cubeacp_client_t *client,
     return icd_client_request(&client->client, now, CUBEACP_WHEEL_SPEED_ID);
 }
 
-/** Reads Wheel Speed from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Wheel Speed from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_wheel_speed(cubeacp_wheel_speed_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_WHEEL_SPEED_ID)) {
@@ -2630,7 +2627,7 @@ static inline icd_status_t cubeacp_request_magnetorquer_command(cubeacp_client_t
     return icd_client_request(&client->client, now, CUBEACP_MAGNETORQUER_COMMAND_ID);
 }
 
-/** Reads Magnetorquer Command from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Magnetorquer Command from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_magnetorquer_command(
     cubeacp_magnetorquer_command_t *message,
     const icd_event_t *event)
@@ -2649,7 +2646,7 @@ static inline icd_status_t cubeacp_request_wheel_speed_commands(cubeacp_client_t
     return icd_client_request(&client->client, now, CUBEACP_WHEEL_SPEED_COMMANDS_ID);
 }
 
-/** Reads Wheel Speed Commands from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Wheel Speed Commands from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_wheel_speed_commands(
     cubeacp_wheel_speed_commands_t *message,
     const icd_event_t *event)
@@ -2668,9 +2665,7 @@ static inline icd_status_t cubeacp_request_igrf_modelled_magnetic_field_vector(c
     return icd_client_request(&client->client, now, CUBEACP_IGRF_MODELLED_MAGNETIC_FIELD_VECTOR_ID);
 }
 
-/**
- * Reads IGRF Modelled Magnetic Field Vector from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not.
- */
+/** Reads IGRF Modelled Magnetic Field Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_igrf_modelled_magnetic_field_vector(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     const icd_event_t *event)
@@ -2689,7 +2684,7 @@ static inline icd_status_t cubeacp_request_modelled_sun_vector(cubeacp_client_t 
     return icd_client_request(&client->client, now, CUBEACP_MODELLED_SUN_VECTOR_ID);
 }
 
-/** Reads Modelled Sun Vector from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Modelled Sun Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_modelled_sun_vector(
     cubeacp_modelled_sun_vector_t *message,
     const icd_event_t *event)
@@ -2708,7 +2703,7 @@ static inline icd_status_t cubeacp_request_estimated_gyro_bias(cubeacp_client_t 
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATED_GYRO_BIAS_ID);
 }
 
-/** Reads Estimated Gyro Bias from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Estimated Gyro Bias from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_estimated_gyro_bias(
     cubeacp_estimated_gyro_bias_t *message,
     const icd_event_t *event)
@@ -2727,7 +2722,7 @@ static inline icd_status_t cubeacp_request_estimation_innovation_vector(cubeacp_
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATION_INNOVATION_VECTOR_ID);
 }
 
-/** Reads Estimation Innovation Vector from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Estimation Innovation Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_estimation_innovation_vector(
     cubeacp_estimation_innovation_vector_t *message,
     const icd_event_t *event)
@@ -2746,7 +2741,7 @@ static inline icd_status_t cubeacp_request_quaternion_error_vector(cubeacp_clien
     return icd_client_request(&client->client, now, CUBEACP_QUATERNION_ERROR_VECTOR_ID);
 }
 
-/** Reads Quaternion Error Vector from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Quaternion Error Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_quaternion_error_vector(
     cubeacp_quaternion_error_vector_t *message,
     const icd_event_t *event)
@@ -2765,7 +2760,7 @@ static inline icd_status_t cubeacp_request_quaternion_covariance(cubeacp_client_
     return icd_client_request(&client->client, now, CUBEACP_QUATERNION_COVARIANCE_ID);
 }
 
-/** Reads Quaternion Covariance from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Quaternion Covariance from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_quaternion_covariance(
     cubeacp_quaternion_covariance_t *message,
     const icd_event_t *event)
@@ -2784,7 +2779,7 @@ static inline icd_status_t cubeacp_request_angular_rate_covariance(cubeacp_clien
     return icd_client_request(&client->client, now, CUBEACP_ANGULAR_RATE_COVARIANCE_ID);
 }
 
-/** Reads Angular Rate Covariance from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Angular Rate Covariance from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_angular_rate_covariance(
     cubeacp_angular_rate_covariance_t *message,
     const icd_event_t *event)
@@ -2803,7 +2798,7 @@ static inline icd_status_t cubeacp_request_raw_cam2_sensor(cubeacp_client_t *cli
     return icd_client_request(&client->client, now, CUBEACP_RAW_CAM2_SENSOR_ID);
 }
 
-/** Reads Raw Cam2 Sensor from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Raw Cam2 Sensor from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_cam2_sensor(cubeacp_raw_cam2_sensor_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_CAM2_SENSOR_ID)) {
@@ -2820,7 +2815,7 @@ static inline icd_status_t cubeacp_request_raw_cam1_sensor(cubeacp_client_t *cli
     return icd_client_request(&client->client, now, CUBEACP_RAW_CAM1_SENSOR_ID);
 }
 
-/** Reads Raw Cam1 Sensor from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Raw Cam1 Sensor from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_cam1_sensor(cubeacp_raw_cam1_sensor_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_CAM1_SENSOR_ID)) {
@@ -2837,7 +2832,7 @@ static inline icd_status_t cubeacp_request_raw_css_1_to_6(cubeacp_client_t *clie
     return icd_client_request(&client->client, now, CUBEACP_RAW_CSS_1_TO_6_ID);
 }
 
-/** Reads Raw CSS 1 to 6 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Raw CSS 1 to 6 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_css_1_to_6(cubeacp_raw_css_1_to_6_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_CSS_1_TO_6_ID)) {
@@ -2854,7 +2849,7 @@ static inline icd_status_t cubeacp_request_raw_css_7_to_10(cubeacp_client_t *cli
     return icd_client_request(&client->client, now, CUBEACP_RAW_CSS_7_TO_10_ID);
 }
 
-/** Reads Raw CSS 7 to 10 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Raw CSS 7 to 10 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_css_7_to_10(cubeacp_raw_css_7_to_10_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_CSS_7_TO_10_ID)) {
@@ -2871,7 +2866,7 @@ static inline icd_status_t cubeacp_request_raw_magnetometer(cubeacp_client_t *cl
     return icd_client_request(&client->client, now, CUBEACP_RAW_MAGNETOMETER_ID);
 }
 
-/** Reads Raw Magnetometer from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Raw Magnetometer from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_magnetometer(
     cubeacp_raw_magnetometer_t *message,
     const icd_event_t *event)
@@ -2890,7 +2885,7 @@ static inline icd_status_t cubeacp_request_cubesense1_currents(cubeacp_client_t 
     return icd_client_request(&client->client, now, CUBEACP_CUBESENSE1_CURRENTS_ID);
 }
 
-/** Reads CubeSense1 Current Measurements from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads CubeSense1 Current Measurements from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_cubesense1_currents(
     cubeacp_cubesense1_currents_t *message,
     const icd_event_t *event)
@@ -2909,9 +2904,7 @@ static inline icd_status_t cubeacp_request_cubecontrol_currents(cubeacp_client_t
     return icd_client_request(&client->client, now, CUBEACP_CUBECONTROL_CURRENTS_ID);
 }
 
-/**
- * Reads CubeControl Current Measurements from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not.
- */
+/** Reads CubeControl Current Measurements from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_cubecontrol_currents(
     cubeacp_cubecontrol_currents_t *message,
     const icd_event_t *event)
@@ -2930,7 +2923,7 @@ static inline icd_status_t cubeacp_request_wheel_currents(cubeacp_client_t *clie
     return icd_client_request(&client->client, now, CUBEACP_WHEEL_CURRENTS_ID);
 }
 
-/** Reads Wheel Currents from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Wheel Currents from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_wheel_currents(cubeacp_wheel_currents_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_WHEEL_CURRENTS_ID)) {
@@ -2947,7 +2940,7 @@ static inline icd_status_t cubeacp_request_adcs_temperatures(cubeacp_client_t *c
     return icd_client_request(&client->client, now, CUBEACP_ADCS_TEMPERATURES_ID);
 }
 
-/** Reads ADCS Temperatures from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads ADCS Temperatures from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_adcs_temperatures(
     cubeacp_adcs_temperatures_t *message,
     const icd_event_t *event)
@@ -2966,7 +2959,7 @@ static inline icd_status_t cubeacp_request_rate_sensor_temperatures(cubeacp_clie
     return icd_client_request(&client->client, now, CUBEACP_RATE_SENSOR_TEMPERATURES_ID);
 }
 
-/** Reads Rate sensor temperatures from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Rate sensor temperatures from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_rate_sensor_temperatures(
     cubeacp_rate_sensor_temperatures_t *message,
     const icd_event_t *event)
@@ -2985,7 +2978,7 @@ static inline icd_status_t cubeacp_request_raw_gps_status(cubeacp_client_t *clie
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_STATUS_ID);
 }
 
-/** Reads Raw GPS Status from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Raw GPS Status from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_gps_status(cubeacp_raw_gps_status_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_GPS_STATUS_ID)) {
@@ -3002,7 +2995,7 @@ static inline icd_status_t cubeacp_request_raw_gps_time(cubeacp_client_t *client
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_TIME_ID);
 }
 
-/** Reads Raw GPS Time from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Raw GPS Time from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_gps_time(cubeacp_raw_gps_time_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_GPS_TIME_ID)) {
@@ -3019,7 +3012,7 @@ static inline icd_status_t cubeacp_request_raw_gps_x(cubeacp_client_t *client, u
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_X_ID);
 }
 
-/** Reads Raw GPS X from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Raw GPS X from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_gps_x(cubeacp_raw_gps_x_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_GPS_X_ID)) {
@@ -3036,7 +3029,7 @@ static inline icd_status_t cubeacp_request_raw_gps_y(cubeacp_client_t *client, u
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_Y_ID);
 }
 
-/** Reads Raw GPS Y from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Raw GPS Y from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_gps_y(cubeacp_raw_gps_y_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_GPS_Y_ID)) {
@@ -3053,7 +3046,7 @@ static inline icd_status_t cubeacp_request_raw_gps_z(cubeacp_client_t *client, u
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_Z_ID);
 }
 
-/** Reads Raw GPS Z from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Raw GPS Z from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_gps_z(cubeacp_raw_gps_z_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_GPS_Z_ID)) {
@@ -3070,7 +3063,7 @@ static inline icd_status_t cubeacp_request_star_1_body_vector(cubeacp_client_t *
     return icd_client_request(&client->client, now, CUBEACP_STAR_1_BODY_VECTOR_ID);
 }
 
-/** Reads Star 1 Body Vector from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Star 1 Body Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_1_body_vector(
     cubeacp_star_1_body_vector_t *message,
     const icd_event_t *event)
@@ -3089,7 +3082,7 @@ static inline icd_status_t cubeacp_request_star_2_body_vector(cubeacp_client_t *
     return icd_client_request(&client->client, now, CUBEACP_STAR_2_BODY_VECTOR_ID);
 }
 
-/** Reads Star 2 Body Vector from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Star 2 Body Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_2_body_vector(
     cubeacp_star_2_body_vector_t *message,
     const icd_event_t *event)
@@ -3108,7 +3101,7 @@ static inline icd_status_t cubeacp_request_star_3_body_vector(cubeacp_client_t *
     return icd_client_request(&client->client, now, CUBEACP_STAR_3_BODY_VECTOR_ID);
 }
 
-/** Reads Star 3 Body Vector from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Star 3 Body Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_3_body_vector(
     cubeacp_star_3_body_vector_t *message,
     const icd_event_t *event)
@@ -3127,7 +3120,7 @@ static inline icd_status_t cubeacp_request_star_1_orbit_vector(cubeacp_client_t 
     return icd_client_request(&client->client, now, CUBEACP_STAR_1_ORBIT_VECTOR_ID);
 }
 
-/** Reads Star 1 Orbit Vector from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Star 1 Orbit Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_1_orbit_vector(
     cubeacp_star_1_orbit_vector_t *message,
     const icd_event_t *event)
@@ -3146,7 +3139,7 @@ static inline icd_status_t cubeacp_request_star_2_orbit_vector(cubeacp_client_t 
     return icd_client_request(&client->client, now, CUBEACP_STAR_2_ORBIT_VECTOR_ID);
 }
 
-/** Reads Star 2 Orbit Vector from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Star 2 Orbit Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_2_orbit_vector(
     cubeacp_star_2_orbit_vector_t *message,
     const icd_event_t *event)
@@ -3165,7 +3158,7 @@ static inline icd_status_t cubeacp_request_star_3_orbit_vector(cubeacp_client_t 
     return icd_client_request(&client->client, now, CUBEACP_STAR_3_ORBIT_VECTOR_ID);
 }
 
-/** Reads Star 3 Orbit Vector from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Star 3 Orbit Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_3_orbit_vector(
     cubeacp_star_3_orbit_vector_t *message,
     const icd_event_t *event)
@@ -3184,7 +3177,7 @@ static inline icd_status_t cubeacp_request_star_magnitude(cubeacp_client_t *clie
     return icd_client_request(&client->client, now, CUBEACP_STAR_MAGNITUDE_ID);
 }
 
-/** Reads Star Magnitude from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Star Magnitude from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_magnitude(cubeacp_star_magnitude_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STAR_MAGNITUDE_ID)) {
@@ -3201,7 +3194,7 @@ static inline icd_status_t cubeacp_request_star_performance1(cubeacp_client_t *c
     return icd_client_request(&client->client, now, CUBEACP_STAR_PERFORMANCE1_ID);
 }
 
-/** Reads Star Performance1 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Star Performance1 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_performance1(
     cubeacp_star_performance1_t *message,
     const icd_event_t *event)
@@ -3220,7 +3213,7 @@ static inline icd_status_t cubeacp_request_star_timing(cubeacp_client_t *client,
     return icd_client_request(&client->client, now, CUBEACP_STAR_TIMING_ID);
 }
 
-/** Reads Star Timing from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Star Timing from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_timing(cubeacp_star_timing_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STAR_TIMING_ID)) {
@@ -3237,7 +3230,7 @@ static inline icd_status_t cubeacp_request_adcs_state(cubeacp_client_t *client, 
     return icd_client_request(&client->client, now, CUBEACP_ADCS_STATE_ID);
 }
 
-/** Reads ADCS State from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads ADCS State from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_adcs_state(cubeacp_adcs_state_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ADCS_STATE_ID)) {
@@ -3254,7 +3247,7 @@ static inline icd_status_t cubeacp_request_adcs_measurements(cubeacp_client_t *c
     return icd_client_request(&client->client, now, CUBEACP_ADCS_MEASUREMENTS_ID);
 }
 
-/** Reads ADCS Measurements from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads ADCS Measurements from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_adcs_measurements(
     cubeacp_adcs_measurements_t *message,
     const icd_event_t *event)
@@ -3273,7 +3266,7 @@ static inline icd_status_t cubeacp_request_actuator_commands(cubeacp_client_t *c
     return icd_client_request(&client->client, now, CUBEACP_ACTUATOR_COMMANDS_ID);
 }
 
-/** Reads Actuator Commands from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Actuator Commands from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_actuator_commands(
     cubeacp_actuator_commands_t *message,
     const icd_event_t *event)
@@ -3292,7 +3285,7 @@ static inline icd_status_t cubeacp_request_estimation_data(cubeacp_client_t *cli
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATION_DATA_ID);
 }
 
-/** Reads Estimation Data from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Estimation Data from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_estimation_data(cubeacp_estimation_data_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ESTIMATION_DATA_ID)) {
@@ -3309,7 +3302,7 @@ static inline icd_status_t cubeacp_request_raw_sensor_measurements(cubeacp_clien
     return icd_client_request(&client->client, now, CUBEACP_RAW_SENSOR_MEASUREMENTS_ID);
 }
 
-/** Reads Raw Sensor Measurements from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Raw Sensor Measurements from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_sensor_measurements(
     cubeacp_raw_sensor_measurements_t *message,
     const icd_event_t *event)
@@ -3328,9 +3321,7 @@ static inline icd_status_t cubeacp_request_power_and_temperature(cubeacp_client_
     return icd_client_request(&client->client, now, CUBEACP_POWER_AND_TEMPERATURE_ID);
 }
 
-/**
- * Reads Power and Temperature Measurements from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not.
- */
+/** Reads Power and Temperature Measurements from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_power_and_temperature(
     cubeacp_power_and_temperature_t *message,
     const icd_event_t *event)
@@ -3349,7 +3340,7 @@ static inline icd_status_t cubeacp_request_adcs_execution_times(cubeacp_client_t
     return icd_client_request(&client->client, now, CUBEACP_ADCS_EXECUTION_TIMES_ID);
 }
 
-/** Reads Adcs Execution Times from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Adcs Execution Times from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_adcs_execution_times(
     cubeacp_adcs_execution_times_t *message,
     const icd_event_t *event)
@@ -3368,7 +3359,7 @@ static inline icd_status_t cubeacp_request_adcs_misc_currents(cubeacp_client_t *
     return icd_client_request(&client->client, now, CUBEACP_ADCS_MISC_CURRENTS_ID);
 }
 
-/** Reads ADCS Misc Current Measurements from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads ADCS Misc Current Measurements from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_adcs_misc_currents(
     cubeacp_adcs_misc_currents_t *message,
     const icd_event_t *event)
@@ -3387,7 +3378,7 @@ static inline icd_status_t cubeacp_request_fine_angular_rates(cubeacp_client_t *
     return icd_client_request(&client->client, now, CUBEACP_FINE_ANGULAR_RATES_ID);
 }
 
-/** Reads Fine Estimated Angular Rates from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Fine Estimated Angular Rates from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_fine_angular_rates(
     cubeacp_fine_angular_rates_t *message,
     const icd_event_t *event)
@@ -3406,7 +3397,7 @@ static inline icd_status_t cubeacp_request_raw_gps_measurements(cubeacp_client_t
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_MEASUREMENTS_ID);
 }
 
-/** Reads Raw GPS Measurements from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Raw GPS Measurements from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_gps_measurements(
     cubeacp_raw_gps_measurements_t *message,
     const icd_event_t *event)
@@ -3425,7 +3416,7 @@ static inline icd_status_t cubeacp_request_raw_star_tracker(cubeacp_client_t *cl
     return icd_client_request(&client->client, now, CUBEACP_RAW_STAR_TRACKER_ID);
 }
 
-/** Reads Raw Star Tracker from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Raw Star Tracker from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_star_tracker(
     cubeacp_raw_star_tracker_t *message,
     const icd_event_t *event)
@@ -3444,7 +3435,7 @@ static inline icd_status_t cubeacp_request_star_1_raw_data(cubeacp_client_t *cli
     return icd_client_request(&client->client, now, CUBEACP_STAR_1_RAW_DATA_ID);
 }
 
-/** Reads Star 1 Raw Data from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Star 1 Raw Data from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_1_raw_data(cubeacp_star_1_raw_data_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STAR_1_RAW_DATA_ID)) {
@@ -3461,7 +3452,7 @@ static inline icd_status_t cubeacp_request_star_2_raw_data(cubeacp_client_t *cli
     return icd_client_request(&client->client, now, CUBEACP_STAR_2_RAW_DATA_ID);
 }
 
-/** Reads Star 2 Raw Data from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Star 2 Raw Data from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_2_raw_data(cubeacp_star_2_raw_data_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STAR_2_RAW_DATA_ID)) {
@@ -3478,7 +3469,7 @@ static inline icd_status_t cubeacp_request_star_3_raw_data(cubeacp_client_t *cli
     return icd_client_request(&client->client, now, CUBEACP_STAR_3_RAW_DATA_ID);
 }
 
-/** Reads Star 3 Raw Data from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Star 3 Raw Data from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_3_raw_data(cubeacp_star_3_raw_data_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STAR_3_RAW_DATA_ID)) {
@@ -3497,10 +3488,7 @@ static inline icd_status_t cubeacp_request_secondary_magnetometer_raw_measuremen
     return icd_client_request(&client->client, now, CUBEACP_SECONDARY_MAGNETOMETER_RAW_MEASUREMENTS_ID);
 }
 
-/**
- * Reads Secondary Magnetometer Raw Measurements from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does
- * not.
- */
+/** Reads Secondary Magnetometer Raw Measurements from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_secondary_magnetometer_raw_measurements(
     cubeacp_secondary_magnetometer_raw_measurements_t *message,
     const icd_event_t *event)
@@ -3519,7 +3507,7 @@ static inline icd_status_t cubeacp_request_raw_rate_sensor(cubeacp_client_t *cli
     return icd_client_request(&client->client, now, CUBEACP_RAW_RATE_SENSOR_ID);
 }
 
-/** Reads Raw Rate Sensor from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Raw Rate Sensor from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_rate_sensor(cubeacp_raw_rate_sensor_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_RATE_SENSOR_ID)) {
@@ -3536,7 +3524,7 @@ static inline icd_status_t cubeacp_request_estimated_quaternion(cubeacp_client_t
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATED_QUATERNION_ID);
 }
 
-/** Reads Estimated Quaternion from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Estimated Quaternion from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_estimated_quaternion(
     cubeacp_estimated_quaternion_t *message,
     const icd_event_t *event)
@@ -3555,7 +3543,7 @@ static inline icd_status_t cubeacp_request_ecef_position(cubeacp_client_t *clien
     return icd_client_request(&client->client, now, CUBEACP_ECEF_POSITION_ID);
 }
 
-/** Reads ECEF Position from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads ECEF Position from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_ecef_position(cubeacp_ecef_position_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ECEF_POSITION_ID)) {
@@ -3572,7 +3560,7 @@ static inline icd_status_t cubeacp_request_acp_execution_state(cubeacp_client_t 
     return icd_client_request(&client->client, now, CUBEACP_ACP_EXECUTION_STATE_ID);
 }
 
-/** Reads ACP Execution State from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads ACP Execution State from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_acp_execution_state(
     cubeacp_acp_execution_state_t *message,
     const icd_event_t *event)
@@ -3591,7 +3579,7 @@ static inline icd_status_t cubeacp_request_current_adcs_state_2(cubeacp_client_t
     return icd_client_request(&client->client, now, CUBEACP_CURRENT_ADCS_STATE_2_ID);
 }
 
-/** Reads Current ADCS State 2 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Current ADCS State 2 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_current_adcs_state_2(
     cubeacp_current_adcs_state_2_t *message,
     const icd_event_t *event)
@@ -3610,7 +3598,7 @@ static inline icd_status_t cubeacp_request_asgp4_tles(cubeacp_client_t *client, 
     return icd_client_request(&client->client, now, CUBEACP_ASGP4_TLES_ID);
 }
 
-/** Reads ASGP4 TLEs from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads ASGP4 TLEs from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_asgp4_tles(cubeacp_asgp4_tles_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ASGP4_TLES_ID)) {
@@ -3627,7 +3615,7 @@ static inline icd_status_t cubeacp_request_cubestar_estimated_rates(cubeacp_clie
     return icd_client_request(&client->client, now, CUBEACP_CUBESTAR_ESTIMATED_RATES_ID);
 }
 
-/** Reads CubeStar Estimated Rates from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads CubeStar Estimated Rates from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_cubestar_estimated_rates(
     cubeacp_cubestar_estimated_rates_t *message,
     const icd_event_t *event)
@@ -3646,7 +3634,7 @@ static inline icd_status_t cubeacp_request_cubestar_estimated_quaternion(cubeacp
     return icd_client_request(&client->client, now, CUBEACP_CUBESTAR_ESTIMATED_QUATERNION_ID);
 }
 
-/** Reads CubeStar Estimated Quaternion from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads CubeStar Estimated Quaternion from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_cubestar_estimated_quaternion(
     cubeacp_cubestar_estimated_quaternion_t *message,
     const icd_event_t *event)
@@ -3665,7 +3653,7 @@ static inline icd_status_t cubeacp_request_star_performance2(cubeacp_client_t *c
     return icd_client_request(&client->client, now, CUBEACP_STAR_PERFORMANCE2_ID);
 }
 
-/** Reads Star Performance2 from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Star Performance2 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_performance2(
     cubeacp_star_performance2_t *message,
     const icd_event_t *event)
@@ -3684,7 +3672,7 @@ static inline icd_status_t cubeacp_request_cubesense2_currents(cubeacp_client_t 
     return icd_client_request(&client->client, now, CUBEACP_CUBESENSE2_CURRENTS_ID);
 }
 
-/** Reads CubeSense2 Current Measurements from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads CubeSense2 Current Measurements from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_cubesense2_currents(
     cubeacp_cubesense2_currents_t *message,
     const icd_event_t *event)
@@ -3705,10 +3693,7 @@ static inline icd_status_t cubeacp_request_status_of_image_capture_and_save_oper
     return icd_client_request(&client->client, now, CUBEACP_STATUS_OF_IMAGE_CAPTURE_AND_SAVE_OPERATION_ID);
 }
 
-/**
- * Reads Status of Image Capture and Save Operation from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one
- * does not.
- */
+/** Reads Status of Image Capture and Save Operation from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_status_of_image_capture_and_save_operation(
     cubeacp_status_of_image_capture_and_save_operation_t *message,
     const icd_event_t *event)
@@ -3727,7 +3712,7 @@ static inline icd_status_t cubeacp_request_set_magnetorquer_configuration(cubeac
     return icd_client_request(&client->client, now, CUBEACP_SET_MAGNETORQUER_CONFIGURATION_GET_ID);
 }
 
-/** Reads Set Magnetorquer Configuration from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Set Magnetorquer Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_set_magnetorquer_configuration(
     cubeacp_set_magnetorquer_configuration_t *message,
     const icd_event_t *event)
@@ -3746,7 +3731,7 @@ static inline icd_status_t cubeacp_request_set_wheel_configuration(cubeacp_clien
     return icd_client_request(&client->client, now, CUBEACP_SET_WHEEL_CONFIGURATION_GET_ID);
 }
 
-/** Reads Set Wheel Configuration from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Set Wheel Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_set_wheel_configuration(
     cubeacp_set_wheel_configuration_t *message,
     const icd_event_t *event)
@@ -3765,7 +3750,7 @@ static inline icd_status_t cubeacp_request_set_rate_gyro_configuration(cubeacp_c
     return icd_client_request(&client->client, now, CUBEACP_SET_RATE_GYRO_CONFIGURATION_GET_ID);
 }
 
-/** Reads Set Rate Gyro Configuration from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Set Rate Gyro Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_set_rate_gyro_configuration(
     cubeacp_set_rate_gyro_configuration_t *message,
     const icd_event_t *event)
@@ -3784,7 +3769,7 @@ static inline icd_status_t cubeacp_request_css_configuration(cubeacp_client_t *c
     return icd_client_request(&client->client, now, CUBEACP_CSS_CONFIGURATION_GET_ID);
 }
 
-/** Reads CSS Configuration from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads CSS Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_css_configuration(
     cubeacp_css_configuration_t *message,
     const icd_event_t *event)
@@ -3803,7 +3788,7 @@ static inline icd_status_t cubeacp_request_adcs_power_control(cubeacp_client_t *
     return icd_client_request(&client->client, now, CUBEACP_ADCS_POWER_CONTROL_GET_ID);
 }
 
-/** Reads ADCS Power Control from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads ADCS Power Control from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_adcs_power_control(
     cubeacp_adcs_power_control_t *message,
     const icd_event_t *event)
@@ -3822,7 +3807,7 @@ static inline icd_status_t cubeacp_request_commanded_attitude_angles(cubeacp_cli
     return icd_client_request(&client->client, now, CUBEACP_COMMANDED_ATTITUDE_ANGLES_GET_ID);
 }
 
-/** Reads Commanded Attitude Angles from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Commanded Attitude Angles from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_commanded_attitude_angles(
     cubeacp_commanded_attitude_angles_t *message,
     const icd_event_t *event)
@@ -3841,10 +3826,7 @@ static inline icd_status_t cubeacp_request_tracking_controller_target_reference(
     return icd_client_request(&client->client, now, CUBEACP_TRACKING_CONTROLLER_TARGET_REFERENCE_GET_ID);
 }
 
-/**
- * Reads Tracking Controller Target Reference from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does
- * not.
- */
+/** Reads Tracking Controller Target Reference from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_tracking_controller_target_reference(
     cubeacp_tracking_controller_target_reference_t *message,
     const icd_event_t *event)
@@ -3863,7 +3845,7 @@ static inline icd_status_t cubeacp_request_set_star_tracker_configuration(cubeac
     return icd_client_request(&client->client, now, CUBEACP_SET_STAR_TRACKER_CONFIGURATION_GET_ID);
 }
 
-/** Reads Set Star Tracker Configuration from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Set Star Tracker Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_set_star_tracker_configuration(
     cubeacp_set_star_tracker_configuration_t *message,
     const icd_event_t *event)
@@ -3882,7 +3864,7 @@ static inline icd_status_t cubeacp_request_cubesense_configuration(cubeacp_clien
     return icd_client_request(&client->client, now, CUBEACP_CUBESENSE_CONFIGURATION_GET_ID);
 }
 
-/** Reads CubeSense Configuration from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads CubeSense Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_cubesense_configuration(
     cubeacp_cubesense_configuration_t *message,
     const icd_event_t *event)
@@ -3901,7 +3883,7 @@ static inline icd_status_t cubeacp_request_magnetometer_configuration(cubeacp_cl
     return icd_client_request(&client->client, now, CUBEACP_MAGNETOMETER_CONFIGURATION_GET_ID);
 }
 
-/** Reads Magnetometer Configuration from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Magnetometer Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_magnetometer_configuration(
     cubeacp_magnetometer_configuration_t *message,
     const icd_event_t *event)
@@ -3920,10 +3902,7 @@ static inline icd_status_t cubeacp_request_redundant_mag_configuration(cubeacp_c
     return icd_client_request(&client->client, now, CUBEACP_REDUNDANT_MAG_CONFIGURATION_GET_ID);
 }
 
-/**
- * Reads Redundant Magnetometer Configuration from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does
- * not.
- */
+/** Reads Redundant Magnetometer Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_redundant_mag_configuration(
     cubeacp_redundant_mag_configuration_t *message,
     const icd_event_t *event)
@@ -3942,7 +3921,7 @@ static inline icd_status_t cubeacp_request_adcs_configuration(cubeacp_client_t *
     return icd_client_request(&client->client, now, CUBEACP_ADCS_CONFIGURATION_GET_ID);
 }
 
-/** Reads ADCS Configuration from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads ADCS Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_adcs_configuration(
     cubeacp_adcs_configuration_t *message,
     const icd_event_t *event)
@@ -3961,7 +3940,7 @@ static inline icd_status_t cubeacp_request_sgp4_orbit_parameters(cubeacp_client_
     return icd_client_request(&client->client, now, CUBEACP_SGP4_ORBIT_PARAMETERS_GET_ID);
 }
 
-/** Reads SGP4 Orbit Parameters from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads SGP4 Orbit Parameters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_sgp4_orbit_parameters(
     cubeacp_sgp4_orbit_parameters_t *message,
     const icd_event_t *event)
@@ -3980,9 +3959,7 @@ static inline icd_status_t cubeacp_request_set_detumbling_control_parameters(cub
     return icd_client_request(&client->client, now, CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_GET_ID);
 }
 
-/**
- * Reads Set Detumbling Control Parameters from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not.
- */
+/** Reads Set Detumbling Control Parameters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_set_detumbling_control_parameters(
     cubeacp_set_detumbling_control_parameters_t *message,
     const icd_event_t *event)
@@ -4001,7 +3978,7 @@ static inline icd_status_t cubeacp_request_set_y_wheel_control_parameters(cubeac
     return icd_client_request(&client->client, now, CUBEACP_SET_Y_WHEEL_CONTROL_PARAMETERS_GET_ID);
 }
 
-/** Reads Set Y-Wheel Control Parameters from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Set Y-Wheel Control Parameters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_set_y_wheel_control_parameters(
     cubeacp_set_y_wheel_control_parameters_t *message,
     const icd_event_t *event)
@@ -4020,10 +3997,7 @@ static inline icd_status_t cubeacp_request_set_reaction_wheel_control_parameters
     return icd_client_request(&client->client, now, CUBEACP_SET_REACTION_WHEEL_CONTROL_PARAMETERS_GET_ID);
 }
 
-/**
- * Reads Set Reaction Wheel Control Parameters from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does
- * not.
- */
+/** Reads Set Reaction Wheel Control Parameters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_set_reaction_wheel_control_parameters(
     cubeacp_set_reaction_wheel_control_parameters_t *message,
     const icd_event_t *event)
@@ -4044,10 +4018,7 @@ static inline icd_status_t cubeacp_request_set_tracking_controller_gain_paramete
     return icd_client_request(&client->client, now, CUBEACP_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS_GET_ID);
 }
 
-/**
- * Reads Set Tracking Controller Gain Parameters from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does
- * not.
- */
+/** Reads Set Tracking Controller Gain Parameters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_set_tracking_controller_gain_parameters(
     cubeacp_set_tracking_controller_gain_parameters_t *message,
     const icd_event_t *event)
@@ -4066,7 +4037,7 @@ static inline icd_status_t cubeacp_request_moment_of_inertia_matrix(cubeacp_clie
     return icd_client_request(&client->client, now, CUBEACP_MOMENT_OF_INERTIA_MATRIX_GET_ID);
 }
 
-/** Reads Moment of Inertia Matrix from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Moment of Inertia Matrix from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_moment_of_inertia_matrix(
     cubeacp_moment_of_inertia_matrix_t *message,
     const icd_event_t *event)
@@ -4085,7 +4056,7 @@ static inline icd_status_t cubeacp_request_estimation_parameters(cubeacp_client_
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATION_PARAMETERS_GET_ID);
 }
 
-/** Reads Estimation Parameters from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Estimation Parameters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_estimation_parameters(
     cubeacp_estimation_parameters_t *message,
     const icd_event_t *event)
@@ -4104,7 +4075,7 @@ static inline icd_status_t cubeacp_request_adcs_system_configuration(cubeacp_cli
     return icd_client_request(&client->client, now, CUBEACP_ADCS_SYSTEM_CONFIGURATION_GET_ID);
 }
 
-/** Reads ADCS System Configuration from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads ADCS System Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_adcs_system_configuration(
     cubeacp_adcs_system_configuration_t *message,
     const icd_event_t *event)
@@ -4125,10 +4096,7 @@ static inline icd_status_t cubeacp_request_user_coded_controller_and_estimator_p
     return icd_client_request(&client->client, now, CUBEACP_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS_GET_ID);
 }
 
-/**
- * Reads User-coded Controller and Estimator Parameters from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this
- * one does not.
- */
+/** Reads User-coded Controller and Estimator Parameters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_user_coded_controller_and_estimator_parameters(
     cubeacp_user_coded_controller_and_estimator_parameters_t *message,
     const icd_event_t *event)
@@ -4147,7 +4115,7 @@ static inline icd_status_t cubeacp_request_augmented_sgp4_parameters(cubeacp_cli
     return icd_client_request(&client->client, now, CUBEACP_AUGMENTED_SGP4_PARAMETERS_GET_ID);
 }
 
-/** Reads Augmented-SGP4 Parameters from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads Augmented-SGP4 Parameters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_augmented_sgp4_parameters(
     cubeacp_augmented_sgp4_parameters_t *message,
     const icd_event_t *event)
@@ -4166,7 +4134,7 @@ static inline icd_status_t cubeacp_request_sd_log1_configuration(cubeacp_client_
     return icd_client_request(&client->client, now, CUBEACP_SD_LOG1_CONFIGURATION_GET_ID);
 }
 
-/** Reads SD Log1 Configuration from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads SD Log1 Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_sd_log1_configuration(
     cubeacp_sd_log1_configuration_t *message,
     const icd_event_t *event)
@@ -4185,7 +4153,7 @@ static inline icd_status_t cubeacp_request_sd_log2_configuration(cubeacp_client_
     return icd_client_request(&client->client, now, CUBEACP_SD_LOG2_CONFIGURATION_GET_ID);
 }
 
-/** Reads SD Log2 Configuration from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads SD Log2 Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_sd_log2_configuration(
     cubeacp_sd_log2_configuration_t *message,
     const icd_event_t *event)
@@ -4204,7 +4172,7 @@ static inline icd_status_t cubeacp_request_uart_log_configuration(cubeacp_client
     return icd_client_request(&client->client, now, CUBEACP_UART_LOG_CONFIGURATION_GET_ID);
 }
 
-/** Reads UART Log Configuration from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not. */
+/** Reads UART Log Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_uart_log_configuration(
     cubeacp_uart_log_configuration_t *message,
     const icd_event_t *event)
@@ -4223,9 +4191,7 @@ static inline icd_status_t cubeacp_request_inertial_pointing_reference_vector(cu
     return icd_client_request(&client->client, now, CUBEACP_INERTIAL_POINTING_REFERENCE_VECTOR_GET_ID);
 }
 
-/**
- * Reads Inertial Pointing Reference Vector from the event that tells of it; ICD_ERROR_UNKNOWN_ID if this one does not.
- */
+/** Reads Inertial Pointing Reference Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_inertial_pointing_reference_vector(
     cubeacp_inertial_pointing_reference_vector_t *message,
     const icd_event_t *event)

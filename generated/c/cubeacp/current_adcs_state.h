@@ -147,13 +147,13 @@ typedef struct {
     bool star_tracker_overcurrent_detected;
 } cubeacp_current_adcs_state_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void cubeacp_current_adcs_state_init(cubeacp_current_adcs_state_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
+/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t cubeacp_current_adcs_state_decode(
     cubeacp_current_adcs_state_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -319,7 +319,7 @@ static inline icd_status_t cubeacp_current_adcs_state_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *cubeacp_current_adcs_state_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

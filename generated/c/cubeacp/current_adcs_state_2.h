@@ -75,13 +75,13 @@ typedef struct {
     bool rate_sensor_failure;
 } cubeacp_current_adcs_state_2_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void cubeacp_current_adcs_state_2_init(cubeacp_current_adcs_state_2_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
+/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t cubeacp_current_adcs_state_2_decode(
     cubeacp_current_adcs_state_2_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -172,7 +172,7 @@ static inline icd_status_t cubeacp_current_adcs_state_2_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *cubeacp_current_adcs_state_2_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -109,13 +109,13 @@ typedef struct {
     uint8_t cam2_period;
 } cubeacp_estimation_parameters_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void cubeacp_estimation_parameters_init(cubeacp_estimation_parameters_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 31 bytes. */
+/** Decodes a frame of 31 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t cubeacp_estimation_parameters_decode(
     cubeacp_estimation_parameters_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -213,7 +213,7 @@ static inline icd_status_t cubeacp_estimation_parameters_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *cubeacp_estimation_parameters_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -31,14 +31,14 @@ typedef struct {
     int16_t field_z;
 } cubeacp_igrf_modelled_magnetic_field_vector_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void cubeacp_igrf_modelled_magnetic_field_vector_init(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
+/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_decode(
     cubeacp_igrf_modelled_magnetic_field_vector_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -53,7 +53,7 @@ static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 6 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_encode(
     const cubeacp_igrf_modelled_magnetic_field_vector_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -68,7 +68,7 @@ static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *cubeacp_igrf_modelled_magnetic_field_vector_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -30,13 +30,13 @@ typedef struct {
     uint8_t output_file_counter;
 } cubeacp_jpg_conversion_progress_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void cubeacp_jpg_conversion_progress_init(cubeacp_jpg_conversion_progress_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 3 bytes. */
+/** Decodes a frame of 3 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t cubeacp_jpg_conversion_progress_decode(
     cubeacp_jpg_conversion_progress_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -51,7 +51,7 @@ static inline icd_status_t cubeacp_jpg_conversion_progress_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 3 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 3 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t cubeacp_jpg_conversion_progress_encode(
     const cubeacp_jpg_conversion_progress_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -66,7 +66,7 @@ static inline icd_status_t cubeacp_jpg_conversion_progress_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *cubeacp_jpg_conversion_progress_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

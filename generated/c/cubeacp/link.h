@@ -25,7 +25,7 @@
 /** Bytes of a bit for each packet of such a block. */
 #define CUBEACP_BLOCK_BITMAP_BYTES 128u
 
-/** What the wire layer needs to know about CubeACP. */
+/** Facts of the link of CubeACP. */
 ICDGEN_API const icd_link_t *cubeacp_link(void);
 
 #ifndef ICDGEN_SHARED

@@ -45,13 +45,13 @@ typedef struct {
     float product_of_inertia_iyz;
 } cubeacp_moment_of_inertia_matrix_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void cubeacp_moment_of_inertia_matrix_init(cubeacp_moment_of_inertia_matrix_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 24 bytes. */
+/** Decodes a frame of 24 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t cubeacp_moment_of_inertia_matrix_decode(
     cubeacp_moment_of_inertia_matrix_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -69,7 +69,7 @@ static inline icd_status_t cubeacp_moment_of_inertia_matrix_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 24 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 24 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t cubeacp_moment_of_inertia_matrix_encode(
     const cubeacp_moment_of_inertia_matrix_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -87,7 +87,7 @@ static inline icd_status_t cubeacp_moment_of_inertia_matrix_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *cubeacp_moment_of_inertia_matrix_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -113,13 +113,13 @@ typedef struct {
     int16_t z_rate_sensor_temperature;
 } cubeacp_power_and_temperature_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void cubeacp_power_and_temperature_init(cubeacp_power_and_temperature_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 38 bytes. */
+/** Decodes a frame of 38 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t cubeacp_power_and_temperature_decode(
     cubeacp_power_and_temperature_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -138,7 +138,7 @@ static inline icd_status_t cubeacp_power_and_temperature_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 38 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 38 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t cubeacp_power_and_temperature_encode(
     const cubeacp_power_and_temperature_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -157,7 +157,7 @@ static inline icd_status_t cubeacp_power_and_temperature_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *cubeacp_power_and_temperature_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

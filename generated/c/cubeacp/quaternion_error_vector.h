@@ -28,13 +28,13 @@ typedef struct {
     int16_t quaternion_error_q3;
 } cubeacp_quaternion_error_vector_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void cubeacp_quaternion_error_vector_init(cubeacp_quaternion_error_vector_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
+/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t cubeacp_quaternion_error_vector_decode(
     cubeacp_quaternion_error_vector_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -49,7 +49,7 @@ static inline icd_status_t cubeacp_quaternion_error_vector_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 6 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t cubeacp_quaternion_error_vector_encode(
     const cubeacp_quaternion_error_vector_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -64,7 +64,7 @@ static inline icd_status_t cubeacp_quaternion_error_vector_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *cubeacp_quaternion_error_vector_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -40,13 +40,13 @@ typedef struct {
     int16_t z_rate_sensor_temperature;
 } cubeacp_rate_sensor_temperatures_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void cubeacp_rate_sensor_temperatures_init(cubeacp_rate_sensor_temperatures_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
+/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t cubeacp_rate_sensor_temperatures_decode(
     cubeacp_rate_sensor_temperatures_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -61,7 +61,7 @@ static inline icd_status_t cubeacp_rate_sensor_temperatures_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 6 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t cubeacp_rate_sensor_temperatures_encode(
     const cubeacp_rate_sensor_temperatures_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -76,7 +76,7 @@ static inline icd_status_t cubeacp_rate_sensor_temperatures_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *cubeacp_rate_sensor_temperatures_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

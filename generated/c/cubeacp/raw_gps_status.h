@@ -46,13 +46,13 @@ typedef struct {
     uint8_t response_message_for_gps_log_setup;
 } cubeacp_raw_gps_status_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void cubeacp_raw_gps_status_init(cubeacp_raw_gps_status_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
+/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t cubeacp_raw_gps_status_decode(
     cubeacp_raw_gps_status_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -70,7 +70,7 @@ static inline icd_status_t cubeacp_raw_gps_status_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 6 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t cubeacp_raw_gps_status_encode(
     const cubeacp_raw_gps_status_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -88,7 +88,7 @@ static inline icd_status_t cubeacp_raw_gps_status_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *cubeacp_raw_gps_status_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -113,13 +113,13 @@ typedef struct {
     int16_t rate_z;
 } cubeacp_raw_sensor_measurements_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void cubeacp_raw_sensor_measurements_init(cubeacp_raw_sensor_measurements_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 34 bytes. */
+/** Decodes a frame of 34 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t cubeacp_raw_sensor_measurements_decode(
     cubeacp_raw_sensor_measurements_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -144,7 +144,7 @@ static inline icd_status_t cubeacp_raw_sensor_measurements_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 34 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 34 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t cubeacp_raw_sensor_measurements_encode(
     const cubeacp_raw_sensor_measurements_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -169,7 +169,7 @@ static inline icd_status_t cubeacp_raw_sensor_measurements_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *cubeacp_raw_sensor_measurements_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -33,13 +33,13 @@ typedef struct {
     uint16_t timeout;
 } cubeacp_set_attitude_control_mode_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void cubeacp_set_attitude_control_mode_init(cubeacp_set_attitude_control_mode_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 3 bytes. */
+/** Decodes a frame of 3 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t cubeacp_set_attitude_control_mode_decode(
     cubeacp_set_attitude_control_mode_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -53,7 +53,7 @@ static inline icd_status_t cubeacp_set_attitude_control_mode_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 3 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 3 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t cubeacp_set_attitude_control_mode_encode(
     const cubeacp_set_attitude_control_mode_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -67,7 +67,7 @@ static inline icd_status_t cubeacp_set_attitude_control_mode_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *cubeacp_set_attitude_control_mode_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

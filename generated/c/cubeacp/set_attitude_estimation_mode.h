@@ -22,13 +22,13 @@ typedef struct {
     cubeacp_estim_mode_select_t attitude_estimation_mode;
 } cubeacp_set_attitude_estimation_mode_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void cubeacp_set_attitude_estimation_mode_init(cubeacp_set_attitude_estimation_mode_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 1 byte. */
+/** Decodes a frame of 1 byte; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t cubeacp_set_attitude_estimation_mode_decode(
     cubeacp_set_attitude_estimation_mode_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -41,7 +41,7 @@ static inline icd_status_t cubeacp_set_attitude_estimation_mode_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 1 byte; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 1 byte; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t cubeacp_set_attitude_estimation_mode_encode(
     const cubeacp_set_attitude_estimation_mode_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -54,7 +54,7 @@ static inline icd_status_t cubeacp_set_attitude_estimation_mode_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *cubeacp_set_attitude_estimation_mode_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

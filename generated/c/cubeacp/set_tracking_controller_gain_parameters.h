@@ -48,14 +48,14 @@ typedef struct {
     cubeacp_axis_select_t target_tracking_facet;
 } cubeacp_set_tracking_controller_gain_parameters_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void cubeacp_set_tracking_controller_gain_parameters_init(
     cubeacp_set_tracking_controller_gain_parameters_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 13 bytes. */
+/** Decodes a frame of 13 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t cubeacp_set_tracking_controller_gain_parameters_decode(
     cubeacp_set_tracking_controller_gain_parameters_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -71,7 +71,7 @@ static inline icd_status_t cubeacp_set_tracking_controller_gain_parameters_decod
     return ICD_OK;
 }
 
-/** Writes a frame of 13 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 13 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t cubeacp_set_tracking_controller_gain_parameters_encode(
     const cubeacp_set_tracking_controller_gain_parameters_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -87,7 +87,7 @@ static inline icd_status_t cubeacp_set_tracking_controller_gain_parameters_encod
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *cubeacp_set_tracking_controller_gain_parameters_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

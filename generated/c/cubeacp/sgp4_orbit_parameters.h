@@ -45,13 +45,13 @@ typedef struct {
     double epoch;
 } cubeacp_sgp4_orbit_parameters_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void cubeacp_sgp4_orbit_parameters_init(cubeacp_sgp4_orbit_parameters_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 64 bytes. */
+/** Decodes a frame of 64 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t cubeacp_sgp4_orbit_parameters_decode(
     cubeacp_sgp4_orbit_parameters_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -64,7 +64,7 @@ static inline icd_status_t cubeacp_sgp4_orbit_parameters_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 64 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 64 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t cubeacp_sgp4_orbit_parameters_encode(
     const cubeacp_sgp4_orbit_parameters_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -77,7 +77,7 @@ static inline icd_status_t cubeacp_sgp4_orbit_parameters_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *cubeacp_sgp4_orbit_parameters_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

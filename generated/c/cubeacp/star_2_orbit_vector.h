@@ -38,13 +38,13 @@ typedef struct {
     int16_t star2_orbit_z;
 } cubeacp_star_2_orbit_vector_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void cubeacp_star_2_orbit_vector_init(cubeacp_star_2_orbit_vector_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
+/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t cubeacp_star_2_orbit_vector_decode(
     cubeacp_star_2_orbit_vector_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -59,7 +59,7 @@ static inline icd_status_t cubeacp_star_2_orbit_vector_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 6 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t cubeacp_star_2_orbit_vector_encode(
     const cubeacp_star_2_orbit_vector_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -74,7 +74,7 @@ static inline icd_status_t cubeacp_star_2_orbit_vector_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *cubeacp_star_2_orbit_vector_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

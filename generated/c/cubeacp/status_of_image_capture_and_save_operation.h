@@ -30,14 +30,14 @@ typedef struct {
     cubeacp_im_save_status_t status;
 } cubeacp_status_of_image_capture_and_save_operation_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void cubeacp_status_of_image_capture_and_save_operation_init(
     cubeacp_status_of_image_capture_and_save_operation_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 2 bytes. */
+/** Decodes a frame of 2 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t cubeacp_status_of_image_capture_and_save_operation_decode(
     cubeacp_status_of_image_capture_and_save_operation_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -51,7 +51,7 @@ static inline icd_status_t cubeacp_status_of_image_capture_and_save_operation_de
     return ICD_OK;
 }
 
-/** Writes a frame of 2 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 2 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t cubeacp_status_of_image_capture_and_save_operation_encode(
     const cubeacp_status_of_image_capture_and_save_operation_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -65,7 +65,7 @@ static inline icd_status_t cubeacp_status_of_image_capture_and_save_operation_en
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *cubeacp_status_of_image_capture_and_save_operation_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

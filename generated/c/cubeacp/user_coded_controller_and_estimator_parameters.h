@@ -33,14 +33,14 @@ typedef struct {
     uint8_t user_coded_estimator_settings[48];
 } cubeacp_user_coded_controller_and_estimator_parameters_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void cubeacp_user_coded_controller_and_estimator_parameters_init(
     cubeacp_user_coded_controller_and_estimator_parameters_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 96 bytes. */
+/** Decodes a frame of 96 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t cubeacp_user_coded_controller_and_estimator_parameters_decode(
     cubeacp_user_coded_controller_and_estimator_parameters_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -54,7 +54,7 @@ static inline icd_status_t cubeacp_user_coded_controller_and_estimator_parameter
     return ICD_OK;
 }
 
-/** Writes a frame of 96 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 96 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t cubeacp_user_coded_controller_and_estimator_parameters_encode(
     const cubeacp_user_coded_controller_and_estimator_parameters_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -68,7 +68,7 @@ static inline icd_status_t cubeacp_user_coded_controller_and_estimator_parameter
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *cubeacp_user_coded_controller_and_estimator_parameters_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -46,13 +46,13 @@ typedef struct {
     bool data_valid;
 } cubemag_primary_magnetometer_measurement_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void cubemag_primary_magnetometer_measurement_init(cubemag_primary_magnetometer_measurement_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 13 bytes. */
+/** Decodes a frame of 13 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t cubemag_primary_magnetometer_measurement_decode(
     cubemag_primary_magnetometer_measurement_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -68,7 +68,7 @@ static inline icd_status_t cubemag_primary_magnetometer_measurement_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 13 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 13 bytes, reserved bits 0; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t cubemag_primary_magnetometer_measurement_encode(
     const cubemag_primary_magnetometer_measurement_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -84,7 +84,7 @@ static inline icd_status_t cubemag_primary_magnetometer_measurement_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *cubemag_primary_magnetometer_measurement_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -31,13 +31,13 @@ typedef struct {
     bool motor_power_switch;
 } cubewheel_motor_power_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void cubewheel_motor_power_init(cubewheel_motor_power_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 1 byte. */
+/** Decodes a frame of 1 byte; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t cubewheel_motor_power_decode(
     cubewheel_motor_power_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -50,7 +50,7 @@ static inline icd_status_t cubewheel_motor_power_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 1 byte, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 1 byte, reserved bits 0; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t cubewheel_motor_power_encode(
     const cubewheel_motor_power_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -63,7 +63,7 @@ static inline icd_status_t cubewheel_motor_power_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *cubewheel_motor_power_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -37,13 +37,13 @@ typedef struct {
     cubewheel_wheel_error_state_t wheel_error_state;
 } cubewheel_wheel_speed_t;
 
-/** Makes every raw value 0. */
+/** Sets all raw values to 0. */
 static inline void cubewheel_wheel_speed_init(cubewheel_wheel_speed_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 5 bytes. */
+/** Decodes a frame of 5 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
 static inline icd_status_t cubewheel_wheel_speed_decode(
     cubewheel_wheel_speed_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -57,7 +57,7 @@ static inline icd_status_t cubewheel_wheel_speed_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 5 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Encodes a frame of 5 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
 static inline icd_status_t cubewheel_wheel_speed_encode(
     const cubewheel_wheel_speed_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -71,7 +71,7 @@ static inline icd_status_t cubewheel_wheel_speed_encode(
     return ICD_OK;
 }
 
-/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+/** Fields in the order of the ICD; sets `count` to their number. */
 static inline const icd_field_t *cubewheel_wheel_speed_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

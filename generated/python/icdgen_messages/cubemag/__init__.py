@@ -64,9 +64,9 @@ ENUMS: dict[str, str] = {
 }
 
 TELECOMMANDS = _lazy.Messages(globals(), NAME, "telecommand", _TELECOMMANDS)
-"""What can be sent, by id."""
+"""Telecommands by id."""
 TELEMETRY = _lazy.Messages(globals(), NAME, "telemetry", _TELEMETRY)
-"""What can be requested, by id."""
+"""Telemetry by id."""
 
 
 def decode_telecommand(id: int, data: _lazy.Buffer) -> _lazy.Message:

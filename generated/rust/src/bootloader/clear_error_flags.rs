@@ -39,7 +39,7 @@ use crate::support::{message, Error};
 pub struct ClearErrorFlags {}
 
 impl ClearErrorFlags {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Clear Error Flags";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 0;

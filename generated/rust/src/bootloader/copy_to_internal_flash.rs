@@ -43,7 +43,7 @@ pub struct CopyToInternalFlash {
 }
 
 impl CopyToInternalFlash {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Copy Program to Internal Flash";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 2;

@@ -34,7 +34,7 @@ pub struct CopyToInternalFlashProgress {
 }
 
 impl CopyToInternalFlashProgress {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Copy To Internal Flash Progress";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;

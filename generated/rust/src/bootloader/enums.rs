@@ -40,7 +40,7 @@ impl BootSetProgramsList {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -180,7 +180,7 @@ impl ProgramsList {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {

@@ -59,7 +59,7 @@ pub use crate::wire::links::bootloader::{LINK, LONGEST};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Node {}
 
-/// What the node answers when asked for its type.
+/// Type that the node reports.
 pub const NODE_TYPE: u8 = 110;
 /// Version of the interface described here.
 pub const INTERFACE_VERSION: u8 = 3;
@@ -396,7 +396,7 @@ impl Telecommand {
         }
     }
 
-    /// What the ICD calls it.
+    /// Name in the ICD.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -835,7 +835,7 @@ impl Telemetry {
         }
     }
 
-    /// What the ICD calls it.
+    /// Name in the ICD.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {

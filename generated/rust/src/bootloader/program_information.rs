@@ -55,7 +55,7 @@ pub struct ProgramInformation {
 }
 
 impl ProgramInformation {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Program Information";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 8;

@@ -27,7 +27,7 @@ pub struct ReadProgramInformation {
 }
 
 impl ReadProgramInformation {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Read Program Information";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;

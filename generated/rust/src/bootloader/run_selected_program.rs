@@ -27,7 +27,7 @@ use crate::support::{message, Error};
 pub struct RunSelectedProgram {}
 
 impl RunSelectedProgram {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Run Selected Program";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 0;

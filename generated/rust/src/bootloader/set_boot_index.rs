@@ -31,7 +31,7 @@ pub struct SetBootIndex {
 }
 
 impl SetBootIndex {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Set Boot Index";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;

@@ -24,7 +24,7 @@ use crate::support::{message, Error};
 pub struct AdvanceFileListReadPointer {}
 
 impl AdvanceFileListReadPointer {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Advance File List Read Pointer";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 0;

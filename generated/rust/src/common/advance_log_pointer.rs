@@ -28,7 +28,7 @@ use crate::support::{message, Error};
 pub struct AdvanceLogPointer {}
 
 impl AdvanceLogPointer {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Advance Log Pointer";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 0;

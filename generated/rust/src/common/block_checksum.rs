@@ -35,7 +35,7 @@ pub struct BlockChecksum {
 }
 
 impl BlockChecksum {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Block Checksum";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 2;

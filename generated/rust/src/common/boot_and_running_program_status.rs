@@ -65,7 +65,7 @@ pub struct BootAndRunningProgramStatus {
 }
 
 impl BootAndRunningProgramStatus {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Boot And Running Program Status";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

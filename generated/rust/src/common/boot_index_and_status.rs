@@ -34,7 +34,7 @@ pub struct BootIndexAndStatus {
 }
 
 impl BootIndexAndStatus {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Boot Index and Status";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 2;

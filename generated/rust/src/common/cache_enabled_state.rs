@@ -29,7 +29,7 @@ pub struct CacheEnabledState {
 }
 
 impl CacheEnabledState {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Cache enabled state";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;

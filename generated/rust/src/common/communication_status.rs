@@ -101,7 +101,7 @@ pub struct CommunicationStatus {
 }
 
 impl CommunicationStatus {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Communication Status";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

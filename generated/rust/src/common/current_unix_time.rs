@@ -36,7 +36,7 @@ pub struct CurrentUnixTime {
 }
 
 impl CurrentUnixTime {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Current Unix Time";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

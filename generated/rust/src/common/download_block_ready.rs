@@ -46,7 +46,7 @@ pub struct DownloadBlockReady {
 }
 
 impl DownloadBlockReady {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Download Block Ready";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 5;

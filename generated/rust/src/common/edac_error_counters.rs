@@ -43,7 +43,7 @@ pub struct EdacErrorCounters {
 }
 
 impl EdacErrorCounters {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "EDAC Error Counters";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

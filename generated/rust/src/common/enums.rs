@@ -52,7 +52,7 @@ impl FileType {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -190,7 +190,7 @@ impl FileUploadDestination {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -347,7 +347,7 @@ impl ResetCause {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -466,7 +466,7 @@ impl BootCause {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -539,7 +539,7 @@ impl BootProgramsList {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -633,7 +633,7 @@ impl BootStatus {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -717,7 +717,7 @@ impl TcErrorReason {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {

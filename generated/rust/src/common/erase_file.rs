@@ -43,7 +43,7 @@ pub struct EraseFile {
 }
 
 impl EraseFile {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Erase File";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 3;

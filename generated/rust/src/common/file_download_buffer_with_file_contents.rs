@@ -55,7 +55,7 @@ pub struct FileDownloadBufferWithFileContents {
 }
 
 impl FileDownloadBufferWithFileContents {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "File Download Buffer with File Contents";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 22;

@@ -74,7 +74,7 @@ pub struct FileInformation {
 }
 
 impl FileInformation {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "File Information";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 12;

@@ -51,7 +51,7 @@ pub struct FileUploadPacket {
 }
 
 impl FileUploadPacket {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "File Upload Packet";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 22;

@@ -46,7 +46,7 @@ pub struct FinalizeUploadBlock {
 }
 
 impl FinalizeUploadBlock {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Finalize Upload Block";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 7;

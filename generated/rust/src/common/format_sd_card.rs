@@ -31,7 +31,7 @@ pub struct FormatSdCard {
 }
 
 impl FormatSdCard {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Format SD card";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;

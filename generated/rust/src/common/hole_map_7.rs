@@ -43,7 +43,7 @@ pub struct HoleMap7 {
 }
 
 impl HoleMap7 {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Hole Map 7";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 16;

@@ -43,7 +43,7 @@ pub struct HoleMap8 {
 }
 
 impl HoleMap8 {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Hole Map 8";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 16;

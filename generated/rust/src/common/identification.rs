@@ -61,7 +61,7 @@ pub struct Identification {
 }
 
 impl Identification {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Identification";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 8;

@@ -44,7 +44,7 @@ pub struct InitializeUploadComplete {
 }
 
 impl InitializeUploadComplete {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Initialize Upload Complete";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;

@@ -48,7 +48,7 @@ pub struct InitiateDownloadBurst {
 }
 
 impl InitiateDownloadBurst {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Initiate Download Burst";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 2;

@@ -42,7 +42,7 @@ pub struct InitiateFileUpload {
 }
 
 impl InitiateFileUpload {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Initiate File Upload";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 2;

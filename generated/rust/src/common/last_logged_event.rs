@@ -43,7 +43,7 @@ pub struct LastLoggedEvent {
 }
 
 impl LastLoggedEvent {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Last Logged Event";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

@@ -56,7 +56,7 @@ pub struct LoadFileDownloadBlock {
 }
 
 impl LoadFileDownloadBlock {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Load File Download Block";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 8;

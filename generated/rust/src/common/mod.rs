@@ -440,7 +440,7 @@ impl Telecommand {
         }
     }
 
-    /// What the ICD calls it.
+    /// Name in the ICD.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -833,7 +833,7 @@ impl Telemetry {
         }
     }
 
-    /// What the ICD calls it.
+    /// Name in the ICD.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {

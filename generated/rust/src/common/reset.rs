@@ -41,7 +41,7 @@ pub struct Reset {
 }
 
 impl Reset {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Reset";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;

@@ -21,7 +21,7 @@ use crate::support::{message, Error};
 pub struct ResetFileListReadPointer {}
 
 impl ResetFileListReadPointer {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Reset File List Read Pointer";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 0;

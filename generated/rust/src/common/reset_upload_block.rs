@@ -29,7 +29,7 @@ use crate::support::{message, Error};
 pub struct ResetUploadBlock {}
 
 impl ResetUploadBlock {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Reset Upload Block";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 0;

@@ -37,7 +37,7 @@ pub struct SdCardFormatEraseProgress {
 }
 
 impl SdCardFormatEraseProgress {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "SD card format/erase progress";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;

@@ -31,7 +31,7 @@ pub struct SramLatchupCounters {
 }
 
 impl SramLatchupCounters {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "SRAM Latchup counters";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

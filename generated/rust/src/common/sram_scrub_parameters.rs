@@ -30,7 +30,7 @@ pub struct SramScrubParameters {
 }
 
 impl SramScrubParameters {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "SRAM Scrub Parameters";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 2;

@@ -69,7 +69,7 @@ pub struct TelecommandAcknowledge {
 }
 
 impl TelecommandAcknowledge {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Telecommand Acknowledge";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 4;

@@ -50,7 +50,7 @@ pub struct UnixTimeSaveToFlash {
 }
 
 impl UnixTimeSaveToFlash {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Unix Time Save to Flash";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 2;

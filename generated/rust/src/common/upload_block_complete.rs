@@ -53,7 +53,7 @@ pub struct UploadBlockComplete {
 }
 
 impl UploadBlockComplete {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Upload Block Complete";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;

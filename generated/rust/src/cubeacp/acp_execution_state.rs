@@ -32,7 +32,7 @@ pub struct AcpExecutionState {
 }
 
 impl AcpExecutionState {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "ACP Execution State";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 3;

@@ -67,7 +67,7 @@ pub struct ActuatorCommands {
 }
 
 impl ActuatorCommands {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Actuator Commands";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 12;

@@ -744,7 +744,7 @@ pub struct AdcsConfiguration {
 }
 
 impl AdcsConfiguration {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "ADCS Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 504;

@@ -37,7 +37,7 @@ pub struct AdcsExecutionTimes {
 }
 
 impl AdcsExecutionTimes {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Adcs Execution Times";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 8;

@@ -146,7 +146,7 @@ pub struct AdcsMeasurements {
 }
 
 impl AdcsMeasurements {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "ADCS Measurements";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 72;

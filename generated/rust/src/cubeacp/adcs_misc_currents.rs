@@ -45,7 +45,7 @@ pub struct AdcsMiscCurrents {
 }
 
 impl AdcsMiscCurrents {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "ADCS Misc Current Measurements";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

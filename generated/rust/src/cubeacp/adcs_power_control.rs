@@ -84,7 +84,7 @@ pub struct AdcsPowerControl {
 }
 
 impl AdcsPowerControl {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "ADCS Power Control";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 3;

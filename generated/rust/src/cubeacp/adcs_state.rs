@@ -298,7 +298,7 @@ pub struct AdcsState {
 }
 
 impl AdcsState {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "ADCS State";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 54;

@@ -275,7 +275,7 @@ pub struct AdcsSystemConfiguration {
 }
 
 impl AdcsSystemConfiguration {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "ADCS System Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 173;

@@ -49,7 +49,7 @@ pub struct AdcsTemperatures {
 }
 
 impl AdcsTemperatures {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "ADCS Temperatures";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

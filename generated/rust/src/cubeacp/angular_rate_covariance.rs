@@ -41,7 +41,7 @@ pub struct AngularRateCovariance {
 }
 
 impl AngularRateCovariance {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Angular Rate Covariance";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

@@ -31,7 +31,7 @@ pub struct Asgp4RunMode {
 }
 
 impl Asgp4RunMode {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "ASGP4 Run Mode";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;

@@ -96,7 +96,7 @@ pub struct Asgp4Tles {
 }
 
 impl Asgp4Tles {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "ASGP4 TLEs";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 33;

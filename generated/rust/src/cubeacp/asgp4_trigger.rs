@@ -21,7 +21,7 @@ use crate::support::{message, Error};
 pub struct Asgp4Trigger {}
 
 impl Asgp4Trigger {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "ASGP4 Trigger";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 0;

@@ -139,7 +139,7 @@ pub struct AugmentedSgp4Parameters {
 }
 
 impl AugmentedSgp4Parameters {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Augmented-SGP4 Parameters";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 30;

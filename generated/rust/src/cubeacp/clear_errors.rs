@@ -39,7 +39,7 @@ pub struct ClearErrors {
 }
 
 impl ClearErrors {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Clear Errors";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;

@@ -37,7 +37,7 @@ pub struct CoarseSunVector {
 }
 
 impl CoarseSunVector {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Coarse Sun Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

@@ -36,7 +36,7 @@ pub struct CommandedAttitudeAngles {
 }
 
 impl CommandedAttitudeAngles {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Commanded Attitude Angles";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

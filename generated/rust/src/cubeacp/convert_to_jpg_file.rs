@@ -38,7 +38,7 @@ pub struct ConvertToJpgFile {
 }
 
 impl ConvertToJpgFile {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Convert to JPG file";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 3;

@@ -73,7 +73,7 @@ pub struct CssConfiguration {
 }
 
 impl CssConfiguration {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "CSS Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 21;

@@ -34,7 +34,7 @@ pub struct CubecontrolCurrents {
 }
 
 impl CubecontrolCurrents {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "CubeControl Current Measurements";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

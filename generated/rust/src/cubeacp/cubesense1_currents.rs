@@ -34,7 +34,7 @@ pub struct Cubesense1Currents {
 }
 
 impl Cubesense1Currents {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "CubeSense1 Current Measurements";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 4;

@@ -37,7 +37,7 @@ pub struct Cubesense2Currents {
 }
 
 impl Cubesense2Currents {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "CubeSense2 Current Measurements";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 4;

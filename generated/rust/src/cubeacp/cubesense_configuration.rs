@@ -290,7 +290,7 @@ pub struct CubesenseConfiguration {
 }
 
 impl CubesenseConfiguration {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "CubeSense Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 112;

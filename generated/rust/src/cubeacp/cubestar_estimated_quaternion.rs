@@ -48,7 +48,7 @@ pub struct CubestarEstimatedQuaternion {
 }
 
 impl CubestarEstimatedQuaternion {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "CubeStar Estimated Quaternion";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

@@ -44,7 +44,7 @@ pub struct CubestarEstimatedRates {
 }
 
 impl CubestarEstimatedRates {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "CubeStar Estimated Rates";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

@@ -174,7 +174,7 @@ pub struct CurrentAdcsState {
 }
 
 impl CurrentAdcsState {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Current ADCS State";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

@@ -93,7 +93,7 @@ pub struct CurrentAdcsState2 {
 }
 
 impl CurrentAdcsState2 {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Current ADCS State 2";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

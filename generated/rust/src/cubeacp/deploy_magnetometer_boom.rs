@@ -35,7 +35,7 @@ pub struct DeployMagnetometerBoom {
 }
 
 impl DeployMagnetometerBoom {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Deploy Magnetometer Boom";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;

@@ -47,7 +47,7 @@ pub struct EcefPosition {
 }
 
 impl EcefPosition {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "ECEF Position";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

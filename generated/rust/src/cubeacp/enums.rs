@@ -60,7 +60,7 @@ impl AdcsRunMode {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -218,7 +218,7 @@ impl ConModeSelect {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -334,7 +334,7 @@ impl EstimModeSelect {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -444,7 +444,7 @@ impl GpsSolutionStatus {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -540,7 +540,7 @@ impl Asgp4ModeSelect {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -624,7 +624,7 @@ impl MagModeVal {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -696,7 +696,7 @@ impl CamSelect {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -778,7 +778,7 @@ impl ImSize {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -851,7 +851,7 @@ impl JpgConvertResult {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -933,7 +933,7 @@ impl CaptureResult {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -1031,7 +1031,7 @@ impl DetectResult {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -1107,7 +1107,7 @@ impl StarIdModeVal {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -1207,7 +1207,7 @@ impl ExecutionWaypoints {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -1308,7 +1308,7 @@ impl AsgpError {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -1382,7 +1382,7 @@ impl ImSaveStatus {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -1474,7 +1474,7 @@ impl AxisSelect {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -1554,7 +1554,7 @@ impl PowerSelect {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -1622,7 +1622,7 @@ impl AsgpFilter {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -1683,7 +1683,7 @@ impl AcpProgramType {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -1767,7 +1767,7 @@ impl SpecialConSelect {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -1835,7 +1835,7 @@ impl CsCamType {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -1899,7 +1899,7 @@ impl GpsSelect {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -1976,7 +1976,7 @@ impl GpioPort {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -2089,7 +2089,7 @@ impl GpioPortPin {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -2183,7 +2183,7 @@ impl SdLogSelect {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {

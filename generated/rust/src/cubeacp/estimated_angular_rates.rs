@@ -36,7 +36,7 @@ pub struct EstimatedAngularRates {
 }
 
 impl EstimatedAngularRates {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Estimated Angular Rates";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

@@ -37,7 +37,7 @@ pub struct EstimatedAttitudeAngles {
 }
 
 impl EstimatedAttitudeAngles {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Estimated Attitude Angles";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

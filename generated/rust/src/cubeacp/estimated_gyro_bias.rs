@@ -36,7 +36,7 @@ pub struct EstimatedGyroBias {
 }
 
 impl EstimatedGyroBias {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Estimated Gyro Bias";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

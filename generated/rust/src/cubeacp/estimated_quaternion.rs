@@ -42,7 +42,7 @@ pub struct EstimatedQuaternion {
 }
 
 impl EstimatedQuaternion {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Estimated Quaternion";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

@@ -116,7 +116,7 @@ pub struct EstimationData {
 }
 
 impl EstimationData {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Estimation Data";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 42;

@@ -41,7 +41,7 @@ pub struct EstimationInnovationVector {
 }
 
 impl EstimationInnovationVector {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Estimation Innovation Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

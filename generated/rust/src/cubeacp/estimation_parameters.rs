@@ -124,7 +124,7 @@ pub struct EstimationParameters {
 }
 
 impl EstimationParameters {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Estimation Parameters";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 31;

@@ -51,7 +51,7 @@ pub struct FineAngularRates {
 }
 
 impl FineAngularRates {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Fine Estimated Angular Rates";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

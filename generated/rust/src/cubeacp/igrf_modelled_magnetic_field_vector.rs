@@ -36,7 +36,7 @@ pub struct IgrfModelledMagneticFieldVector {
 }
 
 impl IgrfModelledMagneticFieldVector {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "IGRF Modelled Magnetic Field Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

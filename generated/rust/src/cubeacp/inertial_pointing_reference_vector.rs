@@ -47,7 +47,7 @@ pub struct InertialPointingReferenceVector {
 }
 
 impl InertialPointingReferenceVector {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Inertial Pointing Reference Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

@@ -33,7 +33,7 @@ pub struct JpgConversionProgress {
 }
 
 impl JpgConversionProgress {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "JPG Conversion Progress";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 3;

@@ -40,7 +40,7 @@ pub struct MagneticFieldVector {
 }
 
 impl MagneticFieldVector {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Magnetic Field Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

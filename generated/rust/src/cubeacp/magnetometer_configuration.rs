@@ -87,7 +87,7 @@ pub struct MagnetometerConfiguration {
 }
 
 impl MagnetometerConfiguration {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Magnetometer Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 30;

@@ -52,7 +52,7 @@ pub struct MagnetorquerCommand {
 }
 
 impl MagnetorquerCommand {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Magnetorquer Command";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

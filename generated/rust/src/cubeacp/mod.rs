@@ -379,7 +379,7 @@ pub use crate::wire::links::cubeacp::{LINK, LONGEST};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Node {}
 
-/// What the node answers when asked for its type.
+/// Type that the node reports.
 pub const NODE_TYPE: u8 = 10;
 /// Version of the interface described here.
 pub const INTERFACE_VERSION: u8 = 7;
@@ -1067,7 +1067,7 @@ impl Telecommand {
         }
     }
 
-    /// What the ICD calls it.
+    /// Name in the ICD.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -2531,7 +2531,7 @@ impl Telemetry {
         }
     }
 
-    /// What the ICD calls it.
+    /// Name in the ICD.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {

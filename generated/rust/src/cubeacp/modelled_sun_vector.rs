@@ -36,7 +36,7 @@ pub struct ModelledSunVector {
 }
 
 impl ModelledSunVector {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Modelled Sun Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

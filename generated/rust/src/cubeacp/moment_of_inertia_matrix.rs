@@ -47,7 +47,7 @@ pub struct MomentOfInertiaMatrix {
 }
 
 impl MomentOfInertiaMatrix {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Moment of Inertia Matrix";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 24;

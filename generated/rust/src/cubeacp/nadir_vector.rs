@@ -37,7 +37,7 @@ pub struct NadirVector {
 }
 
 impl NadirVector {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Nadir Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

@@ -118,7 +118,7 @@ pub struct PowerAndTemperature {
 }
 
 impl PowerAndTemperature {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Power and Temperature Measurements";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 38;

@@ -42,7 +42,7 @@ pub struct QuaternionCovariance {
 }
 
 impl QuaternionCovariance {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Quaternion Covariance";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

@@ -37,7 +37,7 @@ pub struct QuaternionErrorVector {
 }
 
 impl QuaternionErrorVector {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Quaternion Error Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

@@ -40,7 +40,7 @@ pub struct RateSensorRates {
 }
 
 impl RateSensorRates {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Rate Sensor Rates";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

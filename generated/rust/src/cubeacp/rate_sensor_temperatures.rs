@@ -46,7 +46,7 @@ pub struct RateSensorTemperatures {
 }
 
 impl RateSensorTemperatures {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Rate sensor temperatures";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

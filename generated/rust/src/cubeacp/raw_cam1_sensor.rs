@@ -48,7 +48,7 @@ pub struct RawCam1Sensor {
 }
 
 impl RawCam1Sensor {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Raw Cam1 Sensor";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

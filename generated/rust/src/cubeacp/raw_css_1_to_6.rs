@@ -63,7 +63,7 @@ pub struct RawCss1To6 {
 }
 
 impl RawCss1To6 {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Raw CSS 1 to 6";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

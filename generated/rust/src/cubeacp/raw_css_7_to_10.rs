@@ -55,7 +55,7 @@ pub struct RawCss7To10 {
 }
 
 impl RawCss7To10 {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Raw CSS 7 to 10";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

@@ -108,7 +108,7 @@ pub struct RawGpsMeasurements {
 }
 
 impl RawGpsMeasurements {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Raw GPS Measurements";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 36;

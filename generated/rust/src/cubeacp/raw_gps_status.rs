@@ -50,7 +50,7 @@ pub struct RawGpsStatus {
 }
 
 impl RawGpsStatus {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Raw GPS Status";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

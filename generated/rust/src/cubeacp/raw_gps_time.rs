@@ -33,7 +33,7 @@ pub struct RawGpsTime {
 }
 
 impl RawGpsTime {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Raw GPS Time";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

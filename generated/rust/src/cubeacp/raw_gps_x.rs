@@ -41,7 +41,7 @@ pub struct RawGpsX {
 }
 
 impl RawGpsX {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Raw GPS X";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

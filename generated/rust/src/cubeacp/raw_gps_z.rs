@@ -41,7 +41,7 @@ pub struct RawGpsZ {
 }
 
 impl RawGpsZ {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Raw GPS Z";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

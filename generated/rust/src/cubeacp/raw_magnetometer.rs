@@ -44,7 +44,7 @@ pub struct RawMagnetometer {
 }
 
 impl RawMagnetometer {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Raw Magnetometer";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

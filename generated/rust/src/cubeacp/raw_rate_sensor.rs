@@ -44,7 +44,7 @@ pub struct RawRateSensor {
 }
 
 impl RawRateSensor {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Raw Rate Sensor";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

@@ -146,7 +146,7 @@ pub struct RawSensorMeasurements {
 }
 
 impl RawSensorMeasurements {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Raw Sensor Measurements";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 34;

@@ -186,7 +186,7 @@ pub struct RawStarTracker {
 }
 
 impl RawStarTracker {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Raw Star Tracker";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 54;

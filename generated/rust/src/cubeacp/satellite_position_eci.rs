@@ -31,7 +31,7 @@ pub struct SatellitePositionEci {
 }
 
 impl SatellitePositionEci {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Satellite Position (ECI)";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

@@ -41,7 +41,7 @@ pub struct SatellitePositionLlh {
 }
 
 impl SatellitePositionLlh {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Satellite Position (LLH)";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

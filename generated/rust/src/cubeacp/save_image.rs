@@ -32,7 +32,7 @@ pub struct SaveImage {
 }
 
 impl SaveImage {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Save Image";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 2;

@@ -25,7 +25,7 @@ use crate::support::{message, Error};
 pub struct SaveOrbitParameters {}
 
 impl SaveOrbitParameters {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Save Orbit Parameters";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 0;

@@ -53,7 +53,7 @@ pub struct SdLog1Configuration {
 }
 
 impl SdLog1Configuration {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "SD Log1 Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 13;

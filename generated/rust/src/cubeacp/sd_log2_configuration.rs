@@ -53,7 +53,7 @@ pub struct SdLog2Configuration {
 }
 
 impl SdLog2Configuration {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "SD Log2 Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 13;

@@ -51,7 +51,7 @@ pub struct SecondaryMagnetometerRawMeasurements {
 }
 
 impl SecondaryMagnetometerRawMeasurements {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Secondary Magnetometer Raw Measurements";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

@@ -32,7 +32,7 @@ pub struct SetAdcsRunMode {
 }
 
 impl SetAdcsRunMode {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "ADCS Run Mode";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;

@@ -38,7 +38,7 @@ pub struct SetAttitudeControlMode {
 }
 
 impl SetAttitudeControlMode {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Set Attitude Control Mode";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 3;

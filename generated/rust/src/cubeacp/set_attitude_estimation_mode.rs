@@ -25,7 +25,7 @@ pub struct SetAttitudeEstimationMode {
 }
 
 impl SetAttitudeEstimationMode {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Set Attitude Estimation Mode";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;

@@ -57,7 +57,7 @@ pub struct SetDetumblingControlParameters {
 }
 
 impl SetDetumblingControlParameters {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Set Detumbling Control Parameters";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 14;

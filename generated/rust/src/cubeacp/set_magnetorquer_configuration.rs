@@ -42,7 +42,7 @@ pub struct SetMagnetorquerConfiguration {
 }
 
 impl SetMagnetorquerConfiguration {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Set Magnetorquer Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 3;

@@ -51,7 +51,7 @@ pub struct SetMagnetorquerOutput {
 }
 
 impl SetMagnetorquerOutput {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Set Magnetorquer Output";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

@@ -33,7 +33,7 @@ pub struct SetModeOfMagnetometerOperation {
 }
 
 impl SetModeOfMagnetometerOperation {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Set Mode of Magnetometer Operation";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;

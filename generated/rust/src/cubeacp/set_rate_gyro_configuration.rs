@@ -62,7 +62,7 @@ pub struct SetRateGyroConfiguration {
 }
 
 impl SetRateGyroConfiguration {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Set Rate Gyro Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 10;

@@ -68,7 +68,7 @@ pub struct SetReactionWheelControlParameters {
 }
 
 impl SetReactionWheelControlParameters {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Set Reaction Wheel Control Parameters";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 13;

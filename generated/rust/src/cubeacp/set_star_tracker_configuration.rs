@@ -163,7 +163,7 @@ pub struct SetStarTrackerConfiguration {
 }
 
 impl SetStarTrackerConfiguration {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Set Star Tracker Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 53;

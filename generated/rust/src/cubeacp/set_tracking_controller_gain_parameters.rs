@@ -58,7 +58,7 @@ pub struct SetTrackingControllerGainParameters {
 }
 
 impl SetTrackingControllerGainParameters {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Set Tracking Controller Gain Parameters";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 13;

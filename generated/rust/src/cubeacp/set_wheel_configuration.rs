@@ -52,7 +52,7 @@ pub struct SetWheelConfiguration {
 }
 
 impl SetWheelConfiguration {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Set Wheel Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 4;

@@ -33,7 +33,7 @@ pub struct SetWheelSpeed {
 }
 
 impl SetWheelSpeed {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Set Wheel Speed";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

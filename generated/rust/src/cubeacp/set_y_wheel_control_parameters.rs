@@ -69,7 +69,7 @@ pub struct SetYWheelControlParameters {
 }
 
 impl SetYWheelControlParameters {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Set Y-Wheel Control Parameters";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 20;

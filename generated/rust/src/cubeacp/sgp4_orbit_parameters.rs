@@ -50,7 +50,7 @@ pub struct Sgp4OrbitParameters {
 }
 
 impl Sgp4OrbitParameters {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "SGP4 Orbit Parameters";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 64;

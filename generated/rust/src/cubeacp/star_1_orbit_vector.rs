@@ -44,7 +44,7 @@ pub struct Star1OrbitVector {
 }
 
 impl Star1OrbitVector {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Star 1 Orbit Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

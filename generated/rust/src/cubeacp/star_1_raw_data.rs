@@ -43,7 +43,7 @@ pub struct Star1RawData {
 }
 
 impl Star1RawData {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Star 1 Raw Data";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

@@ -44,7 +44,7 @@ pub struct Star2BodyVector {
 }
 
 impl Star2BodyVector {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Star 2 Body Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

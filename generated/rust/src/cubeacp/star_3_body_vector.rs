@@ -44,7 +44,7 @@ pub struct Star3BodyVector {
 }
 
 impl Star3BodyVector {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Star 3 Body Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

@@ -44,7 +44,7 @@ pub struct Star3OrbitVector {
 }
 
 impl Star3OrbitVector {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Star 3 Orbit Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

@@ -46,7 +46,7 @@ pub struct StarMagnitude {
 }
 
 impl StarMagnitude {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Star Magnitude";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

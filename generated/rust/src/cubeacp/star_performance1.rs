@@ -60,7 +60,7 @@ pub struct StarPerformance1 {
 }
 
 impl StarPerformance1 {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Star Performance1";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

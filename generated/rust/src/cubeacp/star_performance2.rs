@@ -68,7 +68,7 @@ pub struct StarPerformance2 {
 }
 
 impl StarPerformance2 {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Star Performance2";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

@@ -33,7 +33,7 @@ pub struct StarTiming {
 }
 
 impl StarTiming {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Star Timing";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

@@ -54,7 +54,7 @@ pub struct State {
 }
 
 impl State {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "CubeACP State";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;

@@ -34,7 +34,7 @@ pub struct StatusOfImageCaptureAndSaveOperation {
 }
 
 impl StatusOfImageCaptureAndSaveOperation {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Status of Image Capture and Save Operation";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 2;

@@ -43,7 +43,7 @@ pub struct TrackingControllerTargetReference {
 }
 
 impl TrackingControllerTargetReference {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Tracking Controller Target Reference";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 12;

@@ -21,7 +21,7 @@ use crate::support::{message, Error};
 pub struct TriggerAdcsLoop {}
 
 impl TriggerAdcsLoop {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Trigger ADCS Loop";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 0;

@@ -356,7 +356,7 @@ pub struct TriggerSimulatedLoop {
 }
 
 impl TriggerSimulatedLoop {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Trigger ADCS Loop with Simulated Sensor Data";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 127;

@@ -43,7 +43,7 @@ pub struct UartLogConfiguration {
 }
 
 impl UartLogConfiguration {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "UART Log Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 12;

@@ -34,7 +34,7 @@ pub struct UserCodedControllerAndEstimatorParameters {
 }
 
 impl UserCodedControllerAndEstimatorParameters {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "User-coded Controller and Estimator Parameters";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 96;

@@ -49,7 +49,7 @@ pub struct WheelCurrents {
 }
 
 impl WheelCurrents {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Wheel Currents";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

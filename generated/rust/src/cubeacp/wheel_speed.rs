@@ -33,7 +33,7 @@ pub struct WheelSpeed {
 }
 
 impl WheelSpeed {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Wheel Speed";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

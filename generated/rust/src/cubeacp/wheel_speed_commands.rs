@@ -39,7 +39,7 @@ pub struct WheelSpeedCommands {
 }
 
 impl WheelSpeedCommands {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Wheel Speed Commands";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;

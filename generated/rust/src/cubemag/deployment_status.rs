@@ -73,7 +73,7 @@ pub struct DeploymentStatus {
 }
 
 impl DeploymentStatus {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Deployment Status";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 5;

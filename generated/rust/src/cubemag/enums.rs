@@ -56,7 +56,7 @@ impl MagState {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {
@@ -145,7 +145,7 @@ impl MntState {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {

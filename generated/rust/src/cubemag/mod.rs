@@ -109,7 +109,7 @@ impl Telemetry {
         }
     }
 
-    /// What the ICD calls it.
+    /// Name in the ICD.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {

@@ -58,7 +58,7 @@ pub struct PrimaryMagnetometerMeasurement {
 }
 
 impl PrimaryMagnetometerMeasurement {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Primary Magnetometer Measurement";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 13;

@@ -50,7 +50,7 @@ pub struct State {
 }
 
 impl State {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "State";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 3;

@@ -53,7 +53,7 @@ impl WheelErrorState {
         }
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Name of the value in the ICD; None if it has no name.
     #[must_use]
     pub const fn name(self) -> Option<&'static str> {
         let name = match self {

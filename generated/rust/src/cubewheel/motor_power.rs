@@ -40,7 +40,7 @@ pub struct MotorPower {
 }
 
 impl MotorPower {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Motor Power";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;

@@ -49,7 +49,7 @@ pub struct WheelReferenceSpeed {
 }
 
 impl WheelReferenceSpeed {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub const NAME: &'static str = "Wheel Reference Speed";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 4;
