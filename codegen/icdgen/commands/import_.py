@@ -228,6 +228,7 @@ def _workbench(
         vocabulary = profile.load(path if path.exists() else None)
         if path.exists() and not vocabulary.has_rules:
             raise UserError(f"the profile {path} has no rules", "add `rules: []`, or name a new file with --profile")
+        vocabulary.has_rules = True
         with _progress() as progress:
             document, tables = sources.read(manual, vocabulary, progress, jobs, pages)
     except Findings as error:

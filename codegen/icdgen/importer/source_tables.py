@@ -47,6 +47,9 @@ class SourceTable:
     before: list[str] = field(default_factory=list)
     boxes: list[Box] = field(default_factory=list)
     sheet: str = ""  # of a spreadsheet
+    shown: list[Row] = field(
+        default_factory=list, compare=False, repr=False
+    )  # the rows for reports, once they are asked for
     run: int = 1  # which run of ascending labels it is in: parts of a document may number their tables anew
 
     @property
@@ -122,9 +125,13 @@ class SourceTable:
 
     def as_table(self) -> Table:
         """The table as findings, reports and ICDs refer to it."""
+        if not self.shown:
+            texts = ([plain(slot.text) for slot in slots] for slots in self.grid())
+            self.shown = [Row(cells, row.page, row.line) for cells, row in zip(texts, self.rows, strict=True)]
         return Table(
             self.label,
             self.caption,
+            head=self.shown,
             page=self.page,
             line=self.line,
             order=self.number - 1,

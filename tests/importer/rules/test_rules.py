@@ -200,6 +200,16 @@ def test_a_register_of_two_bytes_follows_the_byte_order_of_the_node(tmp_path):
     assert (rate["at"], rate.get("bit_order")) == (4, None)
 
 
+def test_a_range_of_bytes_that_may_be_an_array_is_a_question(tmp_path):
+    rules = RULE.replace("Byte: byte", "Byte: '^{byte}-{last_byte}$'")
+    result, tree = read(tmp_path, HEADING + "Byte\tName\tType\n0-5\tCells\tuint\n6-7\tSum\tuint\n", rules)
+    assert "field `Cells`: a number of 6 bytes is unusual" in found(result, "IMP105")[0]
+    rules += "    set: [{where: {name: ^Cells$}, bits: 16, count: 3}]\n"
+    result, tree = read(tmp_path, HEADING + "Byte\tName\tType\n0-5\tCells\tuint\n6-7\tSum\tuint\n", rules)
+    assert found(result, "IMP105") == []
+    assert [(f["at"], f["bits"], f.get("count")) for f in tree["messages"][0]["fields"]] == [(0, 16, 3), (48, 16, None)]
+
+
 def test_parts_of_a_field_in_several_cells_are_one_field(tmp_path):
     rows = "Byte\tName\tType\n0\tDist_L\tu8\n1\tDist_H\tu8\n2\tLevel_H\tu8\n3\tLevel_L\tu8\n"
     rules = RULE.replace("Name: name", "Name: '^{name}_{part:[LH]}$'")

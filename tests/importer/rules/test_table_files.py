@@ -96,6 +96,13 @@ def test_explore_gives_a_rule_for_each_kind_of_table(folder):
     assert json.loads(result.stdout)["kinds"][0]["tables"] == [1]
 
 
+def test_the_report_shows_the_cells_of_tables_that_rules_read(folder):
+    (folder / "rules.yaml").write_text(NODE + RULES.replace("Factor: scale", "Scale: scale"), encoding="utf-8")
+    icdgen("import", "state.txt", "--profile", "rules.yaml", "--dry-run", "--report", "report.html", cwd=folder)
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    assert "<td>Voltage</td><td>0</td><td>16</td>" in page and "IMP102" in page
+
+
 def test_a_finding_of_a_rule_shows_the_rule(folder):
     (folder / "rules.yaml").write_text(NODE + RULES.replace("Factor: scale", "Scale: scale"), encoding="utf-8")
     result = icdgen("import", "state.txt", "--profile", "rules.yaml", "--dry-run", cwd=folder)

@@ -114,6 +114,14 @@ class FieldReader:
             )
             return None
         kind = printed.kind
+        if kind in ("uint", "int") and bits in (40, 48, 56) and range_size and not printed.bits and not count:
+            self.notes.warn(
+                "IMP105",
+                f"{where}: a number of {bits // 8} bytes is unusual, and only its range of bytes says so",
+                spot,
+                "is it an array? `set: [{where: {name: ...}, bits: 8, count: N}]`",
+                self.rule.place,
+            )
         if kind in ("uint", "int", "enum") and bits > MOST_BITS:
             self.error(
                 "IMP105",
