@@ -38,17 +38,27 @@ def test_links_lead_to_pages_and_what_is_not_there_is_text(tmp_path):
 def test_the_search_finds_the_manual(site):
     asked = {
         "icd format": "reference/icd-format.html",
+        "describe a device": "guides/describe-a-device.html",
         "wire layer": "reference/wire.html",
         "compare releases": "guides/compare-releases.html",
         "simulator": "guides/simulator.html",
         "errata": "guides/errata.html",
         "slip": "guides/serial-link.html",
         "dbc": "guides/import-can.html",
+        "mavlink dialect": "guides/import-mavlink.html",
+        "pdf manual": "guides/import-a-manual.html",
+        "rust": "guides/rust.html",
+        "python asyncio": "guides/python.html",
+        "driver": "guides/driver-in-c.html",
         "lookup table": "guides/scales.html",
+        "variable length": "guides/variable-length.html",
         "yamcs": "guides/yamcs.html",
         "ICD055": "reference/rules.html",
+        "icdgen.toml": "reference/configuration.html",
+        "shell completion": "reference/configuration.html",
         "what is not supported": "explanation/not-supported.html",
         "glossary": "glossary.html",
+        "verification": "guides/verification-package.html",
     }
     results = zip(asked.items(), found(site, list(asked)), strict=True)
     missed = {q: r[:3] for (q, page), r in results if not any(f"icdgen-docs/{page}" in url for url in r[:3])}
