@@ -34,7 +34,7 @@ function send(path, data) {
 }
 
 async function sendNow(path, data) {
-  const answer = await fetch(path, { method: "POST", headers: { "X-Icdgen": "1" }, body: JSON.stringify(data) });
+  const answer = await fetch(path, { method: "POST", headers: { "X-Icdgen": "1" }, body: JSON.stringify(typeof data === "function" ? data() : data) });
   if (!answer.ok) throw new Error(await answer.text());
   const got = await answer.json();
   if (got.refused) {
@@ -62,12 +62,15 @@ function merged(keys) {
   return made;
 }
 
+// The edit is made when the changes before it were answered, so that none is lost.
 function change(edit) {
-  const keys = structuredClone(rule());
-  edit(keys);
-  for (const key of ["message", "columns", "each"]) if (keys[key] && !Object.keys(keys[key]).length) delete keys[key];
-  for (const key of ["ignore", "join"]) if (keys[key] && !keys[key].length) delete keys[key];
-  return send("/api/rule", { index: ruleIndex(), rule: keys });
+  return send("/api/rule", () => {
+    const keys = structuredClone(rule());
+    edit(keys);
+    for (const key of ["message", "columns", "each"]) if (keys[key] && !Object.keys(keys[key]).length) delete keys[key];
+    for (const key of ["ignore", "join"]) if (keys[key] && !keys[key].length) delete keys[key];
+    return { index: ruleIndex(), rule: keys };
+  });
 }
 
 function put(keys, key, value) {
@@ -153,6 +156,11 @@ function drawAround() {
   byId("remove").hidden = ruleIndex() === null;
 }
 
+// What a person is typing in is not overwritten by the answer to the change before.
+function fill(input, value) {
+  if (input !== document.activeElement) input.value = value;
+}
+
 function drawRule() {
   const form = byId("rule");
   form.hidden = ruleIndex() === null;
@@ -161,20 +169,28 @@ function drawRule() {
   const input = (name) => form.elements.namedItem(name); // `elements.length` is their number
   const of = state.tables.filter((one) => one.rules.includes(ruleIndex())).length;
   byId("legend").textContent = `Rule for ${of} table${of === 1 ? "" : "s"}`;
-  input("what").replaceChildren(...WHAT.map((what) => element("option", {}, what)));
-  input("what").value = keys.what || "message";
-  input("tables").value = Object.entries(keys.tables || {}).map(([key, value]) => `${key}: ${value}`).join("; ");
-  input("type").value = (keys.each || {}).type || "";
+  if (!input("what").options.length) input("what").append(...WHAT.map((what) => element("option", {}, what)));
+  fill(input("what"), keys.what || "message");
+  fill(input("tables"), Object.entries(keys.tables || {}).map(([key, value]) => `${key}: ${value}`).join("; "));
+  fill(input("type"), (keys.each || {}).type || "");
   input("width").checked = keys.width === "unit";
   input("transpose").checked = Boolean(keys.transpose);
-  input("join").value = (keys.join || []).join(", ");
-  input("skip").value = keys.skip || "";
-  input("origin").value = keys.origin || "";
-  for (const key of ["name", "id", "kind", "length", "of", ...SOURCES]) input(key).value = shown((keys.message || {})[key]);
-  byId("yaml").value = state.rules[ruleIndex()].text;
+  fill(input("join"), (keys.join || []).join(", "));
+  fill(input("skip"), keys.skip || "");
+  fill(input("origin"), keys.origin || "");
+  for (const key of ["name", "id", "kind", "length", "of", ...SOURCES]) fill(input(key), shown((keys.message || {})[key]));
+  fill(byId("yaml"), state.rules[ruleIndex()].text);
 }
 
+let drawn = ""; // which grid is shown: its cells are drawn anew only if it is another one
+
 function drawGrid() {
+  const wanted = JSON.stringify([number, table.head, ruleIndex() !== null]);
+  if (wanted === drawn) {
+    for (const input of byId("grid").querySelectorAll("input")) fill(input, roleOf(input.dataset.title));
+    return;
+  }
+  drawn = wanted;
   const rows = table.rows.map((cells, index) => {
     const isHead = index === table.head && ruleIndex() !== null;
     let column = 0;
@@ -189,22 +205,31 @@ function drawGrid() {
   byId("grid").replaceChildren(element("table", {}, element("tbody", {}, ...rows)));
 }
 
-function roleControl(title) {
+function columnOf(title) {
+  const columns = merged(rule()).columns || {};
+  return Object.keys(columns).find((name) => name.replace(/\?$/, "").toLowerCase() === title.toLowerCase()) || title;
+}
+
+function roleOf(title) {
   const keys = merged(rule());
-  const columns = keys.columns || {};
-  const key = Object.keys(columns).find((name) => name.replace(/\?$/, "").toLowerCase() === title.toLowerCase()) || title;
-  const isIgnored = (keys.ignore || []).includes(title);
+  return (keys.ignore || []).includes(title) ? NOT_USED : shown((keys.columns || {})[columnOf(title)]);
+}
+
+function roleControl(title) {
   const input = element("input", { "aria-label": `Role of ${title}`, list: "roles", size: 12, spellcheck: false, placeholder: "role or pattern",
-    title: "a role, a pattern such as ^{byte}-{last_byte}$, several separated by ||, or: not used", value: isIgnored ? NOT_USED : shown(columns[key]) });
-  input.dataset.key = `role-${title}`;
-  input.onchange = () => change((own) => {
-    const given = patterns(input.value);
-    own.columns = { ...(own.columns || {}) };
-    own.ignore = (own.ignore || keys.ignore || []).filter((name) => name !== title);
-    delete own.columns[key];
-    if (given === NOT_USED) own.ignore.push(title);
-    else if (given !== "") own.columns[key] = given;
-  });
+    title: "a role, a pattern such as ^{byte}-{last_byte}$, several separated by ||, or: not used", value: roleOf(title) });
+  input.dataset.title = title;
+  input.onchange = () => {
+    const given = patterns(input.value); // now: the answer to the change before may fill the control
+    change((own) => {
+      const key = columnOf(title);
+      own.columns = { ...(own.columns || {}) };
+      own.ignore = (own.ignore || merged(rule()).ignore || []).filter((name) => name !== title);
+      delete own.columns[key];
+      if (given === NOT_USED) own.ignore.push(title);
+      else if (given !== "") own.columns[key] = given;
+    });
+  };
   return input;
 }
 
@@ -295,7 +320,7 @@ byId("rule").onchange = (event) => {
     else if (name === "join") put(keys, "join", text.split(",").map((one) => one.trim()).filter(Boolean));
     else if (name === "origin") put(keys, "origin", number_or_text(text));
     else if (["what", "transpose", "skip"].includes(name)) put(keys, name, text === "message" ? "" : text);
-    else { keys.message = { ...(keys.message || {}) }; put(keys.message, name, SOURCES.includes(name) ? patterns(input.value) : text); }
+    else { keys.message = { ...(keys.message || {}) }; put(keys.message, name, SOURCES.includes(name) ? patterns(text) : text); }
     if (keys.what === "ignore") for (const key of ["columns", "message", "each", "ignore", "width", "join", "lines", "melt", "set"]) delete keys[key];
   });
 };
