@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from functools import lru_cache
 
 DEVICES = ("aux", "con", "nul", "prn", *(f"{port}{number}" for port in ("com", "lpt") for number in range(1, 10)))
-"""What no file and no folder can be called on Windows, whatever its suffix."""
+"""Reserved names of files and folders on Windows, with any suffix."""
 
 _SEPARATORS = re.compile(r"[^A-Za-z0-9]+")
 _DIGITS = re.compile(r"[0-9]*")

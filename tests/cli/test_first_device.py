@@ -49,7 +49,7 @@ def test_nothing_that_waits_to_be_filled_in_reaches_what_is_generated(icdgen, tm
 def test_a_shipped_node_is_said_to_be_none_of_the_project_and_how_it_is_reached(icdgen, arguments):
     icdgen("init", "battery")
     result = icdgen(*arguments)
-    assert result.status == 2 and "the nodes here are those that icdgen.toml names" in result.err, result
+    assert result.status == 2 and "icdgen.toml does not name it" in result.err, result
     folder = re.search(r"give `--icd (.*?)`", result.err)[1]
     if arguments[0] == "decode":
         assert "-12.34" in icdgen(*arguments, "--icd", folder).out

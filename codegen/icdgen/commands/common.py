@@ -125,7 +125,7 @@ def beside_shipped(error: UserError, context: click.Context) -> UserError:
     for file in sorted(shipped.icds().glob("*.yaml")):
         if f"`{file.stem}`" in str(error).lower():
             return NotFound(
-                f"{error}: it is a node that comes with icdgen, and the nodes here are those that {_short(path)} names",
+                f"{error}: it is a node that comes with icdgen; {_short(path)} does not name it",
                 f"give `--icd {shipped.icds()}`, or add that folder to `icds` in {_short(path)}",
             )
     return error

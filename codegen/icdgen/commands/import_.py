@@ -54,12 +54,12 @@ ABOUT_FILES = frozenset({"IMP002", "IMP003", "IMP005"})
     is_flag=True,
     help="Lay what was read over ICDs that exist; errata, identifiers, summaries and comments stay.",
 )
-@click.option("--dry-run", is_flag=True, help="Write no ICD; say what would be written or changed.")
+@click.option("--dry-run", is_flag=True, help="Write no ICD; print what would be written or changed.")
 @click.option(
     "--report",
     "page",
     type=PATH,
-    help="Write a page (HTML) with each doubtful table as a picture beside what was read.",
+    help="Write a page (HTML) with a picture of each doubtful table and its result.",
 )
 @click.option("--descriptions", is_flag=True, help="Hold the manual's descriptions as summaries.")
 @click.option(
@@ -73,7 +73,7 @@ ABOUT_FILES = frozenset({"IMP002", "IMP003", "IMP005"})
     help="Write each table as a YAML file that can be corrected and imported.",
 )
 @click.option(
-    "--explain", "table", type=int, metavar="TABLE", help="Say which rule read a table and why others did not."
+    "--explain", "table", type=int, metavar="TABLE", help="Print which rule read a table and why others did not."
 )
 @click.option(
     "--workbench", is_flag=True, help="Serve a page on this machine on which the rules of --profile are written."

@@ -51,11 +51,11 @@ class FieldDescription(Named[Field]):
     physical_name: str
     """``estimated_roll_angle_deg``"""
     member: str
-    """What an expression calls it, in any language: its name, ``temperatures[3]``, ``satellites[2].gnss``."""
+    """Name in an expression, in any language: ``temperatures[3]``, ``satellites[2].gnss``."""
     declared: str
     """The name that is declared for it: of an element, that of its array; of a field of a struct, that in the struct."""
     holder: str
-    """What an expression calls the struct in which it stands, ``satellites[2]``; empty of what its message has itself."""
+    """Name of its struct in an expression, ``satellites[2]``; empty of what its message has itself."""
     declaration: FieldDescription
     """The field as its struct, or its message, declares it."""
 

@@ -22,10 +22,10 @@ ROLES = frozenset(
     "all block_size busy bytes checksum counter destination error id ignore_hole_map interface_version length node_type number "
     "offset parameter processed program ready size time type".split()
 )
-"""What a field may mean for a procedure, as far as runtimes know."""
+"""Roles of fields in procedures that the runtimes support."""
 
 REASONS = ("none", "unknown_id", "length", "parameter", "checksum")
-"""What an error code may mean, as far as runtimes know."""
+"""Meanings of error codes that the runtimes support."""
 
 CAN_PARTS = ("type", "channel", "source", "destination")
 TIME_PARTS = ("year", "month", "day", "hour", "minute", "second")

@@ -9,7 +9,7 @@ from icdgen.icd.located import Map
 from icdgen.icd.trees import mappings
 
 OF_A_WHOLE = ("unit", "formula", "points", "outside", "const", "special", "min", "max", "above", "below", "display")
-"""Keys that say what a value means: of a divided field its parts say so."""
+"""Keys for the meaning of a value; the parts of a split field have them instead of the field."""
 
 
 def parts_of(field: Map) -> list[Map]:

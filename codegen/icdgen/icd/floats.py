@@ -7,7 +7,7 @@ import struct
 from fractions import Fraction
 
 NAMED = {"nan": math.nan, "inf": math.inf, "-inf": -math.inf}
-"""What is no number, as an ICD writes it."""
+"""Spellings of floats that are not numbers."""
 
 WIDTHS = (32, 64)
 

@@ -18,7 +18,7 @@ class Mark(Protocol):
 
 
 Spot = Place | tuple[Mark, Mark]
-"""Where something stood: the place, or its beginning and end, of which it is made once it is asked for: few are."""
+"""Place of a node, or its begin and end marks, from which the place is computed on demand."""
 
 
 def place_of(spot: Spot) -> Place:

@@ -14,7 +14,7 @@ FAULTS = {
     "checksum": "wrong checksum", "unchecked": "no checksum", "length": "wrong length", "unknown_id": "unknown id",
     "overrun": "too long", "framing": "damaged",
 }  # fmt: skip
-"""What is wrong with something that came, by the decoder's word."""
+"""Descriptions of decoder errors."""
 
 
 class Heard:

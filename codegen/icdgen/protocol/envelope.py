@@ -10,7 +10,7 @@ from icdgen.icd import checksum
 from icdgen.protocol.sections import Crc
 
 LENGTH, SLIP, COBS, HDLC, PACKET = DELIMITERS = ("length", "slip", "cobs", "hdlc", "none")
-"""What tells where a message ends; `none`: the packet that carries it."""
+"""Delimiters of messages; `none`: the packet that carries the message."""
 
 GIVEN = ("sequence", "source", "destination", "type", "flags", "time")
 """Roles of fields whose values the sender chooses."""

@@ -33,7 +33,7 @@ _SPELLING = (
     names.enumerator_of, names.stem, sentence, text_comment, words,
 )  # fmt: skip
 _FUNCTIONS = {function.__name__: function for function in _SPELLING}
-"""What templates spell names and text with."""
+"""Functions with which templates spell names and text."""
 
 
 class CBackend:

@@ -16,7 +16,7 @@ from icdgen.describe.derived import derived
 from icdgen.describe.description import Composite
 
 ELEMENT = "element"
-"""What accessors call the index of an array's element."""
+"""Name of the parameter for the index of an array element."""
 
 
 class Accessor(NamedTuple):

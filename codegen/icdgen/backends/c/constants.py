@@ -20,7 +20,7 @@ from icdgen.icd import floats
 from icdgen.icd.model import Member
 
 _MAX_ENUMERATOR = 32767
-"""What every `int` can hold."""
+"""Range of `int` that C guarantees."""
 
 
 def of_fields(message: Composite[Any]) -> list[tuple[Constant, str]]:

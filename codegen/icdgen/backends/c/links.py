@@ -69,7 +69,7 @@ def _stream_sizes(form: Stream) -> list[tuple[str, int, str]]:
         (
             "REQUEST_BYTES",
             form.longest_request,
-            "Bytes of a client's buffer for each request, beside the longest message.",
+            "Bytes of a client's buffer per request, in addition to the longest message.",
         ),
     ]
 
@@ -296,7 +296,7 @@ class _Tables:
         sizes = f"ICD_DELIMITED_BY_{delimiter.upper()}, {form.header_bytes}u, {form.trailer_bytes}u"
         parts = [
             Row(sizes, "bytes of header, trailer"),
-            Row(f"{form.length_plus}, {boolean(form.per_id)}", "length beside the data, a sequence for each id"),
+            Row(f"{form.length_plus}, {boolean(form.per_id)}", "length outside the data, a sequence for each id"),
             Row(f"{fields}, {len(form.fields)}u", "fields"),
             Row(check, "checksum"),
             Row(f"{{{rows[0]}, {rows[1]}}}, {{{len(form.telecommands)}u, {len(form.telemetry)}u}}", "messages"),

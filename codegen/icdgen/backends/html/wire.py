@@ -165,7 +165,7 @@ def _stream(message: Message, wire: Wire, data: bytes) -> Bus | None:
             lines.append(Line(direction.capitalize(), [Chunk(one.kind, _hex(one.data), one.title) for one in parts]))
             sent = stream_encode(wire.link, id, data, direction)
             if sent != b"".join(one.data for one in parts):
-                lines.append(Line("as it is sent", [Chunk("data", _hex(sent), "stuffed, between delimiters")]))
+                lines.append(Line("in wire order", [Chunk("data", _hex(sent), "stuffed, between delimiters")]))
     return Bus("Envelope", f"A message ends {envelopes.ENDS[form.delimited_by]}.", lines)
 
 

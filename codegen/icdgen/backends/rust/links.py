@@ -36,7 +36,7 @@ def values(link: LinkDescription) -> dict[str, str]:
     """What the template of a node's link is given; ``tabulated`` is the CRC of the envelope, of which there is a table."""
     known, link_literal = link.facts, _Literal(link)
     text = written(link_literal.link(), _note)
-    about = [f"The protocol of node `{known.node.name}`. What the manual leaves open is marked as assumed."]
+    about = [f"The protocol of node `{known.node.name}`. Facts that the manual omits are marked as assumed."]
     for section, key, why in link_literal.assumed.others():
         about.append(f"Assumed (`{section}`, `{key}`): {prose(sentence(why))}")
     crc = tabulated(known.stream)

@@ -21,7 +21,7 @@ BUSES = ("uart", "i2c", "can")
 LEAST_BITS = {"id": 8, "parameter": 2, "type": 2, "counter": 8, "offset": 16, "length": 8, "size": 16, "number": 8,
     "checksum": 16, "time": 32, "period": 8,
 }  # fmt: skip
-"""Of fields that hold numbers of a procedure."""
+"""Types of fields for the numbers of a procedure."""
 
 AS_BYTES = ("bytes", "mask")  # roles of fields that are taken as they are
 INDEX_ROLES = ("type", "counter", "checksum", "size", "time", "meta")

@@ -5,10 +5,10 @@ from random import Random
 from typing import Any
 
 Requests = Iterator[tuple[str, dict[str, Any]]]
-"""Requests of the testee protocol, each with why it is asked."""
+"""Requests of the testee protocol, each with its purpose."""
 
 Script = list[dict[str, Any]]
-"""What happens to a client or a procedure, a row for each moment."""
+"""Script of a client or a procedure, one row per moment."""
 
 
 def pieces(why: str, stream: bytes, source: Random) -> Iterator[tuple[str, list[bytes]]]:

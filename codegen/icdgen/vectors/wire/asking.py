@@ -94,7 +94,7 @@ def _asked(
         s.ask(0, row, **given), {"at": 100}, s.ask(120, row, **given), s.come(130, frame), {"at": 199}, {"at": 200},
         s.come(210, frame), s.ask(211, row, **given), s.come(212, frame),
     ]  # fmt: skip
-    yield "the reply to one that was sent twice may come twice", [
+    yield "two responses to a repeated request", [
         s.ask(0, row, repeat=True, **given), {"at": 100}, s.come(110, frame), s.ask(120, row, **given), s.come(130, frame),
         {"at": 210}, s.come(220, frame),
     ]  # fmt: skip
@@ -118,11 +118,11 @@ def _asked(
     yield "cancelled before it was sent", [
         s.ask(0, row, **given, **untaken), {"at": 5, **cancel}, s.ask(7, row, **given), s.come(8, frame),
     ]  # fmt: skip
-    yield "cancelled while it is held back", [
+    yield "cancelled while it is delayed", [
         s.ask(0, row, **given), {"at": 100}, s.ask(110, row, **given), {"at": 120, **cancel}, s.ask(130, row, **given),
         {"at": 200}, s.come(210, frame),
     ]  # fmt: skip
-    yield "another request is cancelled, and one that there is none of", [
+    yield "another request is cancelled, and one that does not exist", [
         s.ask(0, row, **given), {"at": 5, **cancel, "telecommand": row.id + 1}, {"at": 6, **cancel, "telemetry": row.id},
         s.come(7, frame), {"at": 8, **cancel},
     ]  # fmt: skip
@@ -152,7 +152,7 @@ def _together(form: Stream, s: Sample) -> Iterator[tuple[str, Script]]:
     yield "each has a time-out of its own", [
         s.ask(0, row, repeat=True, **one), s.ask(50, last, **two), {"at": 100}, {"at": 149}, {"at": 150}, s.come(160, first),
     ]  # fmt: skip
-    yield "two time out at once, and are held back", [
+    yield "two time out at once, and are delayed", [
         s.ask(0, row, **one), s.ask(0, last, **two), {"at": 100}, s.ask(110, row, **one), s.ask(111, last, **two),
         {"at": 200}, s.come(201, second), s.come(202, first),
     ]  # fmt: skip

@@ -116,7 +116,7 @@ def _uart(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]
     yield "after a late acknowledge another id need not wait", [
         s.ask(0, plain, repeat=True), {"at": 100}, ack(120, plain), s.ask(125, other), ack(130, plain), ack(140, other),
     ]  # fmt: skip
-    yield "an acknowledge that nobody waits for", [ack(0, plain), s.request(1, frame), ack(2, plain), reply(3, frame)]
+    yield "an unexpected acknowledge", [ack(0, plain), s.request(1, frame), ack(2, plain), reply(3, frame)]
     yield "the acknowledge of another telecommand", [s.ask(0, plain), ack(1, other), ack(2, plain)]
     yield "a frame", [s.request(0, frame), reply(30, frame)]
     yield "the longest frame and the longest telecommand", [s.request(0, s.wide), reply(90, s.wide), s.ask(91, s.long)]
@@ -134,13 +134,13 @@ def _uart(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]
         {"at": 2, "receive": f"{begin}{finish}{begin}90"}, reply(3, frame),
     ]  # fmt: skip
     cancel = {"cancel": True}
-    yield "cancelled: nobody waits for its acknowledge, and another id need not wait", [
+    yield "cancelled: its acknowledge is unexpected, and another id need not wait", [
         s.ask(0, plain), {"at": 5, **cancel}, s.ask(5, other), ack(6, plain), ack(7, other),
     ]  # fmt: skip
     yield "cancelled, and the same id again", [
         s.ask(0, plain), {"at": 5, **cancel}, s.ask(6, plain), ack(7, plain), {"at": 199}, {"at": 200}, ack(201, plain),
     ]  # fmt: skip
-    yield "cancelled while it is held back", [
+    yield "cancelled while it is delayed", [
         s.ask(0, plain), {"at": 5, **cancel}, s.ask(6, plain), {"at": 7, **cancel}, s.ask(8, plain), {"at": 200}, ack(201, plain),
     ]  # fmt: skip
     yield "cancelled twice, and with nothing to cancel", [
@@ -254,7 +254,7 @@ def _i2c(known: Facts, s: Sample, checked: bool) -> Iterator[tuple[str, list[dic
     near = next((m for m in known.telemetry.values() if m is not wide and m.length == wide.length), wide)
     begin = 320 if near is not wide else 420  # the same id is held back
     old, new = ({"receive": frame(near, bytes((value,)) * near.length)} for value in (1, 2))
-    yield "frames that come when their request has timed out are not those of the next", [
+    yield "frames after the time-out of their request do not belong to the next", [
         s.request(0, wide), *quiet, s.request(begin, near), *({"at": begin + n, **old} for n in (1, 2, 3)),
         {"at": begin + 4, **new},
     ]  # fmt: skip
@@ -279,7 +279,7 @@ def _i2c(known: Facts, s: Sample, checked: bool) -> Iterator[tuple[str, list[dic
         s.request(0, wide), {"at": 1, "cancel": True}, s.ask(2, plain), {"at": 3, **old}, {"at": 4, "receive": ""}, {"at": 14},
         {"at": 15, "cancel": True}, s.request(16, wide), state(17, plain, 1), {"at": 18, **new},
     ]  # fmt: skip
-    yield "more transfers than were asked for", [
+    yield "more transfers than requested", [
         s.request(0, wide), {"at": 1, **new}, {"at": 2, **old}, s.request(3, wide), {"at": 4, **new},
     ]  # fmt: skip
 
@@ -305,7 +305,7 @@ def _can(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
     if len(packets) > 1:
         yield "a long frame, turned round", [s.request(0, wide), *packets[::-1]]
         again = [{**row, "at": 105} for row in packets]
-        yield "a lost packet, and the frame once more", [s.request(0, wide), *packets[1:], {"at": 100}, *again]
+        yield "a lost packet, and the repeated frame", [s.request(0, wide), *packets[1:], {"at": 100}, *again]
     yield "a frame that is too short", [s.request(0, frame), *come(5, "reply", frame_id, bytes(1)), {"at": 100}]
     yield "from another node", [
         s.ask(0, plain),
@@ -316,8 +316,8 @@ def _can(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
         s.ask(0, plain), {"at": 1, "receive": {"id": come(1, "acknowledge", id)[0]["receive"]["id"] ^ 1, "bytes": ""}},
     ]  # fmt: skip
     yield "no reply", [s.request(0, frame), {"at": 100}, {"at": 200}, {"at": 300}]
-    yield "an acknowledge that nobody waits for", come(0, "acknowledge", id)
-    yield "cancelled: nobody waits for its acknowledge", [
+    yield "an unexpected acknowledge", come(0, "acknowledge", id)
+    yield "cancelled: its acknowledge is unexpected", [
         s.ask(0, plain), {"at": 1, "cancel": True}, s.request(2, frame), *come(3, "acknowledge", id),
         *come(4, "reply", frame_id, bytes(frame.length)),
     ]  # fmt: skip

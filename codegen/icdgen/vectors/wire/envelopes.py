@@ -140,7 +140,7 @@ def _nested(form: Stream, direction: str, rows: tuple[StreamRow, ...], good: byt
     line = stream.encode(form, direction, outer.id, (good * outer.most)[: outer.most])
     yield "a message within another one", line + good
     yield "a message within a damaged one", line[:-1] + bytes([line[-1] ^ 0x10]) + good + good
-    yield "messages within one that is cut off", line[:-3] + good + good
+    yield "messages within a truncated message", line[:-3] + good + good
 
 
 def _strangers(form: Stream, direction: str, row: StreamRow, good: bytes) -> Iterator[tuple[str, bytes]]:
@@ -172,7 +172,7 @@ def _gaps(form: Stream, direction: str, row: StreamRow, source: Random) -> Itera
         ("sequence numbers that run over", (place.mask - 1, place.mask, 0, 1)),
         ("a gap in the sequence", (3, 4, 9, 10)),
         ("the same message twice", (3, 3, 4)),
-        ("the sequence begins anew", (7, 0, 1)),
+        ("the sequence restarts", (7, 0, 1)),
     ):
         fitting = [number & place.mask for number in numbers]
         yield why, b"".join(_line(form, direction, row, source, number) for number in fitting)

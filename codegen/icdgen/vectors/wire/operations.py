@@ -35,9 +35,9 @@ def neighbours(allowed: tuple[int, ...]) -> list[int]:
 
 def _allowed(name: str, form: Operation) -> Requests:
     for program in form.programs:
-        yield "a program that it may be asked for", _asked(name, program, [{"at": 0}])
+        yield "a program that can be requested", _asked(name, program, [{"at": 0}])
     for program in neighbours(form.programs):
-        yield "a program that it may not be asked for", _asked(name, program, [{"at": 0}])
+        yield "a program that cannot be requested", _asked(name, program, [{"at": 0}])
 
 
 def _ends(known: Facts, name: str, form: Operation) -> Requests:

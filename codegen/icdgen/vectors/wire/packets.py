@@ -38,7 +38,7 @@ def requests(known: Facts, source: Random) -> Requests:
         about = {"kind": "telecommand", "id": 0x7F, "source": other, "destination": node}
         for size in (most, most + 1):
             yield f"{size} bytes", {"op": "can_split", **about, "bytes": source.randbytes(size).hex()}
-        yield "data where there are none", {"op": "can_split", **about, "kind": "request", "bytes": "00"}
+        yield "data where none is expected", {"op": "can_split", **about, "kind": "request", "bytes": "00"}
         yield from _joins(known, source, other, third)
 
 
@@ -86,7 +86,7 @@ def _joins(known: Facts, source: Random, other: int, third: int) -> Requests:
     ]
     for why, row in rows:
         yield why, {"op": "can_join", "packets": [_row(packet) for packet in row], "end": late}
-    yield "nobody is there for them", {"op": "can_join", "address": node ^ 1, "packets": [_row(p) for p in one]}
+    yield "no receiver for them", {"op": "can_join", "address": node ^ 1, "packets": [_row(p) for p in one]}
     paused = [_row(packet, late - 1) for packet in one[1:]]
     yield "a pause just short enough", {"op": "can_join", "packets": [_row(one[0]), *paused]}
     paused = [_row(packet, late) for packet in one]

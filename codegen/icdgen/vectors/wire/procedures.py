@@ -95,7 +95,7 @@ def _downloads(known: Facts) -> Requests:
     request = {"do": "download", "bus": UART, "type": 2, "counter": 1, "block": 2 * size}
     yield from _recorded(known, "a file of unknown size", request, 0.1)
     request = {"do": "download", "bus": UART, "type": 2, "counter": 2, "size": 131}
-    yield from _recorded(known, "a file that is shorter than was said", request, 0.0)
+    yield from _recorded(known, "a file shorter than announced", request, 0.0)
     yield "an empty file", {"op": "file", **request, "size": 0, "script": [{"at": 0}]}
     request = {"do": "download", "bus": UART, "type": 2, "counter": 1, "size": 3 * size}
     yield from _recorded(known, "nothing arrives", request, 1.0)

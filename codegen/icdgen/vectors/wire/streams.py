@@ -114,7 +114,7 @@ def _kinds(known: Facts, source: Random) -> Iterator[tuple[str, bytes]]:
         yield f"telemetry {id}", bytes([id]) + source.randbytes(message.length)
     first, last = known.telemetry_ids.first, known.telemetry_ids.last
     for id in sorted({first - 1, first, last, last + 1} & set(range(256))):
-        yield f"id {id}, where those of telemetry begin or end", bytes([id, 0])
+        yield f"id {id}, at the ends of the telemetry range", bytes([id, 0])
     if known.log_message and known.mask:
         for mask in masks(known)[:4]:
             data = [source.randbytes(slot.length) for slot in known.mask.selected(mask)]

@@ -7,7 +7,7 @@ use crate::wire::{link, NodeLink};
 /// Bytes that buffers need for the longest message of either direction, with its id and checksum.
 pub const LONGEST: usize = 28;
 
-/// The protocol of node `bootloader`. What the manual leaves open is marked as assumed.
+/// The protocol of node `bootloader`. Facts that the manual omits are marked as assumed.
 ///
 /// Assumed (`boot`, `attempts`): One attempt and two more are announced. But the status is raised
 /// before each start, so it reads 3 Failed boot attempts before the third, and at that value no

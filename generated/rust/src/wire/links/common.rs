@@ -7,7 +7,7 @@ use crate::wire::{link, NodeLink};
 /// Bytes that buffers need for the longest message of either direction, with its id and checksum.
 pub const LONGEST: usize = 28;
 
-/// The protocol of node `common`. What the manual leaves open is marked as assumed.
+/// The protocol of node `common`. Facts that the manual omits are marked as assumed.
 ///
 /// Assumed (`file_transfer.upload`, `poll_interval_ms`): No time is given.
 ///
