@@ -22,7 +22,8 @@ _ORDERS = {
 _BITS = {"lsb": "lsb0", "lsb_first": "lsb0", "msb": "msb0", "msb_first": "msb0"}
 _SIZED = re.compile(r"(u?)(?:int)?(\d{1,2})(?:_t)?|(s|i)(\d{1,2})|f(?:loat)?(32|64)")
 _TYPES = {
-    "double": "`type: float` with `bits: 64`", "unsigned": "`type: uint`", "signed": "`type: int`", "integer": "`type: int`",
+    "double": "`type: float` with `bits: 64`, or `int` or `uint` if the raw value is an integer with a formula",
+    "unsigned": "`type: uint`", "signed": "`type: int`", "integer": "`type: int`",
     "boolean": "`type: bool` with `bits: 1`", "flag": "`type: bool` with `bits: 1`", "enumeration": "`type: enum`",
     "string": "`type: text`", "str": "`type: text`", "char": "`type: uint` with `bits: 8`", "byte": "`type: uint` with `bits: 8`",
 }  # fmt: skip

@@ -110,16 +110,21 @@ def faults_of_count(message: Map, item: Map) -> Iterator[Fault]:
     same = next((one for one in others if counting(one).name == said), None)
     if same is not None:
         text = f"`{said}`, which counts {name}, counts `{same['name']}` already"
-        yield Fault.at(item, key, text, "each open part has a field of its own that counts it")
+        yield Fault.at(item, key, text, "each variable-length field has a counter of its own")
     odd = _odd(counter, message)
     if odd:
         text = f"`{counter['name']}`, which counts {name}, {odd}"
-        yield Fault.at(item, key, text, "what counts is an unsigned number in the bytes before")
+        help = "a counter is an unsigned number without a formula, in the bytes in front of what it counts"
+        yield Fault.at(item, key, text, help)
         return
     most, elements = (1 << counter["bits"]) - 1 + plus, "bytes" if key == "size" else "elements"
     if most < item["up_to"]:
-        text = f"`{counter['name']}` counts up to {max(most, 0):,}, and {name} has up to {item['up_to']:,} {elements}"
-        yield Fault.at(item, "up_to", text, "correct `up_to`, or the `bits` of the field that counts")
+        added = f" plus {plus}" if plus else ""
+        counter_text = f"`{counter['name']}` ({counter['bits']} bits{added})"
+        text = f"{counter_text} counts up to {max(most, 0):,}, and {name} has up to {item['up_to']:,} {elements}"
+        smaller = f"write `up_to: {most}`" if most > 0 else "correct `up_to`"
+        also = "`plus` or " if plus else ""
+        yield Fault.at(item, "up_to", text, f"{smaller}, or correct {also}the `bits` of `{counter['name']}`")
     elif plus > item["up_to"]:
         text = f"{name} has at least {plus:,} {elements}, and up to {item['up_to']:,}"
         yield Fault.at(item, "up_to", text, "correct `up_to`, or `plus`")
@@ -158,7 +163,12 @@ def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Fault
     written = [one["name"] for one in parts]
     if item.get("after") in written[written.index(item["name"]) + 1 :]:
         text = f"{name} comes after `{item['after']}`, which is written behind it"
-        yield Fault.at(item, "after", text, "write open parts in the order in which they stand in a frame")
+        yield Fault.at(
+            item,
+            "after",
+            text,
+            "write variable-length fields in the order of the frame; `after` names the one directly in front",
+        )
         return
     if before is None and "after" in item:
         text = f"{name} comes after `{item['after']}`, and no part in front of it is open"

@@ -58,7 +58,7 @@ def checksums_are_heeded(ctx: Context) -> Iterator[Fault]:
         size, other = telemetry.get("extra_bytes"), said(node, "crc8", "telecommand", "extra_bytes")
         if size is not None and other is not None and size != other:
             message = f"the checksum adds {count(size, 'byte')} to telemetry and {other} to telecommands"
-            yield Fault.at(telemetry, "extra_bytes", message, "a checksum has one size: make them agree")
+            yield Fault.at(telemetry, "extra_bytes", message, "a checksum has one size: correct one of the two")
         speak_can = any(CAN in ctx.protocol_of(one) for one in ctx.icd.nodes if node in ctx.scope(one))
         if speak_can and CAN in telemetry.get("buses", (CAN,)):
             crc8 = node.source["protocol"]["crc8"]

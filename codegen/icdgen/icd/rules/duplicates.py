@@ -17,7 +17,7 @@ from icdgen.icd.units import STANDARD
 
 T = TypeVar("T")
 Aliased: TypeAlias = Message | Field | Enum | Member | Struct
-PRINTED_TWICE = "if the manual prints the name twice, an erratum holds another"
+PRINTED_TWICE = "rename one; if the manual prints both under this name, rename one in the errata file, or remove a copy"
 
 
 def _twice(items: Iterable[T], key: Callable[[T], Hashable]) -> Iterator[tuple[T, T]]:

@@ -10,7 +10,7 @@ from icdgen.icd.located import Map, Seq, unread
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node
 from icdgen.icd.rules.context import Context, section_of
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import count, listing, quote, suggestion
+from icdgen.icd.rules.wording import count, line_of, listing, quote, suggestion, without_highest_term
 from icdgen.icd.trees import at_path, mappings
 
 DIRECTIONS = (TELECOMMAND, TELEMETRY)
@@ -235,10 +235,16 @@ def _checksum(ctx: Context, link: Link, part: str, row: Map, known: Map) -> Iter
         yield Fault.at(known, "width", message, "correct `width` or `kind`")
     elif width != row["bits"]:
         message = f"the checksum has {width} bits, its field {row['bits']}"
-        yield Fault.at(row, "bits", message, "make them agree")
+        yield Fault.at(
+            row,
+            "bits",
+            message,
+            f"correct `bits` of the field, or `width` ({line_of(known.at('width'), row.at('bits'))})",
+        )
     for key in ("polynomial", "init", "xor_out", "empty", "check"):
         if isinstance(known.get(key), int) and known[key] >> width > 0:
-            yield Fault.at(known, key, f"`{key}` does not fit {count(width, 'bit')}", f"correct `{key}` or `width`")
+            help = without_highest_term(key, known[key], width) or f"correct `{key}` or `width`"
+            yield Fault.at(known, key, f"`{key}` does not fit {count(width, 'bit')}", help)
     if known["kind"] != "crc":
         for key in ("polynomial", "reflect_in", "reflect_out", "empty"):
             if key in known:
@@ -260,7 +266,7 @@ def _covered(link: Link, part: str, row: Map, known: Map) -> Iterator[Fault]:
             yield Fault.at(covers, key, message, "name the role of a field of the envelope, or `data`")
             return
         if role != DATA and found[0][0] != where:
-            message = f"it covers one piece through the data, and the {role} stands in the {found[0][0]}"
+            message = f"a checksum covers the data, but `{key}: {role}` names a field of the {found[0][0]}"
             help = "`from` names a field of the header or `data`, `to` one of the trailer or `data`"
             yield Fault.at(covers, key, message, help)
             return

@@ -221,7 +221,7 @@ def only_what_is_sent(ctx: Context) -> Iterator[Fault]:
         if message.kind == TELEMETRY:
             for key in ("acknowledge", "hazard"):
                 if key in message.source:
-                    text = f"`{key}` says something of what is sent, and {quote(message.name)} is telemetry"
+                    text = f"`{key}` is for messages that are sent to the node; {quote(message.name)} is telemetry"
                     yield Fault.at(message.source, key, text, "remove it, or correct `kind`")
 
 

@@ -11,7 +11,7 @@ from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, KEYS_OF_IDS, Message, 
 from icdgen.icd.rules.context import Context, said, section_of
 from icdgen.icd.rules.protocol_sizes import numbers, of_one_number
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import count, listing, quote
+from icdgen.icd.rules.wording import count, listing, quote, without_highest_term
 from icdgen.icd.trees import at_path, mappings
 
 BYTE = 255
@@ -114,7 +114,8 @@ def _checksum(crc: Map) -> Iterator[Fault]:
     for key in ("polynomial", "init", "xor_out", "empty", "check"):
         value = crc.get(key)
         if isinstance(value, int) and value >= 1 << width:
-            yield Fault.at(crc, key, f"`{key}` does not fit {width} bits", f"correct `{key}` or `width`")
+            help = without_highest_term(key, value, width) or f"correct `{key}` or `width`"
+            yield Fault.at(crc, key, f"`{key}` does not fit {width} bits", help)
     for direction in ("telecommand", "telemetry"):
         extra = at_path(crc, (direction, "extra_bytes"))
         if isinstance(extra, int) and extra * 8 < width:

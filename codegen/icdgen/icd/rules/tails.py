@@ -20,8 +20,9 @@ def counted(ctx: Context) -> Iterator[Fault]:
             yield from tails.faults_of_count(message.source, item)
     for field, _, _ in ctx.members:
         if "up_to" in field.source and not tails.is_open(field.source):
-            text = f"{quote(field.name)} is as large as its {'`count`' if field.count else '`bits`'} says, so there is no `up_to`"
-            help = "remove `up_to`; the largest value that it may have is `max`"
+            size = f"`count: {field.count}`" if field.count else "`bits`"
+            text = f"{quote(field.name)} has a fixed size ({size}), so `up_to` has no effect"
+            help = "remove `up_to`; the largest value of a number is `max`"
             yield Fault.at(field.source, "up_to", text, help)
 
 
@@ -34,7 +35,7 @@ def at_the_end(ctx: Context) -> Iterator[Fault]:
     for field, _, _ in ctx.members:
         if "after" in field.source and not tails.is_open(field.source):
             text = f"{quote(field.name)} has a fixed size, so it has a fixed place, too"
-            help = "remove `after`; behind what is open only more that is open can stand"
+            help = "remove `after`; only fields of variable length can stand behind one of variable length"
             yield Fault.at(field.source, "after", text, help)
     for message, node in ctx.messages:
         for item in tails.open_parts(message.source):

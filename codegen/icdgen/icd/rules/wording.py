@@ -33,6 +33,13 @@ def count(number: int, noun: str) -> str:
     return f"{number:,} {noun}" + ("" if number == 1 else "s")
 
 
+def without_highest_term(key: str, value: int, width: int) -> str:
+    """Return the help for a CRC polynomial that is written with its highest term; empty for any other value."""
+    if key != "polynomial" or value >> width != 1:
+        return ""
+    return f"write it without its highest term: 0x{value & (1 << width) - 1:0{-(-width // 4)}X}"
+
+
 def listing(items: Iterable[str]) -> str:
     """``a``, ``a and b``, ``a, b and c``"""
     *most, last = items
