@@ -392,6 +392,6 @@ def test_messages_that_nothing_tells_apart_are_counted_and_that_is_said(tmp_path
 def test_the_command_reads_them_and_says_what_it_found(tmp_path):
     result = icdgen("import", str(SHEETS / "camera.xml"), "--out", "icd", cwd=tmp_path)
     assert result.returncode == 0, result.stdout + result.stderr
-    assert "camera.xml: an electronic data sheet (CCSDS SOIS), 4 of 4 messages held\n" in result.stdout
+    assert "camera.xml: an electronic data sheet (CCSDS SOIS), 4 of 4 messages imported\n" in result.stdout
     assert result.stdout.endswith("`icdgen check icd/camera.yaml`: no findings\n")
     assert icdgen("fmt", "--check", "icd", cwd=tmp_path).returncode == 0

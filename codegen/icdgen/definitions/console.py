@@ -33,7 +33,7 @@ def _lines(read: Read, colour: bool) -> list[str]:
 def _summary(read: Read) -> list[str]:
     names, found = read.identifiers, read.definitions
     lines = [
-        f"{found.files}: {read.kind}, {read.held} of {found.total} messages held",
+        f"{found.files}: {read.kind}, {read.held} of {found.total} messages imported",
         console.severities(found.troubles),
     ]
     if names:
