@@ -175,7 +175,7 @@ def test_everything_wrong_is_said_at_once(icd):
         "Commanded X speed: takes -327.68 to 327.67 deg/s, not 1000",
         "Timeout: `a` is not a number (in s)",
     ]
-    assert error.help == "`icdgen show top 'Set Speed'` says what each field takes"
+    assert error.help == "`icdgen show top 'Set Speed'` lists the values of each field"
 
 
 def test_a_remedy_stands_with_what_it_is_good_for(icd):

@@ -8,9 +8,18 @@ from typing import NamedTuple
 
 from icdgen.backends import Identifier
 from icdgen.backends.c import names
+from icdgen.backends.c.declared_names import declared_names
+from icdgen.backends.c.short_names import with_short_names
 from icdgen.backends.c.types import type_of
 from icdgen.backends.origin import origin
-from icdgen.describe import EnumDescription, FieldDescription, MessageDescription, NodeDescription, describe
+from icdgen.describe import (
+    Description,
+    EnumDescription,
+    FieldDescription,
+    MessageDescription,
+    NodeDescription,
+    describe,
+)
 from icdgen.icd.model import Icd
 from icdgen.render import Renderer
 from tests.conformance.testees import RUNTIME, TEMPLATES
@@ -96,6 +105,10 @@ class CTesteeBackend:
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """Files that are the same for every ICD, the list of nodes, and one file a node."""
         description = describe(icd)
+        yield from with_short_names(self._files(description, render), lambda: declared_names(description))
+
+    def _files(self, description: Description, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
+        """The files with the names of the plan, of which the C backend shortens some."""
         linked = {place: node.name for place, node in enumerate(description.nodes) if node.is_linked}
         for name in render.runtime_files():
             if linked or name in MESSAGES:
