@@ -194,17 +194,8 @@ class Builder:
         for row in self.items("derived", item):
             with suppress(formula.FormulaError):
                 members = members_of(flat.fields_of(layout, self.scope.layouts))
-                node = Derived(
-                    name=row["name"],
-                    identifier=row.get("identifier"),
-                    aliases=tuple(row.get("aliases", ())),
-                    summary=row.get("summary", ""),
-                    derivation=derived.of_fields(row["formula"], members),
-                    formula=row["formula"],
-                    display=display_of(row.get("display")),
-                    unit=self.scope.units.get(row.get("unit", "")),
-                    source=row,
-                )
+                derivation = derived.of_fields(row["formula"], members)
+                node = derived_node(row, derivation, self.scope.units.get(row.get("unit", "")))
                 layout = replace(layout, derived=(*layout.derived, node))
         return layout
 
@@ -331,6 +322,21 @@ def missing(item: Map) -> annex.Missing:
 def _printed(item: Map) -> Map:
     """Where the manual prints it."""
     return item.get("source") or unread()
+
+
+def derived_node(row: Map, derivation: derived.Derivation, unit: Unit | None) -> Derived:
+    """Return the node of a derived value."""
+    return Derived(
+        name=row["name"],
+        identifier=row.get("identifier"),
+        aliases=tuple(row.get("aliases", ())),
+        summary=row.get("summary", ""),
+        derivation=derivation,
+        formula=row["formula"],
+        display=display_of(row.get("display")),
+        unit=unit,
+        source=row,
+    )
 
 
 def _overlaid(scalar: Scalar, item: Map) -> Scalar | Overlay:

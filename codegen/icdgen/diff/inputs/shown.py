@@ -14,12 +14,12 @@ from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.diff.inputs.side import Side
 from icdgen.errors import UserError, unreadable
 from icdgen.icd import annex, curve, derived, flat, model, schema, source
+from icdgen.icd.build import derived_node
 from icdgen.icd.display import display_of
 from icdgen.icd.formula import FormulaError, Scale
 from icdgen.icd.layout import (
     Array,
     Counted,
-    Derived,
     FixedNode,
     Layout,
     Orders,
@@ -206,18 +206,8 @@ class _Reader:
             except FormulaError as error:
                 text = f"`formula` cannot be used: {error}"
                 raise Findings([Finding("ICD010", text, row.at("formula"), _HELP)]) from None
-            value = Derived(
-                name=row["name"],
-                identifier=row.get("identifier"),
-                aliases=tuple(row.get("aliases", ())),
-                summary=row.get("summary", ""),
-                derivation=derivation,
-                formula=row["formula"],
-                display=display_of(row.get("display")),
-                unit=self.units.get(row.get("unit", "")),
-                source=row,
-            )
-            layout = replace(layout, derived=(*layout.derived, value))
+            node_of_row = derived_node(row, derivation, self.units.get(row.get("unit", "")))
+            layout = replace(layout, derived=(*layout.derived, node_of_row))
         return layout
 
     def message(self, item: Map, node: str) -> model.Message:

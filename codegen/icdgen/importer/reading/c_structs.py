@@ -17,6 +17,7 @@ from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.errors import UserError
 from icdgen.importer.document import Block, Cell, Document, Heading, SourceRow, Spot, Table, Text, Trouble
 from icdgen.importer.reading.c_text import CText
+from icdgen.importer.reading.utf8 import utf8_text
 
 CODE = "IMP002"
 COLUMNS = ("Byte", "Bit", "Bits", "Type", "Name", "Count", "Members", "Comment")
@@ -68,12 +69,7 @@ class Layout:
 
 def read_header(path: Path) -> Document:
     """Return the document of a header file. Raises `Findings` if it is no C, `UserError` without pycparser."""
-    try:
-        text = path.read_bytes().decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise Findings(
-            [Finding(CODE, f"the file is not UTF-8: {error.reason}", Place(str(path)), "save it as UTF-8")]
-        ) from None
+    text = utf8_text(path, "save it as UTF-8")
     document = Document(str(path), needs_rules=True)
     try:
         document.blocks, document.troubles = read_structs(text)

@@ -13,6 +13,7 @@ from icdgen.errors import UserError
 from icdgen.importer.document import Block, Cell, Document, Heading, SourceRow, Table, Text
 from icdgen.importer.profile import Profile
 from icdgen.importer.reading.captions import Caption, attach_captions
+from icdgen.importer.reading.utf8 import utf8_text
 from icdgen.importer.words import CONTINUED, plain, table_number
 
 CODE = "IMP002"
@@ -30,12 +31,7 @@ def read_markdown(path: Path, profile: Profile) -> Document:
     """Return the document of a Markdown file: GitHub's tables, and HTML tables within it."""
     from markdown_it import MarkdownIt
 
-    try:
-        text = path.read_bytes().decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise Findings(
-            [Finding(CODE, f"the file is not UTF-8: {error.reason}", Place(str(path)), "save it as UTF-8")]
-        ) from None
+    text = utf8_text(path, "save it as UTF-8")
     made = MarkdownIt("commonmark", {"html": True}).enable("table").render(text)
     return _of_html(f'<html><meta charset="utf-8"><body>{made}</body></html>'.encode(), str(path), profile)
 

@@ -16,6 +16,7 @@ from typing import Any
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.errors import UserError
 from icdgen.importer.document import Block, Cell, Document, Heading, SourceRow, Spot, Table, Text, Trouble
+from icdgen.importer.reading.utf8 import utf8_text
 
 CODE = "IMP002"
 MOST_ROWS, MOST_COLUMNS = 100_000, 1_000  # of a sheet: sheets that are formatted to their end have a million rows
@@ -25,13 +26,7 @@ Cells = list[tuple[int, list[Cell]]]  # number of the row, counted from 1, and t
 def read_csv(path: Path) -> Document:
     """Return the document of a CSV file. Raises `Findings` if it is not UTF-8 or no CSV."""
     name = str(path)
-    data = path.read_bytes()
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = data[: error.start].count(b"\n") + 1
-        problem = f"byte 0x{data[error.start]:02X} is not UTF-8"
-        raise Findings([Finding(CODE, problem, Place(name, line), "save it as CSV in UTF-8")]) from None
+    text = utf8_text(path, "save it as CSV in UTF-8")
     delimiter = max(",;\t|", key=text[:10_000].count)
     rows: Cells = []
     reader = csv.reader(io.StringIO(text), delimiter=delimiter, strict=True)

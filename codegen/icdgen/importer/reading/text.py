@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.importer import headings, labels
 from icdgen.importer.document import Block, Document, Heading, Row, Table, Text
 from icdgen.importer.profile import Profile
 from icdgen.importer.reading.captions import Caption, attach_captions
+from icdgen.importer.reading.utf8 import utf8_text
 from icdgen.importer.understand import grids
 from icdgen.importer.words import CONTINUED, plain, table_number
 
@@ -20,13 +20,7 @@ _HEADING = re.compile(r"(?P<number>[0-9]+(?:\.[0-9]+)*)\.?\s+(?P<text>[A-Z].*)\Z
 def read(path: Path, profile: Profile) -> Document:
     """The document of a text. Raises `Findings` if it is not UTF-8."""
     name = str(path)
-    data = path.read_bytes()
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = data[: error.start].count(b"\n") + 1
-        raise Findings([Finding("IMP002", f"byte 0x{data[error.start]:02X} is not UTF-8", Place(name, line),
-                                "save the text as UTF-8")]) from None  # fmt: skip
+    text = utf8_text(path, "save the text as UTF-8")
     document = Document(name)
     reader = _Reader(profile, name)
     for number, words in enumerate(re.split("\r\n|[\n\r]", text), 1):
