@@ -273,3 +273,91 @@ def test_a_statement_that_cantools_refuses_costs_its_message_and_not_the_file(tm
     assert [one["name"] for one in tree_of(read)["messages"]] == ["Good"] and read.definitions.total == 2
     (error,) = [one for one in read.definitions.troubles if one.severity == "error"]
     assert error.code == "IMP070" and "message `Bad` is not imported" in error.message and error.spot.line == 8
+
+
+def test_messages_of_one_name_are_all_imported_by_sender_or_by_id(tmp_path):
+    text = HEAD + "".join(
+        f'BO_ {id} Status: 1 {sender}\n SG_ Level : 0|8@1+ (1,0) [0|0] "" Display\n\n'
+        for id, sender in ((256, "Engine"), (257, "Gateway"))
+    )
+    read = imported(text, tmp_path)
+    assert [one["name"] for one in tree_of(read)["messages"]] == ["Engine Status", "Gateway Status"]
+    assert "IMP092" in [one.code for one in read.definitions.troubles]
+
+    read = imported(text.replace("1 Gateway", "1 Engine"), tmp_path)
+    assert [one["name"] for one in tree_of(read)["messages"]] == ["Status 0x100", "Status 0x101"]
+    model(read, tmp_path)
+
+
+KCD = """\
+<NetworkDefinition xmlns="http://kayak.2codeornot2code.org/1.0">
+  <Document name="Vehicle"/>
+  <Node id="1" name="Engine"/>
+  <Bus name="Drive" baudrate="500000">
+    <Message id="0x100" name="Status" length="2" count="3">
+      <Producer><NodeRef id="1"/></Producer>
+      <Signal name="Level" offset="0" length="8">
+        <LabelSet><Label name="Low" value="0"/><LabelGroup name="High" from="1" to="9"/></LabelSet>
+      </Signal>
+    </Message>
+  </Bus>
+</NetworkDefinition>
+"""
+SYM = """\
+FormatVersion=6.0 // Do not edit this line!
+Title="Vehicle"
+
+{SENDRECEIVE}
+[Status]
+ID=100h
+Len=8
+Timeout=500
+Var=Level unsigned 0,8 /u:"/x:" /d:3 // comment with /e:
+Var=Serial string 8,32 /ln:"serial number"
+"""
+ARXML = """\
+<?xml version="1.0" encoding="UTF-8"?>
+<AUTOSAR xmlns="http://autosar.org/schema/r4.0">
+  <AR-PACKAGES>
+    <AR-PACKAGE>
+      <SHORT-NAME>Vehicle</SHORT-NAME>
+      <ELEMENTS>
+        <SYSTEM><SHORT-NAME>Car</SHORT-NAME></SYSTEM>
+        <LIN-CLUSTER><SHORT-NAME>Doors</SHORT-NAME></LIN-CLUSTER>
+      </ELEMENTS>
+    </AR-PACKAGE>
+  </AR-PACKAGES>
+</AUTOSAR>
+"""
+
+
+@pytest.mark.parametrize(
+    ("reader", "text", "unused"),
+    [
+        (
+            can.Kcd(),
+            KCD,
+            [
+                ("`baudrate` of `Bus` is not used (`Drive`)", 4),
+                ("`count` of `Message` is not used (`Status`)", 5),
+                ("`LabelGroup` of `LabelSet` is not used", 8),
+            ],
+        ),
+        (
+            can.Sym(),
+            SYM,
+            [
+                ("`Timeout` is not used (`Status`)", 8),
+                ("`/d:` of `Var` is not used (`Status`)", 9),
+                ("`/ln:` of `Var` is not used (`Status`)", 10),
+                ("`type string` of `Var` is not used (`Status`)", 10),
+            ],
+        ),
+        (can.Arxml(), ARXML, [("`LIN-CLUSTER` of `ELEMENTS` is not used (`Doors`)", 8)]),
+    ],
+    ids=["kcd", "sym", "arxml"],
+)
+def test_what_cantools_drops_of_a_file_is_reported(reader, text, unused):
+    definitions = reader.read("vehicle", text.encode())
+    found = [(one.message, one.spot.line) for one in definitions.troubles if one.code == "IMP085"]
+    assert [one for one in found if one[1] is not None] == unused

@@ -135,7 +135,8 @@ def test_encodings_that_no_field_has_are_held_raw_and_said_and_names_are_given_t
     raw = {name: field(gyro, "State", name)["type"] for name in ("Offset", "Scale", "Drift")}
     assert raw == {"Offset": "uint", "Scale": "uint", "Drift": "int"}
     told = [text for code, text in said(gyro) if code == "IMP078"]
-    assert "`Offset`: it is encoded as onesComplement" in told and "`Number`: it is encoded as packedBCD" in told
+    assert "`Offset` (message `State`): it is encoded as onesComplement" in told
+    assert "`Number` (message `Serial`): it is encoded as packedBCD" in told
     enums = {one["name"]: [member["value"] for member in one["members"]] for one in gyro.trees["gyro"]["enums"]}
     assert enums == {"Sign": [0, 1, 129], "Trend": [-1, 1], "Wide": [0, 1]}
     assert field(gyro, "Serial", "Revision")["const"] == -3

@@ -86,7 +86,7 @@ def test_what_no_formula_and_no_table_says_is_held_raw_and_said(tmp_path, old, n
     held = field(read, "Safe", "Curve")
     assert held.keys().isdisjoint(("points", "outside", "formula", "unit"))
     (trouble,) = read.definitions.troubles
-    assert trouble.code == "IMP078" and trouble.message.startswith(f"`Curve`: {why}")
+    assert trouble.code == "IMP078" and trouble.message.startswith(f"`Curve` (message `Safe`): {why}")
 
 
 def test_bytes_of_a_size_that_is_sent_go_to_the_end_of_the_packet(probe):
@@ -128,7 +128,7 @@ def test_commands_have_the_arguments_of_their_base_with_the_values_that_they_giv
 
 def test_what_is_held_raw_is_said_with_the_reason(lander):
     assert [one.message for one in lander.definitions.troubles if one.code == "IMP078"] == [
-        "`Digits`: an integer is encoded as `BCD`"
+        "`Digits` (message `Clock`): an integer is encoded as `BCD`"
     ]
 
 
@@ -230,7 +230,7 @@ def test_a_number_of_known_size_and_unknown_encoding_costs_its_meaning_alone(typ
     (tmp_path / "a.xml").write_text(system(container("A"), types))
     read = run.read(tmp_path / "a.xml", xtce.Xtce())
     (trouble,) = read.definitions.troubles
-    assert (trouble.code, trouble.message) == ("IMP078", f"`P`: {says}") and "raw bits" in trouble.help
+    assert (trouble.code, trouble.message) == ("IMP078", f"`P` (message `A`): {says}") and "raw bits" in trouble.help
     assert message(read, "A")["fields"] == [{"at": 0, "bits": bits, "name": "P", "type": "uint"}]
 
 
@@ -356,7 +356,7 @@ def test_a_time_whose_scale_is_no_number_is_held_raw(scale, tmp_path):
     (tmp_path / "lander.xml").write_text(text)
     read = run.read(tmp_path / "lander.xml", xtce.Xtce())
     assert "formula" not in field(read, "Power", "At") and "unit" not in field(read, "Power", "At")
-    assert f"`At`: a coefficient is `{scale}`" in [one.message for one in read.definitions.troubles]
+    assert f"`At` (message `Power`): a coefficient is `{scale}`" in [one.message for one in read.definitions.troubles]
 
 
 def test_messages_of_one_name_are_told_apart(lander):

@@ -8,7 +8,7 @@ from fractions import Fraction
 from pathlib import PurePath
 from typing import Any
 
-from icdgen.definitions import dbc, frames, safe_xml
+from icdgen.definitions import can_accounting, dbc, frames, safe_xml
 from icdgen.definitions.accounting import Account, AccountedObject
 from icdgen.definitions.enumerations import Enumerations
 from icdgen.definitions.model import Definitions, Item, Network, NotHeld, raws, unreadable
@@ -45,12 +45,13 @@ class _Database:
         for bus, messages in _buses(self.database(file, data, to)).items():
             stem = PurePath(file).stem
             to.networks.append(_network(f"{stem} {bus}".strip(), messages, account, to))
-        self.account_for(_text(data), account, {one.spot.line for one in to.troubles})
+        self.account_for(file, data, account, {one.spot.line for one in to.troubles})
         account.report(to)
         return to
 
-    def account_for(self, text: str, account: Account, reported: set[int | None]) -> None:
-        """Count what the file says beside its messages and signals, and nobody used, but for lines that a finding names."""
+    def account_for(self, file: str, data: bytes, account: Account, reported: set[int | None]) -> None:
+        """Count what cantools or `can` do not use of the file, except for lines that a finding names."""
+        raise NotImplementedError
 
     def database(self, file: str, data: bytes, to: Definitions) -> Any:
         """cantools' own reading."""
@@ -83,8 +84,8 @@ class Dbc(_Database):
         dbc.give_long_names(database.messages)
         return database
 
-    def account_for(self, text: str, account: Account, reported: set[int | None]) -> None:
-        dbc.account_for(text.replace("\r\n", "\n"), account, reported)
+    def account_for(self, file: str, data: bytes, account: Account, reported: set[int | None]) -> None:
+        dbc.account_for(_text(data).replace("\r\n", "\n"), account, reported)
 
 
 class Sym(_Database):
@@ -93,6 +94,9 @@ class Sym(_Database):
     name = "sym"
     title = "a symbol file (SYM)"
     begins = r"\A\s*FormatVersion\s*="
+
+    def account_for(self, file: str, data: bytes, account: Account, reported: set[int | None]) -> None:
+        can_accounting.account_for_sym(_text(data), account)
 
 
 class _Xml(_Database):
@@ -113,6 +117,9 @@ class Kcd(_Xml):
     name, root = "kcd", "NetworkDefinition"
     title = "a CAN definition (KCD)"
 
+    def account_for(self, file: str, data: bytes, account: Account, reported: set[int | None]) -> None:
+        can_accounting.account_for_kcd(safe_xml.parse(file, data, account=Account()), account)
+
 
 class Arxml(_Xml):
     """AUTOSAR's system descriptions, as far as they describe CAN."""
@@ -120,6 +127,9 @@ class Arxml(_Xml):
     name, root = "arxml", "AUTOSAR"
     title = "an AUTOSAR system description (ARXML)"
     most_bytes = 64_000_000  # it says everything at length
+
+    def account_for(self, file: str, data: bytes, account: Account, reported: set[int | None]) -> None:
+        can_accounting.account_for_arxml(safe_xml.parse(file, data, account=Account()), account)
 
 
 def _text(data: bytes) -> str:
@@ -155,6 +165,7 @@ def _network(title: str, messages: list[Any], account: Account, to: Definitions)
         account.attributes(of, "message", f"`{message.name}`")
         for signal in signals:
             account.attributes(signal, "signal", f"message `{message.name}`, `{signal.name}`")
+    network.name_messages_apart(to)
     network.declare(enums.declared())
     return network
 

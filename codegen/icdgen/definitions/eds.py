@@ -75,9 +75,10 @@ def _define(sheets: Sheets, to: Definitions) -> None:
     types, structs = Types(to, sheets), Structs()
     sent, alone = Interfaces(sheets).sent()
     found = [one for one in (_read(sending, sheets, types, structs, to) for sending in sent) if one is not None]
+    types.report_raw_only()
     network = Network(node_name(to.file), _title(sheets) or node_name(to.file), {**ORDERS[BIG]})
     packets.fill(network, found, to)
-    packets.apart(network.messages)
+    network.name_messages_apart(to)
     _say_process([one for one in found if one.is_by_interface], to)
     _say_unsent(alone, sheets, to)
     network.structs = _used(list(structs.items.values()), network.messages)
@@ -123,6 +124,7 @@ def _read(sending: Sending, sheets: Sheets, types: Types, structs: Structs, to: 
     """A container that is sent; None, and said, where it is not imported."""
     to.total += 1
     container = sending.container
+    types.message = line(container.get("name"), 200)
     layout = Layout(sheets, types, structs)
     try:
         layout.read(container)

@@ -17,7 +17,7 @@ from icdgen.definitions.wording import line, summary, unit, without_type
 from icdgen.definitions.xtce_calibration import calibrated
 from icdgen.icd.tails import MOST_BYTES
 
-RAW_ONLY = "IMP078"
+_BITS_ONLY = "its raw bits are imported as a number, without unit and limits"  # what a finding says
 CONTAINER, ARRAY, SUBRANGE = "ContainerDataType", "ArrayDataType", "SubRangeDataType"
 _DEEPEST = 20  # types that are based on each other
 _WORD = 64  # bits of the largest number
@@ -106,7 +106,7 @@ class Types(Reading):
         bits = self._size(encoding, where)
         order = self._order(encoding, bits, where)
         if code not in (UNSIGNED, TWOS) and not has_names:  # those are given to the bits
-            self._raw_only(where, f"it is encoded as {code}")
+            self.raw_only(where, f"it is encoded as {code}", _BITS_ONLY)
         if bits > _WORD:
             return self._wide(bits, order, where)
         return Piece({"type": "int" if code == TWOS else "uint"}, bits, order, code)
@@ -119,7 +119,7 @@ class Types(Reading):
         order = self._order(encoding, bits, where)
         if _FLOATS.get(said.lower()) == bits:
             return Piece({"type": "float"}, bits, order)
-        self._raw_only(where, f"it is encoded as {line(said, 60)} of {bits} bits")
+        self.raw_only(where, f"it is encoded as {line(said, 60)} of {bits} bits", _BITS_ONLY)
         return self._wide(bits, order, where) if bits > _WORD else Piece({"type": "uint"}, bits, order, "")
 
     def _wide(self, bits: int, order: str, where: str) -> Piece:
@@ -211,7 +211,7 @@ class Types(Reading):
             if entry.tag != "LengthEntry":  # whose calibration says how long a container is
                 found |= calibrated(entry) or {}
         except ValueError as error:
-            self._raw_only(where, str(error))
+            self.raw_only(where, str(error), _BITS_ONLY)
             return found
         if not found and "special" not in made.item and made.range != ALL:
             found |= eds_ranges.limited(made.item, made.bits, made.range)
@@ -224,10 +224,6 @@ class Types(Reading):
                     if one is not None and (text := self.sheets.attribute(one, key)):
                         return {**unit(_SI.get(text.lower(), text))}
         return {}
-
-    def _raw_only(self, where: str, why: str) -> None:
-        if self.is_new(f"{where}: {why}"):
-            self.to.warn(RAW_ONLY, f"{where}: {why}", "its raw bits are imported as a number, without unit and limits")
 
 
 def described(element: Element) -> dict[str, str]:

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple, Protocol
 
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.icd import units, wire_ids
+from icdgen.icd.fmt.emit import Spelled
 from icdgen.icd.model import KEYS_OF_IDS
 from icdgen.importer.document import Spot, Trouble
 
@@ -16,6 +17,7 @@ UNREADABLE = "IMP005"
 NOT_HELD = "IMP070"
 WITHOUT_FIELD = "IMP091"
 RAW_ONLY = "IMP078"
+SAME_NAME = "IMP092"
 
 Item = dict[str, Any]  # a message, field, enumeration, member or struct as it stands in an ICD
 
@@ -50,6 +52,28 @@ class Network:
         """Takes those enumerations that a field has."""
         used = {one.get("enum") for one in self.fields}
         self.enums = [one for one in enums if one["name"] in used]
+
+    def name_messages_apart(self, to: Definitions) -> None:
+        """Put group or kind in front of the names of messages with the same name, or else the id behind, with a note (IMP092)."""
+        by_name: dict[str, list[Item]] = {}
+        for message in self.messages:
+            by_name.setdefault(message["name"], []).append(message)
+        for name, messages in by_name.items():
+            if len(messages) == 1:
+                continue
+            for key in ("group", "kind"):
+                values = [message.get(key) for message in messages]
+                if len(set(values)) == len(messages):
+                    names = [f"{value} {name}" if value else name for value in values]
+                    break
+            else:
+                ids = [message[KEYS_OF_IDS[message["kind"]][0][0]] for message in messages]
+                names = [f"{name} {id.spelling if isinstance(id, Spelled) else id}" for id in ids]
+            for message, distinct in zip(messages, names, strict=True):
+                message["name"] = distinct
+            shown = ", ".join(f"`{distinct}`" for distinct in names)
+            text = f"{len(messages)} messages have the name `{name}`: they are imported as {shown}"
+            to.warn(SAME_NAME, text, "rename them in the ICD if you want other names", "note")
 
     def tree(self) -> Item:
         """The ICD as plain mappings and lists."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Hashable, Iterable, Sequence
 from typing import NamedTuple, Protocol
 
@@ -170,12 +169,3 @@ def _telling(ours: list[Sent]) -> Hashable | None:
     common = [key for key in (ours[0].told if ours else ()) if all(key in one.told for one in ours)]
     fits = [key for key in common if all(0 <= one.told[key] < 1 << _MOST_ID_BITS for one in ours)]
     return max(fits, key=lambda key: len({one.told[key] for one in ours}), default=None)
-
-
-def apart(messages: list[Item]) -> None:
-    """Messages of one name get their system in front, or what they are, or a number."""
-    for said in (lambda one: one.get("group", ""), lambda one: one["kind"], lambda one: str(one["id"])):
-        times = Counter(one["name"] for one in messages)
-        for one in messages:
-            if times[one["name"]] > 1 and (more := said(one)):
-                one["name"] = f"{more} {one['name']}"

@@ -74,12 +74,13 @@ def _define(roots: Mapping[str, Element], to: Definitions, name: str) -> Definit
     names = Names(roots, to)
     types = Types(to, names)
     found = _identified(list(_all(names, types, to)), to)
+    types.report_raw_only()
     root = next(iter(roots.values()))
     title = line(called(root), 100) if len(roots) == 1 else ""
     network = Network(name, title or name, {**ORDERS[BIG], **(described(root) if title else {})})
     packets.fill(network, found, to)
     network.messages = _paired(network.messages)
-    packets.apart(network.messages)
+    network.name_messages_apart(to)
     network.declare(types.enums.declared())
     to.networks.append(network)
     for file, one in roots.items():
@@ -133,6 +134,7 @@ def _all(names: Names, types: Types, to: Definitions) -> Iterator[_Found]:
     bases = _used(names, "BaseContainer")
     for element in _containers(names, bases):
         to.total += 1
+        types.message = called(element)
         layout = Layout(names, types)
         try:
             layout.add(element)
@@ -145,6 +147,7 @@ def _all(names: Names, types: Types, to: Definitions) -> Iterator[_Found]:
         if element.tag != "MetaCommand" or element.get("abstract") == "true":
             continue
         to.total += 1
+        types.message = called(element)
         try:
             chain = names.commands(element)
             layout = Layout(names, types, _arguments(chain))

@@ -18,7 +18,6 @@ from icdgen.definitions.xtce_calibration import NUMBER, calibration, decimal, en
 from icdgen.definitions.xtce_names import Names, alias, beside
 from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS
 
-RAW_ONLY = "IMP078"
 _MOST_NAMED = 1024  # values of a range of labels
 _DEEPEST = 20  # types that say what another says
 _WORD = 64  # bits of the largest number
@@ -146,7 +145,7 @@ class Types(Reading):
         bits = fixed(size) if default is None else number(encoding.get("sizeInBits", default), "a size")
         if bits is None or not (1 <= bits <= _WORD or (bits % 8 == 0 and 0 < bits <= 8 * MOST_BYTES)):
             raise why
-        self._raw_only(where, str(why), "its raw bits are imported, without their meaning")
+        self.raw_only(where, str(why), "its raw bits are imported, without their meaning")
         for type_ in chain:
             settle(type_)
         return Piece({"type": "uint" if bits <= _WORD else "bytes"}, bits, is_raw=True)
@@ -188,7 +187,7 @@ class Types(Reading):
             is_time = kind in ("AbsoluteTime", "RelativeTime")
             said = _time(made.item, chain) if is_time else {} if encoding is None else calibration(encoding)
         except ValueError as error:
-            self._raw_only(where, str(error))
+            self.raw_only(where, str(error), "its raw values are imported, without the unit")
             for type_ in chain:
                 settle(type_)
             return False
@@ -196,10 +195,6 @@ class Types(Reading):
             said = ended(said, made.bits, made.item["type"] == "int")
         made.item |= said
         return True
-
-    def _raw_only(self, where: str, why: str, help: str = "its raw values are imported, without the unit") -> None:
-        if self.is_new(where):
-            self.to.warn(RAW_ONLY, f"{where}: {why}", help)
 
     def _limits(self, item: Item, chain: list[Element]) -> Item:
         """The keys of the range that is valid, if there is one and it is that of the value that is imported."""
