@@ -11,7 +11,7 @@ from icdgen.backends.c import accessors, bits, conditional, constants, decoding,
 from icdgen.backends.c.declared_names import declared_names
 from icdgen.backends.c.member_groups import Groups, Structs, in_groups
 from icdgen.backends.c.runtime import whole
-from icdgen.backends.c.short_names import SIGNIFICANT, with_short_names
+from icdgen.backends.c.short_names import with_short_names
 from icdgen.backends.c.statement import call, head, like
 from icdgen.backends.c.text import FILE, comment, described, literal, noted, prose
 from icdgen.backends.origin import origin
@@ -41,7 +41,6 @@ class CBackend:
 
     name = "c"
     reserved = names.RESERVED
-    significant = SIGNIFICANT
 
     def __init__(self) -> None:
         self.packages = Packages()

@@ -26,7 +26,6 @@ class Declared(NamedTuple):
     reserved: frozenset[str]
     identifiers: list[Identifier]
     texts: Counter[str]  # in all scopes together
-    significant: int  # characters that are sure to tell names apart; 0 for all of them
 
     def spelled(self, texts: Set[str]) -> list[Identifier]:
         """The identifiers that are one of these texts."""
@@ -40,8 +39,8 @@ def declared(ctx: Context) -> list[Declared]:
         ctx.declared = []
         for one in ctx.languages if icd.nodes else ():
             identifiers = list(one.identifiers(icd))
-            texts, significant = Counter(map(_TEXT, identifiers)), getattr(one, "significant", 0)
-            ctx.declared.append(Declared(one.name, one.reserved, identifiers, texts, significant))
+            texts = Counter(map(_TEXT, identifiers))
+            ctx.declared.append(Declared(one.name, one.reserved, identifiers, texts))
     return ctx.declared
 
 

@@ -92,36 +92,6 @@ def _is_name(text: str) -> bool:
     return (text.isidentifier() and text.isascii()) or _is_file(text)
 
 
-@rule("ICD073", severity="warning")
-def is_distinct(ctx: Context) -> Iterator[Fault]:
-    for names in declared(ctx):
-        language, most = names.language, names.significant
-        seen: dict[tuple[str, str], Identifier] = {}
-        told: set[int] = set()
-        for one in names.spelled({text for text in names.texts if len(text) >= most}) if most else ():
-            if _is_file(one.text):
-                continue
-            first = seen.setdefault((one.scope, one.text[:most]), one)
-            if first.text == one.text or one.source is None or id(one.source) in told:
-                continue
-            if id(first.source) in told and "kind" in (first.source or ()):
-                continue  # the name of the message is too long, which was said: those of its fields are no worse
-            told.add(id(one.source))
-            place = _place(ctx, one)
-            both = f"{_ending(first.text)} and {_ending(one.text)}"
-            if first.source is one.source:
-                what = f"{one.owner} becomes {both}"
-            else:
-                there = f" ({line_of(_place(ctx, first), place)})" if first.source is not None else ""
-                what = f"{first.owner}{there} and {one.owner} become {both}"
-            message = f"{what}, equal in their first {most} characters, and {language} guarantees no more"
-            yield Fault(one.source, place, message, "give it, or its message, a shorter `identifier:`")
-
-
-def _ending(text: str) -> str:
-    return quote(f"...{text[-48:]}")
-
-
 def _is_file(text: str) -> bool:
     """Backends also declare the files that they write, so that two of one name are found."""
     return "." in text or "/" in text
