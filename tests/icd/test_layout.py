@@ -30,10 +30,6 @@ def messages(path: str) -> list[tuple[Icd, Node, Message]]:
     return [(icd, node, message) for node in icd.nodes for message in node.messages]
 
 
-def orders_of(node: Node) -> Orders:
-    return Orders(node.byte_order, node.bit_order)
-
-
 @pytest.mark.parametrize("path", SETS)
 def test_a_layout_has_one_node_for_each_line_of_the_icd(path):
     for _, node, message in messages(path):
@@ -41,21 +37,21 @@ def test_a_layout_has_one_node_for_each_line_of_the_icd(path):
             names = [part["name"] for part in item.get("bitfields", [item])]
             nodes = [one for one in message.layout.nodes if one.name in names]
             assert [one.name for one in nodes] == names, f"{message.name}: {item['name']}"
-        visits = [visit for visit in walk(message.layout, orders_of(node)) if not visit.owners]
+        visits = [visit for visit in walk(message.layout, node.orders) if not visit.owners]
         assert [visit.node for visit in visits] == list(message.layout.nodes)
 
 
 @pytest.mark.parametrize("path", SETS)
 def test_the_longest_frame_has_a_place_for_each_field(path):
     for _, node, message in messages(path):
-        placed = flatten(message.layout, orders_of(node))
+        placed = flatten(message.layout, node.orders)
         assert [one.name for one in placed] == [field.name for field in message.fields]
         for one, field in zip(placed, message.fields, strict=True):
             assert (one.at, one.bits) == (field.at, field.bits), f"{message.name}: {one.name}"
             assert (one.role == "count") == field.implied
             if not field.implied:
                 effective = field.orders(node)
-                assert field.derived is not None or (one.orders.byte, one.orders.bit) == effective
+                assert field.derived is not None or (one.byte_order, one.bit_order) == effective
 
 
 @pytest.mark.parametrize("path", SETS)
@@ -64,7 +60,7 @@ def test_lengths_of_frames_follow_from_the_sizes_of_their_variable_parts(path):
         layout = message.layout
         for most in (False, True):
             sizes = {one.name: getattr(size_of(one), "most" if most else "fewest") for one in layout.sequence}
-            placed = flatten(layout, orders_of(node), sizes)
+            placed = flatten(layout, node.orders, sizes)
             end = max((one.at + one.bits for one in placed if one.role == "field"), default=0)
             expected = layout.longest if most else layout.shortest
             assert end <= 8 * expected or layout.may_end_early
@@ -77,7 +73,7 @@ def test_fields_at_fixed_bits_lie_within_the_fixed_part(path):
     for _, node, message in messages(path):
         for owner in (message.layout, *structs_of(message.layout)):
             for one in owner.fixed:
-                placed = flatten(Layout(owner.name, owner.length, (one,)), orders_of(node))
+                placed = flatten(Layout(owner.name, owner.length, (one,)), node.orders)
                 assert all(one.at <= place.at for place in placed)
                 assert all(place.at + place.bits <= 8 * owner.length for place in placed)
 
@@ -86,8 +82,8 @@ def test_fields_at_fixed_bits_lie_within_the_fixed_part(path):
 def test_owners_of_bits_do_not_overlap_unless_their_conditions_exclude_each_other(path):
     for _, node, message in messages(path):
         owned: dict[int, str] = {}
-        for place in flatten(message.layout, orders_of(node)):
-            if place.role != "field" or (isinstance(place.scalar, Scalar) and place.scalar.present_if):
+        for place in flatten(message.layout, node.orders):
+            if place.role != "field" or place.conditions:
                 continue
             for piece in pieces_of(place):
                 for bit in range(piece.shift, piece.shift + piece.bits):
@@ -100,7 +96,7 @@ def pieces_of(place):
     """The runs of bits of a scalar; bytes are whole bytes in order."""
     if place.scalar.is_bytes:
         return [bits.Piece(byte, 0, 8, 0) for byte in range(place.at // 8, (place.at + place.bits) // 8)]
-    return bits.pieces_at(place.at, place.bits, place.orders.byte, place.orders.bit)
+    return bits.pieces_at(place.at, place.bits, place.byte_order, place.bit_order)
 
 
 def structs_of(layout: Layout) -> list[Layout]:

@@ -26,6 +26,7 @@ from icdgen.icd.layout import (
     StructRef,
     VariableNode,
     counter_of_rest,
+    derived_of,
     overlay_of,
     stride,
 )
@@ -326,17 +327,19 @@ def _printed(item: Map) -> Map:
 
 def derived_node(row: Map, derivation: derived.Derivation, unit: Unit | None) -> Derived:
     """Return the node of a derived value."""
-    return Derived(
+    scalar = Scalar(
         name=row["name"],
+        type="float",
+        bits=64,
         identifier=row.get("identifier"),
         aliases=tuple(row.get("aliases", ())),
         summary=row.get("summary", ""),
-        derivation=derivation,
         formula=row["formula"],
         display=display_of(row.get("display")),
         unit=unit,
         source=row,
     )
+    return derived_of(scalar, derivation)
 
 
 def _overlaid(scalar: Scalar, item: Map) -> Scalar | Overlay:

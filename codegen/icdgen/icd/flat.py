@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import TypeAlias
 
 from icdgen.icd.layout import (
+    UNDECLARED,
     Array,
     Counted,
     Derived,
@@ -177,18 +178,5 @@ def _implied_counter(counter: Scalar, end: int, member: Field) -> Field:
 
 def _derived_field(node: Derived, longest: int) -> Field:
     """Return the field of a derived value: a double behind the longest frame."""
-    return Field(
-        name=node.name,
-        at=8 * longest,
-        bits=64,
-        type="float",
-        identifier=node.identifier,
-        aliases=node.aliases,
-        unit=node.unit,
-        formula=node.formula,
-        display=node.display,
-        summary=node.summary,
-        view=True,
-        derived=node.derivation,
-        source=node.source,
-    )
+    field = _scalar_field(node.scalar, UNDECLARED)
+    return replace(field, at=8 * longest, view=True, derived=node.derivation)

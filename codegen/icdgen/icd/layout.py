@@ -13,10 +13,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import field
 from fractions import Fraction
 from math import gcd
-from typing import NamedTuple, TypeAlias
+from typing import Any, Literal, NamedTuple, TypeAlias
 
 from icdgen.frozen import dataclass
-from icdgen.icd.curve import Curve
+from icdgen.icd.curve import Curve, leads_back
 from icdgen.icd.derived import Derivation
 from icdgen.icd.display import Display
 from icdgen.icd.enumeration import Enum
@@ -25,6 +25,9 @@ from icdgen.icd.formula import Scale
 from icdgen.icd.located import Map, unread
 from icdgen.icd.units import Unit
 from icdgen.once import cached_property
+
+_KEPT_FRAMES = 64
+"""Frames of different sizes of one layout whose scalars are kept: a log has the same sizes again and again."""
 
 Sizes: TypeAlias = Mapping[str, int]
 """Number of elements, or of bytes, of each variable-length node of one frame, by the name of the node."""
@@ -146,6 +149,37 @@ class Scalar(LayoutNode):
         """Return whether the raw value is bytes and not a number."""
         return self.type in ("bytes", "text")
 
+    @property
+    def unit_symbol(self) -> str:
+        """Return the unit as it is written; empty without one."""
+        return self.unit.symbol if self.unit else ""
+
+    @property
+    def raw_min(self) -> int:
+        """Return the smallest raw value of a number that is no float."""
+        return -(1 << (self.bits - 1)) if self.is_signed else 0
+
+    @property
+    def raw_max(self) -> int:
+        """Return the largest raw value of a number that is no float."""
+        return (1 << (self.bits - self.is_signed)) - 1
+
+    @property
+    def has_formula(self) -> bool:
+        """Return whether the physical value is computed from the raw value."""
+        return self.scale is not None or self.curve is not None
+
+    @property
+    def is_invertible(self) -> bool:
+        """Return whether a physical value gives the nearest raw value; some curves do not."""
+        return self.curve is None or leads_back(self.curve, self.type == "float", self.raw_min, self.raw_max)
+
+    @property
+    def settable_raws(self) -> tuple[int, int]:
+        """Return the least and the largest raw value that setting a physical value can give."""
+        every = self.raw_min, self.raw_max
+        return every if self.curve is None or self.type == "float" else self.curve.ends(*every)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StructRef(LayoutNode):
@@ -173,10 +207,8 @@ class Overlay(LayoutNode):
 class Derived(LayoutNode):
     """A double that is computed from the values of other nodes."""
 
+    scalar: Scalar  # a 64-bit float without bits in the frame
     derivation: Derivation
-    formula: str
-    unit: Unit | None = None
-    display: Display | None = None
 
 
 FixedNode: TypeAlias = Scalar | Array | StructRef | Overlay
@@ -218,6 +250,21 @@ class Layout:
         step = gcd(*(stride(node) // 8 for node in self.sequence)) or 1
         return range(self.shortest, self.longest + 1, step)
 
+    def frame(self, orders: Orders, sizes: Sizes | None = None) -> tuple[FrameField, ...]:
+        """Return the scalars of a frame, as `flatten` lists them; the last `_KEPT_FRAMES` results are kept."""
+        key = orders, None if sizes is None else tuple(sizes[node.name] for node in self.sequence)
+        fields = self._frames.get(key)
+        if fields is None:
+            if len(self._frames) >= _KEPT_FRAMES:
+                del self._frames[next(iter(self._frames))]
+            fields = self._frames[key] = tuple(flatten(self, orders, sizes))
+        return fields
+
+    @cached_property
+    def _frames(self) -> dict[tuple[Orders, tuple[int, ...] | None], tuple[FrameField, ...]]:
+        """The results of `frame`, the oldest first."""
+        return {}
+
     def smallest_raw(self, counter: str) -> int:
         """Return the smallest raw value of a field that counts; 0 for any other field."""
         sizes = (size_of(node) for node in self.sequence)
@@ -246,7 +293,17 @@ def stride(node: LayoutNode) -> int:
 
 def overlay_of(scalar: Scalar) -> Overlay:
     """Return the overlay that reads a scalar; both have the same name and position."""
-    return Overlay(scalar=scalar, **{name: getattr(scalar, name) for name in LayoutNode.__dataclass_fields__})
+    return Overlay(scalar=scalar, **_attributes(scalar))
+
+
+def derived_of(scalar: Scalar, derivation: Derivation) -> Derived:
+    """Return the node that computes a scalar; both have the same name."""
+    return Derived(scalar=scalar, derivation=derivation, **_attributes(scalar))
+
+
+def _attributes(node: LayoutNode) -> dict[str, Any]:
+    """Return what all kinds of nodes have."""
+    return {name: getattr(node, name) for name in LayoutNode.__dataclass_fields__}
 
 
 def counter_of_rest(name: str, identifier: str | None, is_array: bool, most: int, source: Map) -> Scalar:
@@ -291,32 +348,48 @@ class PathStep:
     element: int | None = None
 
 
-class Placed(NamedTuple):
-    """A scalar of one frame."""
+Role: TypeAlias = Literal["field", "overlay", "derived", "count"]
+"""What a scalar is in a frame: `count` is a number of elements that only the length of the frame gives; it has no bits."""
+
+
+@dataclass(frozen=True, eq=False)
+class FrameField:
+    """A scalar where it stands in one frame. Compared by identity: `Layout.frame` makes each once."""
 
     steps: tuple[PathStep, ...]  # from the node of the message's own layout to the scalar
     at: int  # bit of the frame, counted in the bit order in effect
-    bits: int
-    scalar: Scalar | Derived
-    orders: Orders  # in effect
-    role: str = "field"  # field | overlay | derived | count (number of elements that only the frame's length gives)
+    bits: int  # of bytes and text those of the frame
+    scalar: Scalar
+    byte_order: str  # in effect
+    bit_order: str  # in effect
+    role: Role = "field"
 
-    @property
+    @cached_property
     def name(self) -> str:
         """``Satellites[2].GNSS``"""
         texts = (step.node.name if step.element is None else f"{step.node.name}[{step.element}]" for step in self.steps)
         return ".".join(texts)
 
+    @property
+    def conditions(self) -> tuple[Condition, ...]:
+        """It is in the frame only if all of them hold."""
+        return self.scalar.present_if
 
-def flatten(layout: Layout, orders: Orders, sizes: Sizes | None = None) -> list[Placed]:
+    @property
+    def has_bits(self) -> bool:
+        """Whether it owns bits of the frame."""
+        return self.role == "field"
+
+
+def flatten(layout: Layout, orders: Orders, sizes: Sizes | None = None) -> list[FrameField]:
     """List the scalars of a frame with these sizes; without sizes those of the longest frame.
 
-    `orders` are those of the ICD node.
+    `orders` are those of the ICD node. `Layout.frame` keeps the result.
     """
-    placed: list[Placed] = []
+    fields: list[FrameField] = []
     orders = layout.orders.within(orders)
     for node in layout.fixed:
-        placed += _scalars(node, (PathStep(node),), node.at, node.orders.within(orders))
+        fields += _scalars(node, (PathStep(node),), node.at, node.orders.within(orders))
     end = 8 * layout.length
     for part in layout.sequence:
         size = size_of(part)
@@ -324,24 +397,26 @@ def flatten(layout: Layout, orders: Orders, sizes: Sizes | None = None) -> list[
         own = part.orders.within(orders)
         if isinstance(part, Array):
             for element in range(number):
-                placed += _scalars(part.item, (PathStep(part, element),), end + element * stride(part), own)
+                fields += _scalars(part.item, (PathStep(part, element),), end + element * stride(part), own)
         else:
-            placed.append(Placed((PathStep(part),), end, 8 * number, part, own))
+            fields.append(FrameField((PathStep(part),), end, 8 * number, part, own.byte, own.bit))
         end += number * stride(part)
         if isinstance(size, Rest):
             counter = size.counter
-            placed.append(Placed((PathStep(counter),), end, counter.bits, counter, own, "count"))
-    placed += (Placed((PathStep(node),), end, 64, node, orders, "derived") for node in layout.derived)
-    return placed
+            fields.append(FrameField((PathStep(counter),), end, counter.bits, counter, own.byte, own.bit, "count"))
+    for derived in layout.derived:
+        scalar, step = derived.scalar, PathStep(derived)
+        fields.append(FrameField((step,), end, scalar.bits, scalar, orders.byte, orders.bit, "derived"))
+    return fields
 
 
-def _scalars(node: FixedNode, steps: tuple[PathStep, ...], at: int, orders: Orders) -> Iterator[Placed]:
+def _scalars(node: FixedNode, steps: tuple[PathStep, ...], at: int, orders: Orders) -> Iterator[FrameField]:
     """List the scalars of a node of fixed size that begins at bit `at`."""
     match node:
         case Scalar(bits=bits):
-            yield Placed(steps, at, bits, node, orders)
+            yield FrameField(steps, at, bits, node, orders.byte, orders.bit)
         case Overlay(scalar=scalar):
-            yield Placed(steps, at, scalar.bits, scalar, orders, "overlay")
+            yield FrameField(steps, at, scalar.bits, scalar, orders.byte, orders.bit, "overlay")
         case StructRef(layout=layout):
             for inner in layout.fixed:
                 yield from _scalars(inner, (*steps, PathStep(inner)), at + inner.at, inner.orders.within(orders))

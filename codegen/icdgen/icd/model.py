@@ -21,7 +21,7 @@ from icdgen.icd.enumeration import Member as Member
 from icdgen.icd.erratum import Erratum as Erratum
 from icdgen.icd.formula import Scale
 from icdgen.icd.layout import Condition as Condition
-from icdgen.icd.layout import Layout
+from icdgen.icd.layout import Layout, Orders
 from icdgen.icd.layout import Limits as Limits
 from icdgen.icd.layout import Special as Special
 from icdgen.icd.located import Map, unread
@@ -377,6 +377,11 @@ class Node:
     file: str = ""
     id_bits: int = 8  # of every id that it speaks; sent as whole bytes, the most significant first
     source: Map = field(default_factory=unread, compare=False, repr=False)
+
+    @property
+    def orders(self) -> Orders:
+        """Byte order and bit order that hold where a message, a struct or a field declares none."""
+        return Orders(self.byte_order, self.bit_order)
 
 
 @dataclass(frozen=True, slots=True)
