@@ -82,3 +82,19 @@ def upward(graph: Graph, layers: Iterable[Iterable[str]]) -> list[str]:
             if name in level and one in level and level[one] >= level[name]:
                 wrong.append(f"{name} imports {one}, which does not stand below it")
     return sorted(wrong)
+
+
+def reserved(graph: Graph, users: Mapping[str, Iterable[str]]) -> list[str]:
+    """Imports of a package by another package than its ``users``, each of which stands for all that is in it."""
+    wrong = []
+    for package, allowed in users.items():
+        inside = (package, *allowed)
+        for name, imports in graph.items():
+            if any(_is_in(name, place) for place in inside):
+                continue
+            wrong += [f"{name} imports {other}" for other in sorted(imports) if _is_in(other, package)]
+    return sorted(wrong)
+
+
+def _is_in(name: str, place: str) -> bool:
+    return name == place or name.startswith(f"{place}.")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -16,11 +17,13 @@ LAYERS = [  # what stands in one row does not know each other
     "codec layout reports",
     "protocol",
     "describe",
-    "values vectors",
-    "show",
+    "link_calls values vectors",
+    "runtime_objects",
+    "link recognize show sim",
+    "logfile",
     "backends",
-    "link loading recognize sim",
-    "diff logfile model_cache",
+    "loading",
+    "diff model_cache",
     "backends.html generation",
     "importer site starter",
     "definitions",
@@ -29,6 +32,11 @@ LAYERS = [  # what stands in one row does not know each other
     "__main__",
 ]
 ROWS = [["icdgen"], *([f"icdgen.{name}" for name in row.split()] for row in LAYERS)]
+USERS = {  # a language's backend -> the only packages that import it: they need its names of messages and fields
+    "icdgen.backends.c": ["icdgen.backends.c_selftest", "icdgen.backends.html", "icdgen.diff"],
+    "icdgen.backends.python": ["icdgen.diff"],
+    "icdgen.backends.rust": ["icdgen.backends.html", "icdgen.backends.packages", "icdgen.diff"],
+}
 
 
 def test_no_modules_of_ours_import_each_other():
@@ -37,6 +45,10 @@ def test_no_modules_of_ours_import_each_other():
 
 def test_imports_lead_down():
     assert imports.upward(imports.graph(PACKAGE), ROWS) == []
+
+
+def test_the_backend_of_a_language_is_imported_by_its_users_only():
+    assert imports.reserved(imports.graph(PACKAGE), USERS) == []
 
 
 def test_the_order_names_only_what_there_is():
@@ -92,3 +104,49 @@ def test_a_planted_circle_is_found(package):
 def test_a_module_that_is_in_no_layer_is_found(package):
     (package / "stray.py").write_text("")
     assert imports.upward(imports.graph(package), MADE) == ["made.stray is in no layer"]
+
+
+def test_a_planted_import_of_a_reserved_package_is_found(package):
+    (package / "top.py").write_text("def late():\n    from made.high import two\n")
+    modules = imports.graph(package)
+    assert imports.reserved(modules, {"made.high": []}) == ["made.top imports made.high.two"]
+    assert imports.reserved(modules, {"made.high": ["made.top"]}) == []
+
+
+@pytest.mark.parametrize(
+    "module, text, error",
+    [
+        (
+            "sim/run.py",
+            "from icdgen.backends.python.names import class_name",
+            "icdgen.sim imports icdgen.backends, which does not stand below it",
+        ),
+        (
+            "layout.py",
+            "from icdgen.describe import describe",
+            "icdgen.layout imports icdgen.describe, which does not stand below it",
+        ),
+    ],
+)
+def test_an_import_that_is_planted_in_a_copy_of_the_package_is_found(tmp_path, module, text, error):
+    assert imports.upward(imports.graph(_copy(tmp_path, module, text)), ROWS) == [error]
+
+
+def test_a_backend_that_is_imported_by_the_site_in_a_copy_of_the_package_is_found(tmp_path):
+    modules = imports.graph(_copy(tmp_path, "backends/html/wire.py", "from icdgen.backends.python import nodes"))
+    error = "icdgen.backends.html.wire imports icdgen.backends.python.nodes"
+    assert imports.reserved(modules, USERS) == [error]
+
+
+def test_a_circle_that_is_planted_in_a_copy_of_the_package_is_found(tmp_path):
+    modules = imports.graph(_copy(tmp_path, "icd/model.py", "from icdgen import codec"))
+    (group,) = imports.circles(modules)
+    assert {"icdgen.codec", "icdgen.icd.model"} <= set(group)
+
+
+def _copy(folder: Path, module: str, text: str) -> Path:
+    """A copy of the package, one module of which has another import in a function."""
+    copy = shutil.copytree(PACKAGE, folder / "icdgen", ignore=shutil.ignore_patterns("__pycache__"))
+    with (copy / module).open("a", encoding="utf-8") as file:
+        file.write(f"\n\ndef _late() -> None:\n    {text}\n")
+    return copy

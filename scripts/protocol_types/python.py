@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import textwrap
 
-from icdgen.backends.python.links import type_name
+from icdgen.link_calls import type_name
 from icdgen.protocol.declared import Fact, Kind, facts_of
 from icdgen.protocol.places import PLACES
 from icdgen.protocol.sections import Settings

@@ -8,8 +8,8 @@ from functools import cache
 
 import pytest
 
-from icdgen.backends.python.objects.links import link_of
 from icdgen.protocol import facts, stream
+from icdgen.runtime_objects.links import link_of
 from tests.conformance.build import build
 from tests.conformance.driver import Testee
 from tests.conformance.icds import LINKS, icd_of

@@ -6,8 +6,8 @@ import subprocess
 
 import pytest
 
-from icdgen.backends.python.objects.links import link_of
 from icdgen.protocol import facts
+from icdgen.runtime_objects.links import link_of
 from tests.c import harness as c
 from tests.conformance.icds import icd_of
 from tests.conftest import ROOT

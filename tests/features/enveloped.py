@@ -14,7 +14,6 @@ from icdgen_runtime.wire.envelope import Direction
 from icdgen_runtime.wire.stream import stream_encode
 
 from icdgen import codec
-from icdgen.backends.python.objects.links import link_of
 from icdgen.errors import UserError
 from icdgen.icd.model import Icd, Node
 from icdgen.icd.variants import ids_of
@@ -22,6 +21,7 @@ from icdgen.logfile import text
 from icdgen.logfile.log import open_log
 from icdgen.protocol import facts
 from icdgen.recognize.envelopes import DIRECTIONS
+from icdgen.runtime_objects.links import link_of
 from icdgen.sim.computer import Computer
 from icdgen.sim.control import fitting, of_fields
 from icdgen.sim.envelopes import EnvelopeLine

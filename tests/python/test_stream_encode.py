@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from icdgen_runtime.wire.stream import stream_encode
 
-from icdgen.backends.python.objects.links import link_of
 from icdgen.loading import load
 from icdgen.protocol import facts
+from icdgen.runtime_objects.links import link_of
 from tests.conftest import ROOT
 
 

@@ -14,8 +14,8 @@ from icdgen_runtime.wire.i2c import i2c_write
 from icdgen_runtime.wire.session import Session
 from icdgen_runtime.wire.uart import UartDecoder, uart_encode
 
-from icdgen.backends.python.objects.links import link_of
 from icdgen.protocol import facts
+from icdgen.runtime_objects.links import link_of
 from icdgen.sim import run
 from tests.conformance.icds import LINKS, icd_of
 

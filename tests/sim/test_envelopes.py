@@ -15,9 +15,9 @@ from icdgen_runtime.wire.errors import UnsupportedError
 from icdgen_runtime.wire.events import Arrived, Done, Gap, LineError, Timeout
 from icdgen_runtime.wire.session import Session
 
-from icdgen.backends.python.objects.links import link_of
 from icdgen.errors import UserError
 from icdgen.protocol import facts
+from icdgen.runtime_objects.links import link_of
 from icdgen.sim import run
 from tests.conformance.icds import LINKS, icd_of
 from tests.conftest import ROOT

@@ -17,11 +17,11 @@ from icdgen_runtime.wire import (
     identify,
 )
 
-from icdgen.backends.python.objects.links import link_of
 from icdgen.errors import UserError
 from icdgen.link.ports import Can, PortError, Serial, open_port
 from icdgen.link.session import session
 from icdgen.protocol import facts
+from icdgen.runtime_objects.links import link_of
 from tests.sim.device import ICD, simulator
 
 

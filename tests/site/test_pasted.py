@@ -10,10 +10,10 @@ import pytest
 
 from icdgen.backends.html import wire
 from icdgen.backends.html.relations import Relations
-from icdgen.backends.python.objects.links import link_of
 from icdgen.errors import UserError
 from icdgen.protocol.facts import of
 from icdgen.recognize import read, recognize
+from icdgen.runtime_objects.links import link_of
 from icdgen.values.errors import BadHex
 from icdgen.values.find import find_message
 from tests.conftest import ROOT

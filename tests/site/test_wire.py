@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from icdgen.backends.html import wire
 from icdgen.backends.html.relations import Relations
-from icdgen.backends.python.objects.links import link_of
 from icdgen.protocol import i2c
+from icdgen.runtime_objects.links import link_of
 
 
 def lines(icd, node: str, name: str, data: bytes) -> dict[str, list[tuple[str, str]]]:

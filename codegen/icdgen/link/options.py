@@ -59,9 +59,9 @@ def open_session(
     on_event: OnEvent | None = None,
 ) -> Iterator[BusSession]:
     """A session with a node, of which ``known`` are the facts. Raises `icdgen.errors.UserError`."""
-    from icdgen.backends.python.objects.links import link_of
     from icdgen.link.ports import open_port
     from icdgen.link.session import session
+    from icdgen.runtime_objects.links import link_of
 
     node, is_can = known.node, port.startswith("can://")
     if (known.can if is_can else known.framing or known.stream) is None:

@@ -12,7 +12,6 @@ from icdgen_runtime.wire.envelope import Direction, Stream
 from icdgen_runtime.wire.stream import StreamDecoder, StreamEvent
 
 from icdgen import codec
-from icdgen.backends.python.objects.links import link_of
 from icdgen.errors import UserError, unreadable
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.variants import ids_of
@@ -20,6 +19,7 @@ from icdgen.link.heard import FAULTS
 from icdgen.logfile.rows import Done
 from icdgen.protocol import facts
 from icdgen.protocol.envelope import PACKET
+from icdgen.runtime_objects.links import link_of
 
 _PIECE = 1 << 18  # bytes that are read at once
 _MOST_IDS = 64  # unknown ids that are told apart

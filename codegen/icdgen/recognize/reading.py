@@ -7,13 +7,13 @@ from functools import cached_property
 
 from icdgen_runtime.wire.link import Link
 
-from icdgen.backends.python.objects.links import link_of
 from icdgen.icd import wire_ids
 from icdgen.icd.kept import kept
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.variants import Ids, ids_of
 from icdgen.protocol import facts
 from icdgen.protocol.facts import Facts
+from icdgen.runtime_objects.links import link_of
 from icdgen.values.find import KINDS, describe
 from icdgen.values.frame import Frame
 

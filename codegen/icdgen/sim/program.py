@@ -10,9 +10,9 @@ from icdgen_runtime.wire.i2c import i2c_write
 from icdgen_runtime.wire.logs import LogMessage
 
 from icdgen import codec
-from icdgen.backends.python.objects.links import link_of
 from icdgen.icd.model import CONFIGURATION, Icd, Message, Node
 from icdgen.protocol import facts
+from icdgen.runtime_objects.links import link_of
 from icdgen.sim.programs import Programs
 from icdgen.sim.settings import Settings
 from icdgen.sim.storage import Storage

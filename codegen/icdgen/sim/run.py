@@ -14,10 +14,10 @@ from typing import Any
 from icdgen_runtime._errors import IcdError
 from icdgen_runtime.wire.times import dos_time_pack
 
-from icdgen.backends.python.objects.links import link_of
 from icdgen.errors import UserError, unreadable
 from icdgen.icd.model import Icd, Node
 from icdgen.protocol import facts
+from icdgen.runtime_objects.links import link_of
 from icdgen.sim import control, faults, serve
 from icdgen.sim.computer import Computer
 from icdgen.sim.device_line import DeviceLine

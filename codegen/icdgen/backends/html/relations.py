@@ -9,7 +9,6 @@ from icdgen.backends.html import texts
 from icdgen.backends.html.links import Links
 from icdgen.backends.html.wire import Speaker, Wire
 from icdgen.backends.packages import Packages
-from icdgen.backends.python.objects.links import link_of
 from icdgen.describe import MessageDescription, describe
 from icdgen.icd.annex import Loggable
 from icdgen.icd.erratum import Erratum
@@ -17,6 +16,7 @@ from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.icd.prefixed import with_prefix
 from icdgen.icd.units import Unit
 from icdgen.protocol import facts
+from icdgen.runtime_objects.links import link_of
 
 
 class Place(NamedTuple):

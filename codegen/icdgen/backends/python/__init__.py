@@ -36,8 +36,9 @@ class PythonBackend:
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """The project's files, then the package's, then those of each node."""
-        from icdgen.backends.python import links, nodes  # the rules about names need none of them
+        from icdgen.backends.python import literals, nodes  # the rules about names need none of them
         from icdgen.describe.links import links_of
+        from icdgen.link_calls import link_call
 
         description = describe(icd)
         root = PurePosixPath(self.package)
@@ -65,7 +66,9 @@ class PythonBackend:
             digested = {**shared, "origin": origin(node.model, with_digest=True)}
             yield folder / "__init__.py", render("node.py.j2", **digested, **nodes.of_node(node, description))
             if node.name in linked:
-                yield folder / "_link.py", render("link.py.j2", **shared, link=links.literal(linked[node.name]))
+                yield folder / "_link.py", render(
+                    "link.py.j2", **shared, link=literals.expression(link_call(linked[node.name]))
+                )
             folder /= names.TYPES
             yield folder / "__init__.py", render("types.py.j2", **nodes.spoken(node, description), **shared)
             for enum in node.enums:

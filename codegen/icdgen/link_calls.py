@@ -1,11 +1,15 @@
-"""The link of a node: its protocol facts as the source of its ``LINK``."""
+"""Link of a node as a tree of constructor calls: types and keywords are those of ``wire/link.py`` in the Python runtime.
+
+The Python backend writes the calls into generated code. `icdgen.runtime_objects` makes them, so that the tool's own commands
+get the same link without generating code.
+"""
 
 from __future__ import annotations
 
-from dataclasses import fields
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
 from typing import Any
 
-from icdgen.backends.python.literals import Call, Noted, Verbatim, expression
 from icdgen.describe.links import Assumptions, LinkDescription, SentMessage
 from icdgen.protocol.declared import facts_of
 from icdgen.protocol.envelope import Check, Stream, StreamRow
@@ -19,31 +23,51 @@ _TYPES = {
 
 
 def type_name(part: type) -> str:
-    """What the type of a part is called in the module of the types."""
+    """Return the name of the type of a part of the link in the module ``link``."""
     return _TYPES.get(part, part.__name__)
 
 
-def literal(link: LinkDescription) -> str:
-    """The source of the link."""
-    return expression(call(link))
+@dataclass(frozen=True, slots=True)
+class Call:
+    """``name(positional, keyword=value)``; ``is_flat``: on one line."""
+
+    name: str
+    positional: tuple[object, ...] = ()
+    keywords: Mapping[str, object] = field(default_factory=dict)
+    is_flat: bool = False
 
 
-def call(link: LinkDescription) -> Call:
-    """The call that makes the link. What is assumed has the reason in a comment above it."""
-    return _Maker(link).link()
+@dataclass(frozen=True, slots=True)
+class Verbatim:
+    """Name that the generated code defines elsewhere, such as ``TELEMETRY``."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Commented:
+    """Item of a call or a mapping, with comments above it."""
+
+    item: object
+    comments: tuple[str, ...]
+
+
+def link_call(link: LinkDescription) -> Call:
+    """Return the call that makes the link. Assumed values have the reason in a comment above them."""
+    return _LinkBuilder(link).link()
 
 
 def _call(name: str, **keywords: object) -> Call:
-    """Makes something of the module of the types."""
+    """Return the call of a type of the module ``link``."""
     return Call(f"link.{name}", (), keywords)
 
 
 def _row(name: str, *positional: object, **keywords: object) -> Call:
-    """The same on one line."""
+    """Return the call of a type of the module ``link``, written on one line."""
     return Call(f"link.{name}", positional, keywords, is_flat=True)
 
 
-class _Maker:
+class _LinkBuilder:
     def __init__(self, link: LinkDescription) -> None:
         self.description, self.facts, self.assumed = link, link.facts, Assumptions(link.facts)
 
@@ -58,9 +82,9 @@ class _Maker:
             "longest_data": facts.longest_data,
             "telemetry_ids": (facts.telemetry_ids.first, facts.telemetry_ids.last),
             "settings": self.part(facts.client, "client"),
-            "errors": self.noted_rest(facts.errors, "errors"),
-            "commands": {one.id: self.sent(one) for one in self.description.telecommands},
-            "frames": {one.id: one.message.length for one in self.description.telemetry},
+            "errors": self.commented_rest(facts.errors, "errors"),
+            "commands": {each.id: self.sent(each) for each in self.description.telecommands},
+            "frames": {each.id: each.message.length for each in self.description.telemetry},
             "TELECOMMANDS": Verbatim("TELECOMMANDS"),
             "TELEMETRY": Verbatim("TELEMETRY"),
         }
@@ -68,7 +92,7 @@ class _Maker:
         optional = {
             "framing": self.part(facts.framing, "uart.framing"),
             "acknowledge": self.part(facts.acknowledge, "uart.acknowledge"),
-            "polled": self.noted_rest(self.polled(), "i2c.acknowledge"),
+            "polled": self.commented_rest(self.polled(), "i2c.acknowledge"),
             "i2c_address": facts.i2c_address,
             "i2c_repeated_start": None if facts.i2c_repeated_start else False,
             "can": self.can(),
@@ -77,7 +101,7 @@ class _Maker:
             "mask": self.mask(),
             "log_file": self.part(facts.log_file, "telemetry_log"),
             "log_message": self.part(facts.log_message, "unsolicited_log"),
-            "time": self.noted_rest(time or None, "msdos_time"),
+            "time": self.commented_rest(time or None, "msdos_time"),
             "index_file": self.index(),
             "hole_map": self.hole_map(),
             "files": self.files(),
@@ -86,37 +110,37 @@ class _Maker:
             "identification": facts.identification and self.step(facts.identification),
             "statistics": facts.statistics and self.step(facts.statistics),
             "boot_time": facts.boot_ms,
-            "stream": self.noted_rest(facts.stream and _stream(facts.stream), "stream"),
+            "stream": self.commented_rest(facts.stream and _stream(facts.stream), "stream"),
             "assumptions": self.assumptions() or None,
         }
         return _call("Link", **parts, **{key: part for key, part in optional.items() if part is not None})
 
-    def noted(self, value: object, section: str, key: str) -> object:
-        """The value, under the reason why it is assumed, if it is."""
+    def commented(self, value: object, section: str, key: str) -> object:
+        """Return the value; with the reason as a comment if the ICD assumes it."""
         why = self.assumed.why(section, key)
-        return Noted(value, (f"Assumed: {why}",)) if why else value
+        return Commented(value, (f"Assumed: {why}",)) if why else value
 
-    def noted_rest(self, value: object, section: str) -> object:
-        """The value, under the reasons for what the section holds beside its fields."""
+    def commented_rest(self, value: object, section: str) -> object:
+        """Return the value, with the reasons for the assumptions of the section that belong to none of its keys."""
         rest = self.assumed.of_section(section) if value is not None else []
-        return Noted(value, tuple(f"Assumed, {key}: {why}" for key, why in rest)) if rest else value
+        return Commented(value, tuple(f"Assumed, {key}: {why}" for key, why in rest)) if rest else value
 
-    def part(self, part: object, section: str, **made: object) -> object:
-        """A part of the facts: those that are declared, and what code ``made`` beside them."""
+    def part(self, part: object, section: str, **computed: object) -> object:
+        """Return the call for a part of the link: its declared facts, then the keywords of ``computed``."""
         if part is None:
             return None
-        return self.noted_rest(_call(type_name(type(part)), **self.declared(part, section), **made), section)
+        return self.commented_rest(_call(type_name(type(part)), **self.declared(part, section), **computed), section)
 
     def declared(self, part: object, section: str) -> dict[str, object]:
-        """The facts of a part as they are declared, without those that are None."""
-        found: dict[str, object] = {}
+        """Return the declared facts of a part that have a value."""
+        values: dict[str, object] = {}
         for fact in facts_of(part):
             value = getattr(part, fact.name)
             if isinstance(value, Step):
                 value = self.step(value)
             if value is not None:
-                found[fact.name] = self.noted(value, section, fact.key.partition(".")[0])
-        return found
+                values[fact.name] = self.commented(value, section, fact.key.partition(".")[0])
+        return values
 
     def polled(self) -> Call | None:
         step = self.description.polled
@@ -129,13 +153,13 @@ class _Maker:
         if can is None:
             return None
         parts = {role: _flat("CanPart", part) for role, part in can.parts.items()}
-        made = {
-            "parts": self.noted(parts, "can", "identifier"),
+        computed = {
+            "parts": self.commented(parts, "can", "identifier"),
             "types": can.types,
             "extended_types": can.extended_types,
         }
-        made |= {"extended": self.part(can.extended, "can.extended")} if can.extended else {}
-        return self.part(can, "can", **made)
+        computed |= {"extended": self.part(can.extended, "can.extended")} if can.extended else {}
+        return self.part(can, "can", **computed)
 
     def checksum(self) -> object:
         form = self.facts.checksum
@@ -174,8 +198,8 @@ class _Maker:
         return self.part(
             files,
             "file_transfer",
-            packet_ids={bus: self.noted(id, "file_transfer.download", bus) for bus, id in files.packet_ids.items()},
-            **{name: self.part(one, f"file_transfer.{name}") for name, one in files.procedures.items()},
+            packet_ids={bus: self.commented(id, "file_transfer.download", bus) for bus, id in files.packet_ids.items()},
+            **{name: self.part(part, f"file_transfer.{name}") for name, part in files.procedures.items()},
         )
 
     def step(self, step: Step) -> Call:
@@ -184,50 +208,51 @@ class _Maker:
         fields = {role: field.name for role, field in self.description.step(step).fields}
         return _call("Step", **{key: id for key, id in ids.items() if id is not None}, fields=fields)
 
-    def sent(self, one: SentMessage) -> object:
-        """How a telecommand is sent."""
-        flags = {} if one.message.acknowledge else {"acknowledged": False}
-        flags |= {"setting": True} if one.is_setting else {}
-        return self.noted_rest(_row("Sent", one.message.length, **flags), f"message {one.message.name}")
+    def sent(self, telecommand: SentMessage) -> object:
+        """Return how a telecommand is sent."""
+        flags = {} if telecommand.message.acknowledge else {"acknowledged": False}
+        flags |= {"setting": True} if telecommand.is_setting else {}
+        message = telecommand.message
+        return self.commented_rest(_row("Sent", message.length, **flags), f"message {message.name}")
 
     def assumptions(self) -> tuple[Call, ...]:
-        """All of them once more, for programs."""
+        """Return all assumptions, for programs that ask for them."""
         return tuple(
-            _call("Assumption", section=one.section, key=one.key, value=_plain(one.value), why=str(one.why))
-            for one in self.facts.assumptions
+            _call("Assumption", section=each.section, key=each.key, value=_plain(each.value), why=str(each.why))
+            for each in self.facts.assumptions
         )
 
 
 def _stream(form: Stream) -> Call:
-    """The envelope."""
+    """Return the framing of sync, header, payload and checksum."""
     parts = _members(form)
-    parts["fields"] = tuple(_row("EnvelopeField", *_members(one).values()) for one in form.fields)
+    parts["fields"] = tuple(_row("EnvelopeField", *_members(field).values()) for field in form.fields)
     parts["telecommands"], parts["telemetry"] = map(_stream_rows, (form.telecommands, form.telemetry))
     check = parts.pop("check")
     if isinstance(check, Check):
         crc = {fact.name: getattr(check.crc, fact.name) for fact in facts_of(check.crc)}
-        known = _row("CrcForm", **{key: value for key, value in crc.items() if value is not None})
-        parts["check"] = _row("CheckForm", *{**_members(check), "crc": known}.values())
+        crc_call = _row("CrcForm", **{key: value for key, value in crc.items() if value is not None})
+        parts["check"] = _row("CheckForm", *{**_members(check), "crc": crc_call}.values())
     return _call("Stream", **parts)
 
 
 def _stream_rows(rows: tuple[StreamRow, ...]) -> tuple[Call, ...]:
-    found = ((row.id, row.least, row.most, row.cuts_zeros, row.seed, row.reply) for row in rows)
-    return tuple(_row("StreamRow", *(one if one[-1] is not None else one[:-1])) for one in found)
+    values = ((row.id, row.least, row.most, row.cuts_zeros, row.seed, row.reply) for row in rows)
+    return tuple(_row("StreamRow", *(row if row[-1] is not None else row[:-1])) for row in values)
 
 
 def _flat(name: str, part: Any) -> Call:
-    """A small part with all its members."""
+    """Return the call for a small part, with all its members."""
     return _row(name, **_members(part))
 
 
 def _members(part: Any) -> dict[str, object]:
-    """All that an object of a dataclass holds."""
-    return {one.name: getattr(part, one.name) for one in fields(part)}
+    """Return the members of a dataclass object by name."""
+    return {member.name: getattr(part, member.name) for member in fields(part)}
 
 
 def _plain(value: object) -> object:
-    """A value of the ICD without what the reader of YAML knows of it."""
+    """Return a value of the ICD without the positions that the YAML reader attaches."""
     if isinstance(value, dict):
         return {_plain(key): _plain(item) for key, item in value.items() if key not in ("assumptions", "source")}
     if isinstance(value, list | tuple):

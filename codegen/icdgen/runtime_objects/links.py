@@ -1,0 +1,44 @@
+"""``LINK`` of a node, equal to that of its generated package."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from icdgen_runtime.wire import link as types
+from icdgen_runtime.wire.link import Link
+
+from icdgen.describe import describe
+from icdgen.describe.links import LinkDescription
+from icdgen.icd.model import Icd
+from icdgen.link_calls import Call, Commented, Verbatim, link_call
+from icdgen.protocol.facts import Facts
+from icdgen.runtime_objects.messages import ModelMessages
+
+
+def link_of(icd: Icd, facts: Facts) -> Link:
+    """Return the link of the node that the facts belong to."""
+    node, description = facts.node.name, describe(icd)
+    names = {
+        "TELECOMMANDS": ModelMessages(node, "telecommand", facts.telecommands, description),
+        "TELEMETRY": ModelMessages(node, "telemetry", facts.telemetry, description),
+    }
+    link = _evaluate(link_call(LinkDescription(description, facts)), names)
+    assert isinstance(link, Link)
+    return link
+
+
+def _evaluate(value: object, names: Mapping[str, object]) -> object:
+    """Return the object that an expression of `icdgen.link_calls` stands for."""
+    if isinstance(value, Commented):
+        return _evaluate(value.item, names)
+    if isinstance(value, Verbatim):
+        return names[value.text]
+    if isinstance(value, Call):
+        positional = (_evaluate(item, names) for item in value.positional)
+        keywords = {key: _evaluate(item, names) for key, item in value.keywords.items()}
+        return getattr(types, value.name.rpartition(".")[2])(*positional, **keywords)
+    if isinstance(value, Mapping):
+        return {_evaluate(key, names): _evaluate(item, names) for key, item in value.items()}
+    if isinstance(value, tuple | list):
+        return tuple(_evaluate(item, names) for item in value)
+    return value
