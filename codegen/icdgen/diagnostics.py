@@ -1,9 +1,12 @@
-"""What a finding is. How findings are printed is in ``reports``."""
+"""Findings, and the source text to which they refer. Package ``reports`` prints them."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from typing import NamedTuple
+
+_BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")  # what YAML counts as the end of a line
 
 
 class Place(NamedTuple):
@@ -18,6 +21,38 @@ class Place(NamedTuple):
         return f"{self.file}:{self.line}:{self.column}"
 
 
+class Lines:
+    """The lines of a source text, split when a line is first requested."""
+
+    def __init__(self, text: str) -> None:
+        self._text = text.removeprefix("\ufeff")
+        self._lines: list[str] | None = None
+
+    def __getitem__(self, number: int) -> str | None:
+        """Line ``number``, counted from 1; None if the text has no such line."""
+        if self._lines is None:
+            self._lines = _BREAK.split(self._text)
+        return self._lines[number - 1] if 1 <= number <= len(self._lines) else None
+
+    def marked(self, place: Place) -> str:
+        """Return the text at a place; empty if there is no such line."""
+        return (self[place.line] or "")[place.column - 1 : place.column - 1 + place.length]
+
+
+class Fix(NamedTuple):
+    """A correction: ``text`` replaces what the source has at ``place``."""
+
+    place: Place
+    text: str
+
+
+class Related(NamedTuple):
+    """Another place that a finding is about, such as the first of two equal names, and what stands there."""
+
+    place: Place
+    label: str
+
+
 class Finding(NamedTuple):
     """One thing that is wrong with the input, where it is and what to do about it."""
 
@@ -26,6 +61,8 @@ class Finding(NamedTuple):
     place: Place
     help: str = ""
     severity: str = "error"  # "error" | "warning" | "note"
+    fix: Fix | None = None  # where the correction is known
+    related: Related | None = None
 
 
 class Findings(Exception):

@@ -157,9 +157,9 @@ def test_a_profile_that_is_wrong_is_a_finding_with_its_line(folder):
     [
         ("captions: [1]", "this entry of `captions` must be text, not the number 1"),
         ("titles: {telemetry: a}", "`telemetry` must be a list, not the text 'a'"),
-        ("types: {WORD: 3}", "`X` is a mapping such as `{type: uint, bits: 16}`".replace("X", "WORD")),
+        ("types: {WORD: 3}", "`X`: a mapping such as `{type: uint, bits: 16}`".replace("X", "WORD")),
         ("nodes: [{match: [a]}]", "`name` is missing from this entry of `nodes`"),
-        ("nodes: [{name: a, tables: [1]}]", "`tables` is the first and the last table number: `[57, 68]`"),
+        ("nodes: [{name: a, tables: [1]}]", "`tables`: the first and the last table number: `[57, 68]`"),
         ("damage: [{table: 97}]", "add `before:`, the number in the row below the heading"),
         ("damage: [{}]", "`{printed: ..., meant: ...}` or `{table: 97, before: 171, group: ...}`"),
         ("shares: [Common]", "did you mean `shared`?"),

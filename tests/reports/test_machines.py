@@ -8,7 +8,7 @@ import pytest
 
 from icdgen import reports
 from icdgen.reports import get
-from tests.reports.findings import ERROR, NOTE, TEXTS, WARNING
+from tests.reports.findings import CORRECTED, ERROR, NOTE, TEXTS, TWICE, WARNING
 
 ALL = [ERROR, WARNING, NOTE]
 
@@ -32,6 +32,13 @@ def test_json():
         "column": 7,
         "length": 12,
     }
+
+
+def test_json_has_the_correction_and_the_other_place():
+    corrected, twice = json.loads(get("json")([CORRECTED, TWICE], TEXTS))["findings"]
+    place = {"file": "icd/demo.yaml", "line": 2, "column": 14, "length": 4}
+    assert corrected["fix"] == place | {"text": "demos"}
+    assert twice["related"] == place | {"label": "the first of this name"}
 
 
 def test_github_escapes_what_would_end_a_command():
@@ -94,3 +101,20 @@ def test_sarif_files_are_uris():
     report = json.loads(get("sarif")([absolute], {}))
     place = report["runs"][0]["results"][0]["locations"][0]["physicalLocation"]
     assert place["artifactLocation"]["uri"] == "file:///icd/a%20b.yaml"
+
+
+def test_sarif_has_the_correction_and_the_other_place():
+    corrected, twice = json.loads(get("sarif")([CORRECTED, TWICE], TEXTS))["runs"][0]["results"]
+    (fix,) = corrected["fixes"]
+    assert fix["description"]["text"] == "did you mean `demos`?"
+    (change,) = fix["artifactChanges"]
+    assert change["artifactLocation"]["uri"] == "icd/demo.yaml"
+    assert change["replacements"] == [
+        {
+            "deletedRegion": {"startLine": 2, "startColumn": 14, "endColumn": 18},
+            "insertedContent": {"text": "demos"},
+        }
+    ]
+    (related,) = twice["relatedLocations"]
+    assert related["message"]["text"] == "the first of this name"
+    assert related["physicalLocation"]["region"]["startLine"] == 2

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from icdgen.diagnostics import Finding, Place
 from icdgen.reports import get
 from icdgen.reports.excerpt import WIDTH, Lines, excerpt, printable
-from tests.reports.findings import ERROR, NOTE, TEXTS, WARNING
+from tests.reports.findings import CORRECTED, ERROR, NOTE, TEXTS, TWICE, WARNING
 
 
 def shown(line: int, column: int, length: int, text: str | None = None) -> list[str]:
@@ -30,6 +30,41 @@ def test_a_finding_as_it_is_printed():
         "\n"
         "1 error in 1 file\n"
     )
+
+
+def test_the_corrected_line_follows_the_help():
+    assert get("text")([CORRECTED], TEXTS).splitlines()[2:7] == [
+        "2 | node: {name: demo}",
+        "  |              ^^^^",
+        "  = help: did you mean `demos`?",
+        "2 | node: {name: demos}",
+        "  |              ~~~~~",
+    ]
+
+
+def test_two_places_are_shown_in_the_order_of_the_file():
+    assert get("text")([TWICE], TEXTS).splitlines()[1:7] == [
+        "  |",
+        "2 | node: {name: demo}",
+        "  |              ---- the first of this name",
+        "4 | 温度: {at: 0, bits: 温}",
+        "  |              ^^^^",
+        "  = help: rename one",
+    ]
+
+
+def test_the_place_in_another_file_is_named():
+    there = Place("other.yaml", 11, 1, 4)
+    found = TWICE._replace(related=TWICE.related._replace(place=there))
+    assert get("text")([found], TEXTS | {"other.yaml": "\n" * 10 + "name\n"}).splitlines()[1:8] == [
+        "   |",
+        " 4 | 温度: {at: 0, bits: 温}",
+        "   |              ^^^^",
+        "   other.yaml:11:1",
+        "11 | name",
+        "   | ---- the first of this name",
+        "   = help: rename one",
+    ]
 
 
 def test_the_last_line_counts():

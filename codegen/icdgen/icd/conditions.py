@@ -7,13 +7,13 @@ from collections.abc import Iterator, Mapping
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, unread
 from icdgen.icd.model import Condition, Enum, Field
+from icdgen.icd.suggestions import suggestion
 from icdgen.icd.trees import mappings
-from icdgen.suggest import close_to
 
-_LEAST = "`when` names a field that is always there: an integer without a formula, a value of an enumeration, or a flag"
+_LEAST = "`when` names a field that every frame has: an integer without a formula, an enumeration value, or a flag"
 _PLAIN = ("uint", "int", "enum", "bool")
 _TYPES = (*_PLAIN, "float", "bytes", "text")
-_ODD = {"when": "is not always there itself", "count": "is an array", "size": "is open", "bitfields": "is divided",
+_ODD = {"when": "is optional itself", "count": "is an array", "size": "has a variable length", "bitfields": "is a split field",
     "formula": "is scaled", "points": "is scaled",
 }  # fmt: skip
 
@@ -48,13 +48,13 @@ def faults_of_names(message: Map, item: Map) -> Iterator[Fault]:
     when, known = _given(item), _fields(message)
     for name in when:
         if name not in known:
-            text = f"`{name}`, on which `{item['name']}` depends, is no field of `{message['name']}`"
-            near = close_to(name, (other for other, one in known.items() if one is not item and _decides(one)))
-            yield Fault.at_key(when, name, text, f"did you mean `{near}`?" if near else _LEAST)
+            text = f"`{item['name']}` depends on `{name}`, but `{message['name']}` has no such field"
+            names = (other for other, one in known.items() if one is not item and _decides(one))
+            yield Fault.at_key(when, name, text, *suggestion(name, names, _LEAST))
         elif not _is_sound(known[name]):
             continue  # a finding already
         elif why := "is the field itself" if name == item["name"] else _odd(known[name]):
-            yield Fault.at_key(when, name, f"`{name}`, on which `{item['name']}` depends, {why}", _LEAST)
+            yield Fault.at_key(when, name, f"`{item['name']}` cannot depend on `{name}`: it {why}", _LEAST)
 
 
 def faults_of_values(message: Map, item: Map, enums: Mapping[str, Enum]) -> Iterator[Fault]:
@@ -68,11 +68,11 @@ def faults_of_values(message: Map, item: Map, enums: Mapping[str, Enum]) -> Iter
         for said, value in zip(_listed(listed), values, strict=True):
             if value is None and _is_range(one, said, enums):
                 text = f"{_shown(said)} is a range of values of `{one['enum']}`"
-                yield Fault.at_key(when, name, text, "write the values as numbers, each that is meant")
+                yield Fault.at_key(when, name, text, "list the values as numbers")
             elif value is None:
                 yield Fault.at_key(when, name, f"`{name}` is never {_shown(said)}", f"`{name}` {_allowed(one, enums)}")
             elif "const" in one and value != one["const"]:
-                text = f"`{name}` is always {one['const']}, so that `{item['name']}` is never there"
+                text = f"`{name}` is always {one['const']}, so `{item['name']}` is never present"
                 yield Fault.at_key(when, name, text, "correct the value, or remove the field")
         told = [value for value in values if value is not None]
         if len(set(told)) < len(told):
@@ -131,7 +131,7 @@ def _odd(field: Map) -> str:
     if odd := next((words for key, words in _ODD.items() if key in field), ""):
         return odd
     if field.get("view"):
-        return "is a view"
+        return "is an overlay field"
     return "" if field.get("type") in _PLAIN else f"is `{field.get('type')}`"
 
 

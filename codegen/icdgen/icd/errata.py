@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Set
 
-from icdgen.diagnostics import Finding, Place
+from icdgen.diagnostics import Finding, Fix, Place
 from icdgen.icd.erratum import Erratum
 from icdgen.icd.located import Map, Seq, unread
+from icdgen.icd.suggestions import suggestion
 from icdgen.icd.trees import mappings
-from icdgen.suggest import close_to
 
 _AGAIN = "look at the manual again, then update or remove the entry"
 STALE, NOWHERE, DOUBLE_ID, OTHER_NODE = "ICD080", "ICD081", "ICD082", "ICD083"
@@ -200,26 +200,26 @@ def _stale(entry: Map, target: Map, printed: Map) -> Finding:
 
 
 def _nowhere(tree: Map, where: Map, named: _ByName) -> Finding:
-    wanted, known = "", []
+    wanted, known, key = "", [], ""
     if "section" in where:
         wanted = f"section `{where['section']}`"
     elif "enum" in where:
         wanted = f"enumeration `{where['enum']}`" + (f" with value {where['member']}" if "member" in where else "")
-        known = [e.get("name") for e in mappings(tree.get("enums"))]
+        names = [e.get("name") for e in mappings(tree.get("enums"))]
+        known, key = [] if where["enum"] in names else names, "enum"
     elif "loggable" in where:
         wanted = f"loggable bit {where['loggable']}"
     elif "message" in where or "struct" in where:
-        what = "message" if "message" in where else "struct"
+        what = key = "message" if "message" in where else "struct"
         wanted = f"{what} `{where[what]}`"
         known = [m.get("name") for m in mappings(tree.get(f"{what}s"))]
         messages = list(named.of(tree, f"{what}s", where[what]))
         if messages:
             wanted = f"field `{where.get('field') or where.get('fields')}` in {wanted}"
-            known = [f.get("name") for m in messages for f in mappings(m.get("fields"))]
-    target = str(where.get("field") or where.get("message") or where.get("struct") or where.get("enum") or "")
-    close = close_to(target, (k for k in known if isinstance(k, str)))
-    help = f"did you mean `{close}`?" if close else "names are the manual's, to the letter"
-    return Finding(NOWHERE, f"there is no {wanted}", where.place, help)
+            known, key = [f.get("name") for m in messages for f in mappings(m.get("fields"))], "field"
+    candidates = (name for name in known if isinstance(name, str))
+    help, fix = suggestion(str(where.get(key, "")), candidates, "names are the manual's, to the letter")
+    return Finding(NOWHERE, f"there is no {wanted}", where.place, help, fix=Fix(where.at(key), fix) if fix else None)
 
 
 def _show(value: object) -> str:

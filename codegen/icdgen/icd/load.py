@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from icdgen import fingerprints
-from icdgen.diagnostics import Finding, Findings, Place, in_order
+from icdgen.diagnostics import Finding, Findings, Fix, Lines, Place, in_order
 from icdgen.icd import errata, folders, source
 from icdgen.icd.build import Builder, Scope
 from icdgen.icd.loaded import Loaded
@@ -38,8 +38,23 @@ def load(
     if check and not loader.unreadable:
         from icdgen.icd import rules
 
-        findings = findings + rules.check(icd, loader.applied, complete=not loader.broken, languages=languages)
-    return Loaded(icd, in_order(findings), loader.inputs, loader.texts)
+        findings += rules.check(icd, loader.applied, not loader.broken, languages, loader.texts)
+    return Loaded(icd, _with_sound_fixes(in_order(findings), loader.texts), loader.inputs, loader.texts)
+
+
+def _with_sound_fixes(findings: list[Finding], texts: Mapping[str, str]) -> list[Finding]:
+    """The findings without corrections of values that span lines: the place of such a value is its first character."""
+    lines = {one.fix.place.file: Lines(texts[one.fix.place.file]) for one in findings if one.fix is not None}
+    return [
+        one if one.fix is None or _is_word(lines[one.fix.place.file], one.fix.place) else one._replace(fix=None)
+        for one in findings
+    ]
+
+
+def _is_word(lines: Lines, place: Place) -> bool:
+    """Whether what stands at a place ends with it."""
+    behind = place._replace(column=place.column + place.length, length=1)
+    return place.length > 1 or lines.marked(behind) in ("", *" \t,:]}")
 
 
 class _Loader:
@@ -122,24 +137,31 @@ class _Loader:
             self.unreadable = True
             return None
         self.trees.append(tree)
-        self.findings += treacherous
         if document == "icd" and "errata" in tree and "icdgen" not in tree:
             text = "this is an errata overlay, not an ICD"
             self.findings.append(
                 Finding("ICD010", text, tree.place, "name the ICD; icdgen finds its errata file in the same folder")
             )
+            self.findings += treacherous
             self.unreadable = True
             return None
         self.check_structure(tree, document, treacherous)
         return tree
 
-    def check_structure(self, tree: Map, document: str, known: Sequence[Finding] = ()) -> None:
-        """What does not have the structure, but for the values that are ``known`` not to be what they look like."""
-        from icdgen.icd import schema
+    def check_structure(self, tree: Map, document: str, ambiguous: Sequence[Finding] = ()) -> None:
+        """Check the structure; the format decides whether an ``ambiguous`` word such as `yes` is a text or a truth value."""
+        from icdgen.icd import remedies, schema
 
-        findings, broken = schema.check(tree, document)
-        places = {(one.place.line, one.place.column) for one in known}
-        self.findings += (one for one in findings if (one.place.line, one.place.column) not in places)
+        lines = Lines(self.texts.get(tree.place.file, ""))
+        findings, broken = schema.check(tree, document, lines)
+        violations = {one.place: one for one in findings}
+        for one in ambiguous:
+            violation = violations.get(one.place)
+            text = remedies.of_type("string", lines.marked(one.place)) if violation is None else ""
+            fix = Fix(one.place, text) if text else violation.fix if violation else None
+            self.findings.append(one._replace(fix=fix))
+        places = {one.place for one in ambiguous}
+        self.findings += (one for one in findings if one.place not in places)
         self.broken |= broken
 
     def overlay_path(self, tree: Map, path: Path) -> Path | None:

@@ -1,8 +1,12 @@
-"""What those who write their first ICD most likely meant."""
+"""Help for mistakes that are common in a first ICD, and the correction where it is known."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Mapping
+from typing import Any, NamedTuple
+
+from icdgen.suggest import close_to
 
 _QUOTES = "put the text in quotes"
 _KINDS = {
@@ -34,6 +38,21 @@ _KEYS = {
 }  # fmt: skip
 
 _REPEATED = frozenset({"count", "repeat", "array", "times", "elements", "length"})
+_MOST_DIGITS = 30
+_BOOLEANS = dict.fromkeys(("true", "yes", "y", "on"), "true") | dict.fromkeys(("false", "no", "n", "off"), "false")
+_PLAIN = re.compile(r"[-+.:\w]+")
+_BASED = re.compile(r"0[xX][0-9A-Fa-f]+|0[bB][01]+|0[oO][0-7]+")
+_SCIENTIFIC = re.compile(r"(-?)([0-9]*)(?:\.([0-9]*))?(?:[eE](?=[-+]?([0-9]+)\Z)([-+]?)[0-9]+)?")
+_BEFORE_BLOCK, _BLOCK_VALUE = re.compile(r":[ ]+|-[ ]+(?=[^ \w])"), re.compile(r"[^'\"{\[].*?(?=\s*(?:\s#.*)?\Z)")
+_BEFORE_FLOW, _FLOW_VALUE = re.compile(r"(?<=[:,]) |[{\[]"), re.compile(r"[^'\"{}\[\],]+")
+_RENAMED = re.compile(r"`(\w+):`")
+
+
+class Remedy(NamedTuple):
+    """What to do about a mistake; ``fix`` is the right key or value as YAML, if it is known."""
+
+    help: str
+    fix: str = ""
 
 
 def of_syntax(problem: str, line: str, column: int) -> str:
@@ -42,39 +61,100 @@ def of_syntax(problem: str, line: str, column: int) -> str:
     if "tab character" in problem or character == "\t":
         return "indent with spaces: YAML takes no tabs"
     if "cannot start any token" in problem and character:
-        return f'a text cannot begin with `{character}`: {_QUOTES}, "{character}"'
+        return f"a text cannot begin with {character}: {_QUOTES}"
     if "mapping values are not allowed" in problem:
         return f"a colon and a space begin a value: {_QUOTES} if they belong to it, or correct the indentation"
     if "expected ',' or" in problem:
         if character in ("[", "{", "]"):
-            return f"within {{ }} brackets are part of a text only in quotes: {_QUOTES}"
+            return f"within {{ }}, a text with brackets needs quotes: {_QUOTES}"
         return "a bracket before this place is not closed, or a comma is missing: `{at: 0, bits: 8, name: Mode}`"
     return ""
 
 
-def of_value(key: str, value: object) -> str:
-    """What is written instead of a word that the format does not know; nothing if there is no telling."""
+def value_around(line: str, column: int) -> tuple[int, int]:
+    """Return start and end of the unquoted value at a column (from 0) of a line; equal if there is none."""
+    is_flow = any(bracket in line[:column] for bracket in "{[")
+    starts = [found.end() for found in (_BEFORE_FLOW if is_flow else _BEFORE_BLOCK).finditer(line, 0, column + 1)]
+    begin = (starts[-1] if is_flow else starts[0]) if starts else column
+    value = (_FLOW_VALUE if is_flow else _BLOCK_VALUE).match(line, begin)
+    return (begin, begin) if value is None else value.span()
+
+
+def in_quotes(text: str) -> str:
+    """Write a text in double quotes."""
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
+
+
+def of_value(key: str, value: object, owner: Mapping[str, Any], allowed: Iterable[str]) -> Remedy | None:
+    """Help for a word that is not one of the ``allowed`` values of a key of ``owner``; None if none is similar."""
     word = str(value).strip().lower()
     known = {"kind": _KINDS, "byte_order": _ORDERS, "bit_order": _BITS}.get(key, {})
     if word in known:
-        return f"write `{key}: {known[word]}`"
-    if key != "type":
-        return ""
-    sized = _SIZED.fullmatch(word)
+        return Remedy(f"write `{key}: {known[word]}`", known[word])
+    sized = _SIZED.fullmatch(word) if key == "type" else None
     if sized:
         bits = sized[2] or sized[4] or sized[5]
         kind = "float" if sized[5] else "uint" if sized[1] else "int"
-        return f"write `type: {kind}` with `bits: {bits}`"
-    return f"write {_TYPES[word]}" if word in _TYPES else ""
+        is_complete = owner.get("bits") == int(bits)
+        return Remedy(f"write `type: {kind}` with `bits: {bits}`", kind if is_complete else "")
+    if key == "type" and word in _TYPES:
+        kind = _TYPES[word].split("`")[1].removeprefix("type: ")
+        return Remedy(f"write {_TYPES[word]}", kind if f"`bits: {owner.get('bits')}`" in _TYPES[word] else "")
+    close = close_to(word, allowed)
+    return Remedy(f"did you mean `{close}`?", close) if close else None
 
 
-def of_key(key: str, known: list[str]) -> str:
-    """What is written instead of a key that the format does not know; nothing if there is no telling."""
+def of_type(wanted: str | list[str], written: str) -> str:
+    """Return a value of the ``wanted`` type of JSON Schema for one that is ``written`` in another; empty if unknown."""
+    word = written.lower()
+    if "boolean" in wanted:
+        return _BOOLEANS.get(word, "")
+    if "string" in wanted:
+        return f'"{written}"' if _PLAIN.fullmatch(written) else ""  # not a tag, nor a text that has quotes
+    number = plain_number(written.strip("'\""))
+    return number if "number" in wanted or ("integer" in wanted and "." not in number) else ""
+
+
+def of_ambiguous(written: str) -> str:
+    """Return the help for a word that YAML readers read as values of different types."""
+    truth = of_type("boolean", written)
+    if truth or written[:1].isalpha():
+        return f'write "{written}" in quotes if it is text' + (f", {truth} if it is a truth value" if truth else "")
+    number = plain_number(written) or "a plain decimal or 0x number"
+    return f'write "{written}" in quotes if it is text, {number} if it is a number'
+
+
+def plain_number(written: str) -> str:
+    """Return the plain spelling of a number, such as ``1.0e+20`` for ``1e20``; empty if its value is uncertain."""
+    text = written.replace("_", "").removeprefix("+")
+    if len(text) > _MOST_DIGITS:
+        return ""
+    if _BASED.fullmatch(text):
+        return f"0x{text[2:]}" if text[1] in "xX" else str(int(text, 0))
+    exact = _SCIENTIFIC.fullmatch(text)
+    if exact is None or len(exact[4] or "") > 2:
+        return ""
+    sign, whole, rest, exponent = exact[1], exact[2] or "0", exact[3], exact[4]
+    if whole != "0" and whole.startswith("0"):
+        return ""  # octal for some readers of YAML
+    if exponent is None:
+        return f"{sign}{whole}" + (f".{rest}" if rest else "")
+    return f"{sign}{whole}.{rest or '0'}e{exact[5] or '+'}{exponent}"
+
+
+def of_key(key: str, known: list[str]) -> Remedy | None:
+    """Help for a key that is not one of those ``known`` in its place; None if none is similar."""
     if key.lower() in _REPEATED:
         if "count" in known:
-            return "write `count:`: `{at: 0, bits: 16, count: 6, name: Temperatures, type: int}` is an array of six numbers"
-        return "only fields are repeated, by `count:`: what else there is several times is written as often"
+            return Remedy(
+                "write `count:`: `{at: 0, bits: 16, count: 6, name: Temperatures, type: int}` is an array of six numbers"
+            )
+        return Remedy("only fields can be repeated, with `count:`; write anything else as often as it occurs")
     if key.isdecimal():
-        return "decimals have a point and no comma: `formula: raw*0.1`"
+        return Remedy("write decimals with a point, not with a comma: `formula: raw*0.1`")
     meant = _KEYS.get(key.lower(), "")
-    return f"write {meant}" if meant and re.search(r"`(\w+):", meant)[1] in known else ""  # type: ignore[index]
+    if meant and re.search(r"`(\w+):", meant)[1] in known:  # type: ignore[index]
+        renamed = _RENAMED.fullmatch(meant)
+        return Remedy(f"write {meant}", renamed[1] if renamed else "")
+    close = close_to(key, known)
+    return Remedy(f"did you mean `{close}`?", close) if close else None

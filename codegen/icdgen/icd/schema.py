@@ -7,9 +7,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from icdgen.diagnostics import Finding, Place
+from icdgen.diagnostics import Finding, Fix, Lines, Place
 from icdgen.icd.located import Map, Seq
-from icdgen.suggest import close_to
 
 PATH = Path(__file__).with_name("schema.json")
 COPY = "icdgen.schema.json"  # the file beside ICDs, for editors
@@ -29,8 +28,11 @@ _TYPES = {
 }
 
 
-def check(tree: Map, document: str) -> tuple[list[Finding], set[int]]:
-    """Violations of ``#/$defs/<document>`` ("icd" or "errata"), and the ids of the mappings they stand in."""
+def check(tree: Map, document: str, lines: Lines | None = None) -> tuple[list[Finding], set[int]]:
+    """Violations of ``#/$defs/<document>`` ("icd" or "errata"), and the ids of the mappings they stand in.
+
+    With the ``lines`` of the file, findings have the corrections that depend on how a value is written.
+    """
     findings: list[Finding] = []
     broken: set[int] = set()
     for error in _validator(document).iter_errors(tree):
@@ -38,7 +40,7 @@ def check(tree: Map, document: str) -> tuple[list[Finding], set[int]]:
         holder, owner, place = locate(tree, path)
         # A mapping where something else must stand breaks the mapping around it, not itself.
         broken.add(id(owner if error.kind.name in _ABOUT_KEYS else holder))
-        findings += _explain(error, tree, path, owner, place)
+        findings += _explain(error, path, owner, place, lines or Lines(""))
     return findings, broken
 
 
@@ -96,15 +98,17 @@ def locate(tree: Map, path: list[Any]) -> tuple[Map, Map, Place]:
     return holder, owner, place
 
 
-def _explain(error: Any, tree: Map, path: list[Any], owner: Map, place: Place) -> list[Finding]:
+def _explain(error: Any, path: list[Any], owner: Map, place: Place, lines: Lines) -> list[Finding]:
+    from icdgen.icd import remedies
+
     kind = error.kind
-    name = kind.name
+    name, fix = kind.name, ""
     what = f"`{path[-1]}`" if path and isinstance(path[-1], str) else "this"
     if path and isinstance(path[-1], int) and isinstance(path[-2], str):
         what = f"this entry of `{path[-2]}`"
     rule = _rule_at(list(error.schema_path))
     about = rule.get("description", "")
-    help = f"{what} is {about}" if about and what != "this" else about
+    help = f"{what}: {about}" if about and what != "this" else about
     if name == "required":
         missing = kind.property
         hint = meaning(inside(rule, missing))
@@ -117,11 +121,17 @@ def _explain(error: Any, tree: Map, path: list[Any], owner: Map, place: Place) -
         wanted = rule.get("type", "")
         words = " or ".join(_TYPES.get(one, one) for one in ([wanted] if isinstance(wanted, str) else wanted))
         message = f"{what} must be {words}, not {_describe(error.instance)}"
+        is_text = wanted == "string" and {"enum", "pattern"}.isdisjoint(rule)
+        if isinstance(error.instance, str) or (is_text and type(error.instance) in (int, float)):
+            fix = remedies.of_type(wanted, lines.marked(place))
     elif name in ("enum", "const"):
-        from icdgen.icd import remedies
-
         message = f"{what} cannot be {_describe(error.instance)}"
-        help = remedies.of_value(str(path[-1]) if path else "", error.instance) or _with_values(help, rule)
+        allowed = [word for word in rule.get("enum", ()) if isinstance(word, str)]
+        help = _with_values(help, rule)
+        if rule.get("enum") == [True]:
+            fix = "true" if remedies.of_type("boolean", lines.marked(place)) == "true" else ""
+        elif path and isinstance(error.instance, str):
+            help, fix = remedies.of_value(str(path[-1]), error.instance, owner, allowed) or (help, fix)
     elif name in ("minimum", "maximum"):
         side = "at least" if name == "minimum" else "at most"
         message = f"{what} must be {side} {rule[name]}, not {error.instance}"
@@ -140,18 +150,17 @@ def _explain(error: Any, tree: Map, path: list[Any], owner: Map, place: Place) -
         message = f"{what} has neither {' nor '.join(keys)}"
     else:
         message = f"{what} does not fit the format ({name})"
-    return [Finding(CODE, message, place, help or "see docs/reference/icd-format.md")]
+    help = help or "see docs/reference/icd-format.md"
+    return [Finding(CODE, message, place, help, fix=Fix(place, fix) if fix else None)]
 
 
 def _unknown_key(key: str, known: list[str], place: Place) -> Finding:
     from icdgen.icd import remedies
 
-    close = close_to(key, known)
-    help = remedies.of_key(key, known)
-    help = help or f"did you mean `{close}`?" if help or close else "known keys: " + ", ".join(known)
-    if " " in key and not close:
+    help, fix = remedies.of_key(key, known) or ("known keys: " + ", ".join(known), "")
+    if " " in key and not fix:
         help = f"if it is the rest of a text with a comma, put that in quotes; {help}"
-    return Finding(CODE, f"unknown key `{key[:60]}`", place, help)
+    return Finding(CODE, f"unknown key `{key[:60]}`", place, help, fix=Fix(place, fix) if fix else None)
 
 
 def _with_values(help: str, rule: dict[str, Any]) -> str:

@@ -11,7 +11,7 @@ from io import StringIO
 from pathlib import Path
 from typing import Any, Protocol, cast
 
-from icdgen.diagnostics import Finding, Findings, Place
+from icdgen.diagnostics import Finding, Findings, Fix, Lines, Place
 from icdgen.icd.located import Map, Mark, Seq, Spot, place_of
 
 TREACHEROUS = "ICD003"
@@ -22,8 +22,6 @@ MAX_SCALAR = 20_000
 _NUMBER = re.compile(
     r"(?:(?P<whole>-?(?:0|[1-9][0-9]*))|(?P<hex>0x[0-9A-Fa-f]+)|(?P<decimal>-?(?:0|[1-9][0-9]*)\.[0-9]+(?:[eE][-+][0-9]{1,2})?))\Z"
 )
-_DECIMAL = re.compile(r"-?(?:0|[1-9][0-9]*)\.[0-9]+(?:[eE][-+][0-9]{1,2})?\Z")
-_SCIENTIFIC = re.compile(r"([-+]?)([0-9]+)(?:\.([0-9]*))?[eE]([-+]?)([0-9]+)\Z")
 _DEEPER_THAN_LIBYAML = "exceeded maximum nesting depth"  # which looks ahead, and so finds it first on a line
 _LONGEST_WORD = len("false")  # of those that mean something else to some reader of YAML
 _WORDS = {"true": True, "false": False, "null": None, "~": None, "": None}
@@ -192,15 +190,36 @@ class Builder:
             if problem == _DEEPER_THAN_LIBYAML:
                 self.findings.append(_too_deep(place))
                 return None, self.findings
-            help = (
-                remedies.of_syntax(problem, "".join(self.text.split("\n")[mark.line : mark.line + 1]), mark.column)
-                if mark
-                else ""
-            )
+            line = Lines(self.text)[place.line] or ""
+            help = remedies.of_syntax(problem, line, place.column - 1) if mark else ""
             help = help or "check indentation, quotes and brackets just before this place"
-            self.findings.append(Finding("ICD001", f"not YAML: {problem}", place, help))
+            fix = self.with_quotes(place, line, mark.index - mark.column) if mark else None
+            if fix is not None and "quotes" not in help.partition(":")[2]:
+                help = "put the text in quotes"
+            self.findings.append(Finding("ICD001", f"not YAML: {problem}", place, help, fix=fix))
             return None, self.findings
         return (roots[0] if roots else None), self.findings
+
+    def with_quotes(self, place: Place, line: str, offset: int) -> Fix | None:
+        """Put the value around a place in quotes; None if the file can still not be read up to the next line.
+
+        The line begins at the ``offset`` in the text.
+        """
+        import yaml
+
+        from icdgen.icd import remedies
+
+        start, end = remedies.value_around(line, place.column - 1)
+        if start == end or not self.text.startswith(line, offset):
+            return None
+        quoted = remedies.in_quotes(line[start:end])
+        parser = event_parser(self.text[: offset + start] + quoted + self.text[offset + end :], self.name)
+        try:
+            while (event := parser.get_event()) is not None and event.start_mark.line < place.line:
+                pass
+        except yaml.YAMLError:
+            return None
+        return Fix(Place(self.name, place.line, start + 1, end - start), quoted)
 
     def key(self, value: object, event: Event) -> str:
         """A key that is not written as a word."""
@@ -240,9 +259,9 @@ class Builder:
                 else int(text, 16) if kind == "hex" else int(text) if kind == "whole" else _number(text)
             )
         elif _TREACHEROUS.match(text) and text not in (".", "-"):
-            meant = _spelled(text) or "a plain decimal or 0x number"
-            help = f'write "{text}" in quotes if it is text, {meant} if it is a number'
-            self.add(TREACHEROUS, f"YAML readers disagree about what `{text}` is", event, help)
+            from icdgen.icd import remedies
+
+            self.add(TREACHEROUS, f"YAML readers disagree about what `{text}` is", event, remedies.of_ambiguous(text))
             return text
         else:
             value = text
@@ -267,16 +286,6 @@ class Builder:
 
 def _too_deep(place: Place) -> Finding:
     return Finding("ICD001", f"nested more than {MAX_DEPTH} deep", place, "an ICD needs five levels")
-
-
-def _spelled(text: str) -> str:
-    """A number with an exponent as every reader takes it: ``1.0e+20`` for ``1e20``; empty if there is no such way."""
-    found = _SCIENTIFIC.match(text)
-    if found is None or len(found[5]) > 2:
-        return ""
-    sign, whole, rest, _, exponent = found.groups()
-    spelled = f"{sign.strip('+')}{int(whole)}.{rest or '0'}e{found[4] or '+'}{exponent}"
-    return spelled if _DECIMAL.match(spelled) else ""
 
 
 def _number(text: str) -> int | float:

@@ -1,4 +1,4 @@
-"""The open parts of a message, behind all others: a frame holds as many elements of each as a field says.
+"""Variable-length parts of a message, behind all other fields: a field counts the elements of each in a frame.
 
 In the model they have all their elements; `Message.tail` and `Message.inner` say how many of them a frame may leave out.
 """
@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
+from icdgen.icd.suggestions import suggestion, yaml_text
 from icdgen.icd.trees import mappings
-from icdgen.suggest import close_to
 
 REST = "rest"
 MOST_BYTES = 65535  # of a frame
@@ -22,14 +22,14 @@ Lengths = Mapping[str, int]  # bytes of the structs that a message may name
 
 
 class Counting(NamedTuple):
-    """What is said of how many elements there are: the name of a field, or `REST`, and what is added to its value."""
+    """How the elements of a part are counted: the name of a field, or `REST`, and what is added to the field's value."""
 
     name: str
     plus: int = 0
 
 
 def is_open(item: Map) -> bool:
-    """Whether a field is said to be there as often, or as long, as the frame goes or a field says."""
+    """Whether a field has a variable length: up to the end of the frame, or counted by another field."""
     said = item.get(key_of(item))
     if isinstance(said, dict):
         return isinstance(said.get("field"), str) and type(said.get("plus")) is int
@@ -42,18 +42,27 @@ def key_of(item: Map) -> str:
 
 
 def counting(item: Map) -> Counting:
-    """How many elements an open part is said to have."""
+    """How the elements of a variable-length part are counted."""
     said = item[key_of(item)]
     return Counting(said["field"], said["plus"]) if isinstance(said, dict) else Counting(said)
 
 
 def open_parts(message: Map) -> list[Map]:
-    """The fields of a message that are said to be open."""
+    """The variable-length fields of a message, in the order of the file."""
     return [item for item in _fields(message, is_open) if type(item.get("up_to", 0)) is int]
 
 
+def fixed_behind(message: Map) -> list[Map]:
+    """The fields of fixed size that are placed behind the beginning of the first variable-length field."""
+    first = next(iter(open_parts(message)), None)
+    if first is None or _is_unknown(message, first):
+        return []
+    fixed = _fields(message, lambda item: not is_open(item) and not item.get("view") and "after" not in item)
+    return [item for item in fixed if item["at"] >= first["at"]]
+
+
 def unit(item: Map, structs: Lengths) -> int:
-    """Bits of an element of an open part: of bytes and text 8; of a struct that there is not 0."""
+    """Bits of an element of a variable-length part: 8 for bytes and text, 0 for an unknown struct."""
     if "struct" in item:
         return 8 * structs.get(item["struct"], 0)
     bits: int = 8 if "size" in item else item["bits"]
@@ -88,20 +97,20 @@ def faults_of_count(message: Map, item: Map) -> Iterator[Fault]:
     name = f"`{item['name']}`"
     key, (said, plus) = key_of(item), counting(item)
     if _is_unknown(message, item):
-        text = f"`{said}`, which counts {name}, is no field of `{message['name']}`"
+        text = f"`{message['name']}` has no field `{said}` that could count {name}"
         numbers = "a number, " if key == "count" else ""
-        near = close_to(said, [*(one["name"] for one in _fields(message) if _can_count(one, message)), REST])
-        help = f"did you mean `{near}`?" if near else f"`{key}` is {numbers}the name of an earlier field, or `{REST}`"
-        yield Fault.at(item, key, text, help)
+        counters = [*(one["name"] for one in _fields(message) if _can_count(one, message)), REST]
+        help, fix = suggestion(said, counters, f"`{key}` is {numbers}the name of an earlier field, or `{REST}`")
+        yield Fault.at(item, key, text, help, "" if isinstance(item[key], dict) else fix)
         return
     if "up_to" not in item and key == "count":
-        text = f"{name} has no fixed {key}, and nothing says how large it can become"
-        yield Fault.at(item, key, text, "add `up_to:`, the most elements that there are: buffers are made for them")
+        text = f"{name} has no fixed {key} and no `up_to`"
+        yield Fault.at(item, key, text, "add `up_to:`, the greatest number of elements: buffers have that size")
     if "up_to" not in item:
         return
     if item["up_to"] > MOST_ELEMENTS and key == "count":
         text = f"{name} has up to {item['up_to']:,} elements: an array has at most {MOST_ELEMENTS:,}"
-        yield Fault.at(item, "up_to", text, "what is longer is `bytes` with `size: rest`")
+        yield Fault.at(item, "up_to", text, "use `type: bytes` with `size: rest` for longer data")
     if said == REST:
         return
     counter = counter_of(message, item)
@@ -109,12 +118,12 @@ def faults_of_count(message: Map, item: Map) -> Iterator[Fault]:
     others = takewhile(lambda one: one is not item, open_parts(message))
     same = next((one for one in others if counting(one).name == said), None)
     if same is not None:
-        text = f"`{said}`, which counts {name}, counts `{same['name']}` already"
-        yield Fault.at(item, key, text, "each variable-length field has a counter of its own")
+        text = f"`{said}` counts both `{same['name']}` and {name}"
+        yield Fault.at(item, key, text, "name another counter: each variable-length field needs its own")
     odd = _odd(counter, message)
     if odd:
-        text = f"`{counter['name']}`, which counts {name}, {odd}"
-        help = "a counter is an unsigned number without a formula, in the bytes in front of what it counts"
+        text = f"`{counter['name']}` cannot count {name}: it {odd}"
+        help = "name an unsigned number without a formula, within the `length` of the message"
         yield Fault.at(item, key, text, help)
         return
     most, elements = (1 << counter["bits"]) - 1 + plus, "bytes" if key == "size" else "elements"
@@ -124,14 +133,15 @@ def faults_of_count(message: Map, item: Map) -> Iterator[Fault]:
         text = f"{counter_text} counts up to {max(most, 0):,}, and {name} has up to {item['up_to']:,} {elements}"
         smaller = f"write `up_to: {most}`" if most > 0 else "correct `up_to`"
         also = "`plus` or " if plus else ""
-        yield Fault.at(item, "up_to", text, f"{smaller}, or correct {also}the `bits` of `{counter['name']}`")
+        help = f"{smaller}, or correct {also}the `bits` of `{counter['name']}`"
+        yield Fault.at(item, "up_to", text, help, str(most) if most > 0 else "")
     elif plus > item["up_to"]:
         text = f"{name} has at least {plus:,} {elements}, and up to {item['up_to']:,}"
         yield Fault.at(item, "up_to", text, "correct `up_to`, or `plus`")
 
 
 def _is_unknown(message: Map, item: Map) -> bool:
-    """Whether what is said to count is no field."""
+    """Whether the counter of a part is not a field of the message."""
     return counting(item).name != REST and counter_of(message, item) is None
 
 
@@ -143,18 +153,18 @@ def _odd(counter: Map, message: Map) -> str:
     """Why a field cannot count, as the end of a sentence; empty if it can."""
     if counter.get("type") != "uint" or not counter.keys().isdisjoint(("formula", "points")):
         return "is scaled" if counter.get("type") == "uint" else f"is `{counter.get('type')}`"
-    for key, words in (("count", "is an array"), ("bitfields", "is divided"), ("const", "is constant")):
+    for key, words in (("count", "is an array"), ("bitfields", "is a split field"), ("const", "is constant")):
         if key in counter:
             return words
     if counter.get("view"):
-        return "is a view"
+        return "is an overlay field"
     if counter["at"] + counter["bits"] > 8 * message["length"]:
-        return "stands behind it"
+        return "is placed behind the `length` of the message"
     return ""
 
 
 def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Fault]:
-    """What is wrong with where it stands, and with what it is."""
+    """Faults of the place and the type of a variable-length part."""
     name, fixed = f"`{item['name']}`", 8 * message["length"]
     if _is_unknown(message, item):
         return  # perhaps it is not meant to be open
@@ -162,53 +172,61 @@ def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Fault
     before = next((one for one, other in pairwise(parts) if other is item), None)
     written = [one["name"] for one in parts]
     if item.get("after") in written[written.index(item["name"]) + 1 :]:
-        text = f"{name} comes after `{item['after']}`, which is written behind it"
-        yield Fault.at(
-            item,
-            "after",
-            text,
-            "write variable-length fields in the order of the frame; `after` names the one directly in front",
-        )
+        text = f"{name} follows `{item['after']}`, which is listed later in the file"
+        help = "list variable-length fields in the order of the frame; `after` names the one directly in front"
+        yield Fault.at(item, "after", text, help)
         return
     if before is None and "after" in item:
-        text = f"{name} comes after `{item['after']}`, and no part in front of it is open"
-        yield Fault.at(item, "after", text, "remove `after`: what is open begins where `length` ends")
+        text = f"{name} has `after: {item['after']}`, but no field in front of it has a variable length"
+        yield Fault.at(
+            item, "after", text, "remove `after`: the first variable-length field begins where `length` ends"
+        )
         return
     if before is not None and item.get("after") != before["name"]:
-        text = f"{name} is not the first part of `{message['name']}` that has no fixed size"
-        help = f"it stands behind `{before['name']}`: write `after: {before['name']}`"
-        yield Fault.at(item, "after" if "after" in item else "name", text, help)
+        text = f"{name} is not the first variable-length field of `{message['name']}`"
+        help = f"write `after: {before['name']}`, the field in front of it"
+        if "after" in item:
+            yield Fault.at(item, "after", text, help, yaml_text(before["name"]))
+        else:
+            yield Fault.at(item, "name", text, help)
         return
     if before is not None and counting(before).name == REST:
-        text = f"{name} comes after `{before['name']}`, which goes up to the end of the frame"
-        yield Fault.at(item, "after", text, f"name the field that counts `{before['name']}`")
+        text = f"{name} follows `{before['name']}`, which extends to the end of the frame"
+        help = f"let a field count `{before['name']}`: write its name instead of `{REST}`"
+        yield Fault.at(item, "after", text, help)
+        return
+    if "reserved" in message:
+        text = f"`{message['name']}` has `reserved` bytes, which cannot follow {name}, a variable-length field"
+        help = (
+            f"remove `reserved`; `length` is that of the shortest frame, which ends where `{parts[0]['name']}` begins"
+        )
+        yield Fault.at(message, "reserved", text, help)
         return
     if item["at"] != fixed:
-        text = f"{name} is open and begins at bit {item['at']:,}; the `length` of `{message['name']}` ends at bit {fixed:,}"
-        help = "`length` is that of a frame without any of it, which ends where the open part begins"
+        text = f"{name} has a variable length and begins at bit {item['at']:,}, but `length` ends at bit {fixed:,}"
+        help = "`length` is that of the shortest frame: it must end where the variable-length field begins"
         yield Fault.at(item, "at", text, help)
         return
     is_octets = item.get("type") in _OCTETS
     if "size" in item and not is_octets:
         text = f"{name} is `{item.get('type')}`: `size` is for bytes and text"
-        yield Fault.at(item, "size", text, "of numbers write `bits` of an element, and `count`")
+        yield Fault.at(item, "size", text, "for numbers, write the `bits` of an element and `count`")
     elif unit(item, structs) % 8:
-        text = f"an element of {name} has {unit(item, structs)} bits, and a frame ends with a byte"
-        yield Fault.at(item, "bits", text, "describe its bytes as elements, or count them")
+        text = f"an element of {name} has {unit(item, structs)} bits, but a frame has whole bytes"
+        yield Fault.at(item, "bits", text, "describe elements of whole bytes, or the data as `bytes` with `size`")
     for key in ("view", "bitfields"):
         if item.get(key):
-            text = f"{name} is open, so it has no `{key}`"
+            text = f"{name} has a variable length, so it cannot have `{key}`"
             yield Fault.at(item, key, text, f"remove `{key}`")
-    if "reserved" in message:
-        text = f"`{message['name']}` ends with {name}, so there are no reserved bytes behind it"
-        yield Fault.at(message, "reserved", text, "remove `reserved`")
     longest = message["length"] + sum(one.get("up_to", 0) * unit(one, structs) // 8 for one in parts)
     if longest > MOST_BYTES and item is parts[-1]:
-        text = f"with all of {name}, `{message['name']}` has {longest:,} bytes: at most {MOST_BYTES:,} are held"
+        text = (
+            f"`{message['name']}` can have {longest:,} bytes with all of {name}, more than the limit of {MOST_BYTES:,}"
+        )
         yield Fault.at(item, "up_to", text, "correct `up_to`")
 
 
 def obstacles(message: Map, item: Map, structs: Lengths) -> Iterator[Fault]:
-    """All that is wrong with an open part."""
+    """All faults of a variable-length part."""
     yield from faults_of_count(message, item)
     yield from faults_of_place(message, item, structs)

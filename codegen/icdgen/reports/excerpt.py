@@ -1,34 +1,18 @@
-"""The line that a finding is about, made fit for a terminal, and the caret under it."""
+"""The line that a finding is about, made fit for a terminal, and the marks under it."""
 
 from __future__ import annotations
 
-import re
 import unicodedata
 
-from icdgen.diagnostics import Place
+from icdgen.diagnostics import Fix, Lines, Place
 
 WIDTH = 100  # columns of a line that are shown
-LEAD = 30  # columns kept before the caret where the line is cut
+LEAD = 30  # columns kept before the marks where the line is cut
 TAB = "    "
 CUT = "..."
 LONGEST = 1000  # characters of a message; a hostile name may have thousands
 
-_BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")  # what YAML counts as the end of a line
 _ODD = ("Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp")
-
-
-class Lines:
-    """The lines of a text, split when first asked for."""
-
-    def __init__(self, text: str) -> None:
-        self._text = text.removeprefix("\ufeff")
-        self._lines: list[str] | None = None
-
-    def __getitem__(self, number: int) -> str | None:
-        """Line ``number``, counted from 1; None if there is none."""
-        if self._lines is None:
-            self._lines = _BREAK.split(self._text)
-        return self._lines[number - 1] if 1 <= number <= len(self._lines) else None
 
 
 def printable(text: str) -> str:
@@ -61,34 +45,46 @@ def _width(char: str) -> int:
     return 2 if unicodedata.east_asian_width(char) in "WF" else 1
 
 
-def excerpt(lines: Lines, place: Place) -> tuple[str, str] | None:
-    """The line and the caret below it, or None where the text has no such line. Long lines are cut to a window."""
+def excerpt(lines: Lines, place: Place, mark: str = "^") -> tuple[str, str] | None:
+    """The line and the marks below it, or None where the text has no such line. Long lines are cut to a window."""
     line = lines[place.line]
+    return None if line is None else marked(line, place.column, place.length, mark)
+
+
+def corrected(lines: Lines, fix: Fix) -> tuple[str, str] | None:
+    """The line with the correction, and marks below what is new."""
+    line, start = lines[fix.place.line], fix.place.column - 1
     if line is None:
         return None
-    start = min(place.column - 1, len(line))
+    line = line[:start] + fix.text + line[start + fix.place.length :]
+    return marked(line, fix.place.column, len(fix.text), "~")
+
+
+def marked(line: str, column: int, length: int, mark: str) -> tuple[str, str]:
+    """A line and marks below ``length`` of its characters from ``column`` on."""
+    start = min(column - 1, len(line))
     # Only what can end up in the window is looked at: a line may have a million columns.
     head, tail = line[max(0, start - WIDTH) : start], line[start : start + WIDTH]
-    marked = tail[: max(1, min(place.length, len(tail)))]
-    before, under, after = (_spread(t) for t in (head, marked, tail[len(marked) :]))
+    stretch = tail[: max(1, min(length, len(tail)))]
+    before, under, after = (_spread(t) for t in (head, stretch, tail[len(stretch) :]))
     hidden_before, hidden_after = start > WIDTH, start + WIDTH < len(line)
     if not hidden_before and not hidden_after and _columns(before + under + after) <= WIDTH:
-        return before + under + after, _caret(before, under)
+        return before + under + after, _marks(before, under, mark)
     if hidden_before or _columns(before) > LEAD:
         before = CUT + _last(before, LEAD)
     room = WIDTH - _columns(before)
     shown = _first(under + after, room)
     if hidden_after or len(shown) < len(under + after):
         shown = _first(shown, room - len(CUT)) + CUT
-    return before + shown, _caret(before, _first(under, room - len(CUT)))
+    return before + shown, _marks(before, _first(under, room - len(CUT)), mark)
 
 
 def _spread(text: str) -> str:
     return printable(text.replace("\t", TAB))
 
 
-def _caret(before: str, under: str) -> str:
-    return " " * _columns(before) + "^" * max(1, _columns(under))
+def _marks(before: str, under: str, mark: str) -> str:
+    return " " * _columns(before) + mark * max(1, _columns(under))
 
 
 def _first(text: str, columns: int) -> str:

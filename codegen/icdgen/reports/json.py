@@ -31,4 +31,14 @@ def _one(finding: Finding) -> dict[str, object]:
         "line": place.line,
         "column": place.column,
         "length": place.length,
-    }
+    } | _optional(finding)
+
+
+def _optional(finding: Finding) -> dict[str, object]:
+    """The correction, and the other place that the finding is about, each if there is one."""
+    result: dict[str, object] = {}
+    if finding.fix is not None:
+        result["fix"] = finding.fix.place._asdict() | {"text": finding.fix.text}
+    if finding.related is not None:
+        result["related"] = finding.related.place._asdict() | {"label": finding.related.label}
+    return result

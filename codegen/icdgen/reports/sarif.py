@@ -73,13 +73,22 @@ def described(code: str, rule: Explained, text: str) -> dict[str, Any]:
 
 def _result(finding: Finding, index: int) -> dict[str, Any]:
     text = finding.message + (f"\n{finding.help}" if finding.help else "")
-    return {
+    result = {
         "ruleId": finding.code,
         "ruleIndex": index,
         "level": finding.severity,
         "message": {"text": text},
         "locations": [{"physicalLocation": physical(finding.place)}],
     }
+    if finding.related is not None:
+        label = {"text": finding.related.label}
+        result["relatedLocations"] = [{"physicalLocation": physical(finding.related.place), "message": label}]
+    if finding.fix is not None:
+        region = physical(finding.fix.place)
+        replacement = {"deletedRegion": region["region"], "insertedContent": {"text": finding.fix.text}}
+        change = {"artifactLocation": region["artifactLocation"], "replacements": [replacement]}
+        result["fixes"] = [{"description": {"text": finding.help}, "artifactChanges": [change]}]
+    return result
 
 
 def physical(place: Place) -> dict[str, Any]:

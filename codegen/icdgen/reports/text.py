@@ -1,12 +1,12 @@
-"""Findings for people: the place, what is wrong, the line with a caret under it, and what to do."""
+"""Findings for people: the place, what is wrong, the line with marks under it, what to do, and the corrected line."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 
-from icdgen.diagnostics import Finding
-from icdgen.reports.excerpt import Lines, excerpt, printable, shown
+from icdgen.diagnostics import Finding, Lines, Place
+from icdgen.reports.excerpt import corrected, excerpt, printable, shown
 
 COLOURS = {
     "error": "\x1b[1;31m",
@@ -14,6 +14,7 @@ COLOURS = {
     "note": "\x1b[1;36m",
     "place": "\x1b[1m",
     "gutter": "\x1b[34m",
+    "fix": "\x1b[1;32m",
 }
 RESET = "\x1b[0m"
 
@@ -27,7 +28,7 @@ def report(findings: Iterable[Finding], texts: Mapping[str, str], colour: bool =
     findings = list(findings)
     paint: Paint = _painted if colour else _plain
     lines = {file: Lines(text) for file, text in texts.items()}  # but for those that could not be read
-    parts = (_one(finding, lines.get(finding.place.file), paint) for finding in findings)
+    parts = (_one(finding, lines, paint) for finding in findings)
     return "".join(part + "\n" for part in parts) + _summary(findings) + "\n"
 
 
@@ -40,20 +41,49 @@ def _summary(findings: list[Finding]) -> str:
     return f"{', '.join(said)} in {_count(len({f.place.file for f in findings}), 'file')}"
 
 
-def _one(finding: Finding, lines: Lines | None, paint: Paint) -> str:
-    place = paint("place", printable(str(finding.place)))
+def _one(finding: Finding, texts: Mapping[str, Lines], paint: Paint) -> str:
+    """The message, the line with marks, the related line, the help, and the corrected line."""
+    place, related, fix = finding.place, finding.related, finding.fix
+    rows = _Rows(max(len(str(each.place.line)) for each in (finding, related, fix) if each is not None), paint)
+    heading = paint("place", printable(str(place)))
     kind = paint(finding.severity, f"{finding.severity}[{finding.code}]")
-    text = f"{place}: {kind}: {shown(finding.message)}\n"
-    found = excerpt(lines, finding.place) if lines is not None else None
-    indent = " " * len(str(finding.place.line))
-    if found is not None:
-        line, caret = found
-        number, bar = paint("gutter", str(finding.place.line)), paint("gutter", "|")
-        under = caret.replace(caret.strip(), paint(finding.severity, caret.strip()))
-        text += f"{indent} {bar}\n{number} {bar} {line}".rstrip() + f"\n{indent} {bar} {under}\n"
+    marks = [(place, "^", finding.severity, "")]
+    if related is not None:
+        marks.append((related.place, "-", "gutter", shown(related.label)))
+    if related is not None and related.place.file == place.file:
+        marks.sort(key=lambda mark: mark[0].line)
+    text = f"{heading}: {kind}: {shown(finding.message)}\n"
+    for number, (each, mark, role, label) in enumerate(marks):
+        lines = texts.get(each.file)
+        if each.file != place.file:
+            text += f"{rows.indent} {paint('place', printable(str(each)))}\n"
+        text += rows.excerpt(each, excerpt(lines, each, mark) if lines else None, role, label, begin=number == 0)
     if finding.help:
-        text += f"{indent} {paint('gutter', '=')} {paint('place', 'help:')} {shown(finding.help)}\n"
+        text += f"{rows.indent} {paint('gutter', '=')} {paint('place', 'help:')} {shown(finding.help)}\n"
+    if fix is not None:
+        lines = texts.get(fix.place.file)
+        text += rows.excerpt(fix.place, corrected(lines, fix) if lines else None, "fix")
     return text
+
+
+class _Rows:
+    """Excerpts of one finding, all with a gutter as wide as the largest line number."""
+
+    def __init__(self, width: int, paint: Paint) -> None:
+        self.indent = " " * width
+        self._paint = paint
+
+    def excerpt(
+        self, place: Place, content: tuple[str, str] | None, role: str, label: str = "", begin: bool = False
+    ) -> str:
+        """A line of the source and marks below it, with the label after them; empty without ``content``."""
+        if content is None:
+            return ""
+        line, marks = content
+        number, bar = self._paint("gutter", str(place.line).rjust(len(self.indent))), self._paint("gutter", "|")
+        below = marks.replace(marks.strip(), self._paint(role, f"{marks.strip()} {label}".rstrip()))
+        text = f"{self.indent} {bar}\n" if begin else ""
+        return text + f"{number} {bar} {line}".rstrip() + f"\n{self.indent} {bar} {below}\n"
 
 
 def _count(number: int, noun: str) -> str:

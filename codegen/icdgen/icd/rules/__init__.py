@@ -6,7 +6,7 @@ wrong, and where.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from icdgen.diagnostics import Finding, in_order
@@ -55,14 +55,18 @@ class UnknownRule(LookupError):
 
 
 def check(
-    icd: Icd, applied: Iterable[Applied] = (), complete: bool = True, languages: Sequence[Language] = ()
+    icd: Icd,
+    applied: Iterable[Applied] = (),
+    complete: bool = True,
+    languages: Sequence[Language] = (),
+    texts: Mapping[str, str] | None = None,
 ) -> list[Finding]:
     """Everything that breaks a rule and that no erratum accepts, in the order of the files.
 
     Names must do for the ``languages``. ``complete`` is False where broken items were left out of the model: rules about what is
-    absent stay silent then.
+    absent stay silent then. ``texts`` of the files let findings quote numbers as they are written.
     """
-    context = Context(icd, applied, complete, languages)
+    context = Context(icd, applied, complete, languages, texts)
     findings: list[Finding] = []
     for rule in _RUN:
         if rule.whole and not complete:
@@ -70,7 +74,7 @@ def check(
         for fault in rule.check(context) if rule.check else ():
             context.raised.append((rule.code, fault))
             if not context.accepts(rule.code, fault):
-                findings.append(Finding(rule.code, fault.message, fault.place, fault.help, rule.severity))
+                findings.append(fault.finding(rule.code, rule.severity))
     return in_order(findings)
 
 

@@ -10,7 +10,8 @@ from icdgen.icd.located import Map
 from icdgen.icd.model import Field, Message, Node, Part
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import VERBATIM, line_of, listing, quote, suggestion
+from icdgen.icd.rules.wording import VERBATIM, line_of, listing, quote
+from icdgen.icd.suggestions import suggestion
 from icdgen.icd.trees import mappings
 from icdgen.icd.wire_ids import number
 
@@ -35,8 +36,9 @@ def part_exists(ctx: Context) -> Iterator[Fault]:
         frame = frames.get(part.message)
         if frame is None:
             if ctx.complete:
-                help = suggestion(part.message, frames, VERBATIM)
-                yield Fault(message.source, row.at("message"), f"there is no message {quote(part.message)}", help)
+                help, fix = suggestion(part.message, frames, VERBATIM)
+                text = f"there is no message {quote(part.message)}"
+                yield Fault.of_place(message.source, row.at("message"), text, help, fix)
         elif message.name in _repeated(frame, frames):
             text = f"{quote(message.name)} contains itself"
             if frame is not message:
@@ -123,7 +125,11 @@ def list_agrees(ctx: Context) -> Iterator[Fault]:
         for key, value in listed.items():
             held = message.source.get(key)
             if held != value and not (key in _IDS and held is not None and number(held) == number(value)):
-                what = f"the {key.replace('_', ' ')} {quote(value)}"
-                text = f"the list table gives {quote(message.name)} {what}, the detail table {quote(held)}"
+                sides = (listed, message.source)
+                values = [
+                    quote(ctx.written(side, key) if key in _IDS and key in side else side.get(key)) for side in sides
+                ]
+                what = f"the {key.replace('_', ' ')} {values[0]}"
+                text = f"the list table gives {quote(message.name)} {what}, the detail table {values[1]}"
                 help = f"decide in the errata: hold the other `{key}`, or hold `listed: null`"
                 yield Fault(message.source, listed.at(key), text, help)

@@ -12,7 +12,12 @@ from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import quote
 from icdgen.icd.trees import mappings
 
-_NEVER = (("count", "an array"), ("size", "open"), ("bitfields", "divided"), ("view", "a view"))
+_NEVER = (
+    ("count", "an array"),
+    ("size", "of variable length"),
+    ("bitfields", "a split field"),
+    ("view", "an overlay field"),
+)
 
 
 @rule("ICD160")
@@ -34,13 +39,13 @@ def can_be_absent(ctx: Context) -> Iterator[Fault]:
         source = field.source
         odd = next((words for key, words in _NEVER if source.get(key)), f"`{field.type}`" if field.is_bytes else "")
         if isinstance(message, Struct):
-            text = f"{quote(field.name)} is a field of a struct, which is always there as a whole"
+            text = f"{quote(field.name)} is a field of a struct, and optional fields in structs are not supported"
             yield Fault.at(source, "when", text, "write the fields of the struct into the message, or remove `when`")
         elif odd:
-            text = f"{quote(field.name)} is {odd}, and only a number, a flag or a value of an enumeration may be there or not"
+            text = f"{quote(field.name)} is {odd}, but only a number, a flag or an enumeration value can be optional"
             yield Fault.at(source, "when", text, "remove `when`")
         elif tails.open_parts(message.source):
-            text = f"{quote(message.name)} has an open end, so each field before it is always there"
+            text = f"{quote(message.name)} has a variable-length field, so its other fields cannot be optional"
             yield Fault.at(source, "when", text, "remove `when`")
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from icdgen.diagnostics import Lines
 from icdgen.icd.errata import Applied
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
@@ -43,8 +44,10 @@ class Context:
         applied: Iterable[Applied] = (),
         complete: bool = True,
         languages: Sequence[Language] = (),
+        texts: Mapping[str, str] | None = None,
     ) -> None:
         self.icd = icd
+        self._lines = {file: Lines(text) for file, text in (texts or {}).items()}
         self.languages = languages  # that names must do for
         self.applied = tuple(applied)
         self._accepted = {(code, id(owner)) for one in self.applied for code, _, owner in one.accepts}
@@ -78,6 +81,14 @@ class Context:
             found = (*(n for n in self.icd.nodes if by_name.get(n.name) is n), node)
             self._scopes[id(node)] = found
         return found
+
+    def written(self, owner: Map, key: str) -> str:
+        """Return a number as its file writes it, such as ``0x82``, and a list of bytes as ``0x01 0x05``."""
+        value, place = owner[key], owner.at(key)
+        if isinstance(value, list):
+            return " ".join(f"0x{byte:02X}" for byte in value)
+        lines = self._lines.get(place.file)
+        return lines.marked(place) if lines is not None else str(value)
 
     def accepts(self, code: str, fault: Fault) -> bool:
         """Whether an erratum says that the fault is to be."""

@@ -6,6 +6,7 @@ from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from typing import TypeAlias, TypeVar
 
 from icdgen import naming
+from icdgen.diagnostics import Related
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 from icdgen.icd.model import Enum, Field, Member, Message, Node, Struct
@@ -54,7 +55,8 @@ def names_twice(
             if is_news(ctx, node, n1, n2):
                 there = line_of(first.source.at("name"), second.source.at("name"))
                 message = f"there is already {what} called {quote(second.name)}, in {there}{together(node, n2)}"
-                yield Fault.at(second.source, "name", message, help)
+                related = Related(first.source.at("name"), "the first of this name")
+                yield Fault.at(second.source, "name", message, help, related=related)
 
 
 @rule("ICD050")
@@ -78,7 +80,8 @@ def field_names(ctx: Context) -> Iterator[Fault]:
             told.add(id(second.source))
             there = line_of(first.source.at("name"), second.source.at("name"))
             text = f"{quote(message.name)} already has a field {quote(second.name)}, in {there}"
-            yield Fault.at(second.source, "name", text, PRINTED_TWICE)
+            related = Related(first.source.at("name"), "the first of this name")
+            yield Fault.at(second.source, "name", text, PRINTED_TWICE, related=related)
 
 
 @rule("ICD052")
@@ -92,7 +95,9 @@ def member_values(ctx: Context) -> Iterator[Fault]:
         for first, second in _sharing(enum):
             there = f"{quote(first.name)} ({line_of(first.source.at('value'), second.source.at('value'))})"
             what = f"the value {max(first.value, second.value)}"
-            yield Fault.at(second.source, "value", f"{there} already has {what}", "correct one of them")
+            related = Related(first.source.at("value"), f"the value of {quote(first.name)}")
+            text = f"{there} already has {what}"
+            yield Fault.at(second.source, "value", text, "correct one of them", related=related)
 
 
 def _sharing(enum: Enum) -> Iterator[tuple[Member, Member]]:
@@ -115,7 +120,8 @@ def member_names(ctx: Context) -> Iterator[Fault]:
             there = f"{first.value} ({line_of(first.source.at('name'), second.source.at('name'))})"
             message = f"{quote(second.name)} is already the name of {there}"
             help = "if the manual prints it so, give each its own `identifier:`"
-            yield Fault.at(second.source, "name", message, help)
+            related = Related(first.source.at("name"), "the first of this name")
+            yield Fault.at(second.source, "name", message, help, related=related)
 
 
 @rule("ICD074")
@@ -185,7 +191,8 @@ def unit_symbols(ctx: Context) -> Iterator[Fault]:
             if is_news(ctx, node, n1, n2):
                 there = line_of(first.at("symbol"), second.at("symbol"))
                 message = f"the unit {quote(second['symbol'])} is already declared, in {there}{together(node, n2)}"
-                yield Fault.at(second, "symbol", message, "declare it once")
+                related = Related(first.at("symbol"), "the first declaration")
+                yield Fault.at(second, "symbol", message, "declare it once", related=related)
         for unit in _declared_units(node):
             if unit["symbol"] in STANDARD:
                 message = f"the unit {quote(unit['symbol'])} is built in: {STANDARD[unit['symbol']].quantity}"

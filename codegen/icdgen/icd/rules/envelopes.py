@@ -10,7 +10,8 @@ from icdgen.icd.located import Map, Seq, unread
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node
 from icdgen.icd.rules.context import Context, section_of
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import count, line_of, listing, quote, suggestion, without_highest_term
+from icdgen.icd.rules.wording import count, line_of, listing, of_wide_value, quote
+from icdgen.icd.suggestions import suggestion
 from icdgen.icd.trees import at_path, mappings
 
 DIRECTIONS = (TELECOMMAND, TELEMETRY)
@@ -232,7 +233,8 @@ def _checksum(ctx: Context, link: Link, part: str, row: Map, known: Map) -> Iter
     demanded = BITS_OF.get(known["kind"])
     if demanded and width != demanded:
         message = f"a checksum of kind `{known['kind']}` has {demanded} bits, not {width}"
-        yield Fault.at(known, "width", message, "correct `width` or `kind`")
+        yield Fault.at(known, "width", message, f"write `width: {demanded}`, or correct `kind`", str(demanded))
+        width = demanded  # the values below are checked against the right width
     elif width != row["bits"]:
         message = f"the checksum has {width} bits, its field {row['bits']}"
         yield Fault.at(
@@ -243,8 +245,9 @@ def _checksum(ctx: Context, link: Link, part: str, row: Map, known: Map) -> Iter
         )
     for key in ("polynomial", "init", "xor_out", "empty", "check"):
         if isinstance(known.get(key), int) and known[key] >> width > 0:
-            help = without_highest_term(key, known[key], width) or f"correct `{key}` or `width`"
-            yield Fault.at(known, key, f"`{key}` does not fit {count(width, 'bit')}", help)
+            yield Fault.at(
+                known, key, f"`{key}` does not fit {count(width, 'bit')}", *of_wide_value(key, known[key], width)
+            )
     if known["kind"] != "crc":
         for key in ("polynomial", "reflect_in", "reflect_out", "empty"):
             if key in known:
@@ -290,7 +293,7 @@ def _seeds(ctx: Context, link: Link, known: Map) -> Iterator[Fault]:
     for name in seeds:
         if name not in names and name not in broken:
             help = suggestion(name, names, "correct the name")
-            yield Fault.at_key(seeds, name, f"there is no message {quote(name)}", help)
+            yield Fault.at_key(seeds, name, f"there is no message {quote(name)}", *help)
     lacking = [name for name in names if name not in seeds]
     if lacking:
         message = f"{quote(lacking[0])} has no seed" + (f", nor have {len(lacking) - 1} others" if lacking[1:] else "")
@@ -331,4 +334,4 @@ def replies_that_can_come(ctx: Context) -> Iterator[Fault]:
                 names = {one.name for _, one in _ids(ctx, link.node, direction)}
                 if isinstance(name, str) and name not in names and name not in broken:
                     help = suggestion(name, names, "correct the name")
-                    yield fault(replies, sent, f"there is no {direction} {quote(name)}", help)
+                    yield fault(replies, sent, f"there is no {direction} {quote(name)}", *help)

@@ -9,7 +9,7 @@ from icdgen.icd.fault import Fault
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import REGISTERED, rule
 from icdgen.icd.rules.wording import count, line_of
-from icdgen.suggest import close_to
+from icdgen.icd.suggestions import suggestion
 
 
 @rule("ICD084", whole=True, last=True)
@@ -31,6 +31,5 @@ def accept_known(ctx: Context) -> Iterator[Fault]:
     for applied in ctx.applied:
         for code, place, _ in applied.accepts:
             if code not in REGISTERED:
-                close = close_to(code, REGISTERED)
-                help = f"did you mean {close}?" if close else "`icdgen rule` lists the rules"
-                yield Fault(None, place, f"there is no rule {code}", help)
+                help, fix = suggestion(code, REGISTERED, "`icdgen rule` lists the rules")
+                yield Fault.of_place(None, place, f"there is no rule {code}", help, fix)

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from icdgen.diagnostics import Related
 from icdgen.icd import variants, wire_ids
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 from icdgen.icd.model import KEYS_OF_IDS, TELECOMMAND, TELEMETRY, Message, Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.duplicates import is_news, together
+from icdgen.icd.rules.protocol_limits import in_force
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, line_of, listing, quote
 from icdgen.icd.trees import mappings
@@ -63,7 +65,7 @@ def ids_told_apart(ctx: Context) -> Iterator[Fault]:
                 if not is_linked and _are_told_apart(first, use):
                     continue
                 if is_news(ctx, node, first.node, use.node) or (is_linked and not ctx.is_linked(use.node)):
-                    yield _same_id(node, first, use, is_linked)
+                    yield _same_id(ctx, node, first, use, is_linked)
                     break
             before.append(use)
 
@@ -83,22 +85,22 @@ def ids_shared_on_purpose(ctx: Context) -> Iterator[Fault]:
                 continue
             silent = [one for one in (first, use) if not _confirms(one)]
             if silent:
-                yield _unconfirmed(node, first, use, silent)
+                yield _unconfirmed(ctx, node, first, use, silent)
 
 
 def _confirms(use: Use) -> bool:
     return use.source.get("shares_id") is True
 
 
-def _unconfirmed(node: Node, first: Use, use: Use, silent: list[Use]) -> Fault:
+def _unconfirmed(ctx: Context, node: Node, first: Use, use: Use, silent: list[Use]) -> Fault:
     there = line_of(first.source.at(first.key), use.source.at(use.key))
     names = [quote(one.source.get("name")) for one in (first, use)]
-    message = f"{use.direction} id {use.id} already belongs to {names[0]} ({there}){together(node, use.node)}"
+    message = f"{_id(ctx, use)} already belongs to {names[0]} ({there}){together(node, use.node)}"
     if len(silent) == 1:
         message += ", and only one of the two has `shares_id`"
     to = "each of the two" if len(silent) == 2 else quote(silent[0].source.get("name"))
     help = f"correct one `{use.key}`; or, if they share the id on purpose, add `shares_id: true` to {to}"
-    return Fault.at(use.source, use.key, message, help)
+    return Fault.at(use.source, use.key, message, help, related=_first_use(first))
 
 
 @rule("ICD182", severity="warning", whole=True)
@@ -123,17 +125,27 @@ def _are_told_apart(one: Use, other: Use) -> bool:
     return variants.are_told_apart((one.message, one.node), (other.message, other.node))
 
 
-def _same_id(node: Node, first: Use, use: Use, is_linked: bool) -> Fault:
+def _same_id(ctx: Context, node: Node, first: Use, use: Use, is_linked: bool) -> Fault:
     other = f"{quote(first.source.get('name'))} ({line_of(first.source.at(first.key), use.source.at(use.key))})"
-    message = f"{use.direction} id {use.id} already belongs to {other}{together(node, use.node)}"
+    message = f"{_id(ctx, use)} already belongs to {other}{together(node, use.node)}"
     help = f"correct one `{use.key}`"
     if first.message is not None and use.message is not None:
         if not is_linked:
             message += ", and the two cannot be distinguished"
             help += ", or give each a field with another `const` at the same place"
         elif _are_told_apart(first, use):
-            message += ", and the links that `protocol` describes tell a message by its id alone"
-    return Fault.at(use.source, use.key, message, help)
+            message += ", and the links that `protocol` describes distinguish messages only by id"
+    return Fault.at(use.source, use.key, message, help, related=_first_use(first))
+
+
+def _id(ctx: Context, use: Use) -> str:
+    """``telemetry id 0x82``: the id as the file writes it."""
+    return f"{use.direction} id {ctx.written(use.source, use.key)}"
+
+
+def _first_use(use: Use) -> Related:
+    """The place where an id is used first."""
+    return Related(use.source.at(use.key), f"the id of {quote(use.source.get('name'))}")
 
 
 @rule("ICD056")
@@ -143,17 +155,27 @@ def ids_in_range(ctx: Context) -> Iterator[Fault]:
         for use in (u for n in ctx.scope(node) for u in _uses(n)):
             first, last = ranges.get(use.direction, (0, (1 << node.id_bits) - 1))
             if not first <= use.id <= last and _has_its_bytes(use):
-                help = _remedy(use, ranges)
-                message = f"{use.direction} ids go from {first} to {last}: {use.id} is not one of them"
+                help = _remedy(ctx, use, ranges)
+                message = f"{_id(ctx, use)} is outside the range of {use.direction} ids, {_range_text(ctx, node, use, ranges)}"
                 yield Fault.at(use.source, use.key, message, help)
 
 
-def _remedy(use: Use, ranges: dict[str, tuple[int, int]]) -> str:
+def _range_text(ctx: Context, node: Node, use: Use, ranges: dict[str, tuple[int, int]]) -> str:
+    """``0x80 to 0xFF``: the range as the protocol section writes it, or that of the width of ids."""
+    if use.direction not in ranges:
+        return f"0 to {(1 << node.id_bits) - 1}"
+    section = in_force(ctx, node, "message_id", use.direction)
+    assert section is not None
+    return f"{ctx.written(section, 'first')} to {ctx.written(section, 'last')}"
+
+
+def _remedy(ctx: Context, use: Use, ranges: dict[str, tuple[int, int]]) -> str:
     if not ranges:
         needed = next(bits for bits in (8, 16, 24, 32) if use.id < 1 << bits)
         return f"correct `{use.key}`, or give the width of all ids in `node`: `id_bits: {needed}`"
     other = next((d for d, (first, last) in ranges.items() if first <= use.id <= last), None)
-    wrong = f"{use.id} is a {other} id: correct `{use.key}` or `kind`" if other else f"correct `{use.key}`"
+    written = ctx.written(use.source, use.key)
+    wrong = f"{written} is a {other} id: correct `{use.key}` or `kind`" if other else f"correct `{use.key}`"
     return f"{wrong}, or the range in `protocol: message_id`"
 
 
@@ -198,7 +220,7 @@ def ids_that_tell_the_direction(ctx: Context) -> Iterator[Fault]:
         for use in uses:
             if use.direction == TELECOMMAND and first <= use.id <= last and id(use.source) not in told:
                 told.add(id(use.source))  # once, though other nodes may include it
-                among = f"telecommand id {use.id} is in the range of telemetry ids, {first} to {last}"
+                among = f"{_id(ctx, use)} is in the range of telemetry ids, {first} to {last}"
                 message = f"{among}: on a UART only the id tells the direction, so an acknowledge is taken for a reply"
                 help = "give each direction ids of its own, one range before the other; or leave `uart: framing` out"
                 yield Fault.at(use.source, use.key, message, help)

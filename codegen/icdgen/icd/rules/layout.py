@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import chain
 
+from icdgen.diagnostics import Related
+from icdgen.icd import tails
 from icdgen.icd.conditions import are_understood, exclude
 from icdgen.icd.division import obstacles
 from icdgen.icd.fault import Fault
@@ -31,9 +33,10 @@ _ORDERLY = {"bytes": "bytes", "text": "characters"}
 
 @rule("ICD020")
 def past_the_end(ctx: Context) -> Iterator[Fault]:
+    behind = _behind(ctx)
     for field, message, _ in ctx.members:
         end, room = field.at + field.width, message.length * 8
-        if end > room:
+        if end > room and id(field.source) not in behind:
             source = field.source
             whole = "struct" if field.struct else "bits"
             key = "at" if field.at >= room else "count" if field.count else whole
@@ -43,12 +46,18 @@ def past_the_end(ctx: Context) -> Iterator[Fault]:
             yield Fault.at(source, key, f"{quote(field.name)} ends at bit {end:,}, but {has}", help)
 
 
+def _behind(ctx: Context) -> set[int]:
+    """Fields that ICD121 reports: they are placed behind a variable-length field."""
+    return {id(item) for message, _ in ctx.messages for item in tails.fixed_behind(message.source)}
+
+
 @rule("ICD021")
 def overlap(ctx: Context) -> Iterator[Fault]:
-    told = set()
+    behind = _behind(ctx)
+    reported = set()
     for fault, pair in chain(_overlaps(ctx), _overlaps_within(ctx)):
-        if pair not in told:  # of arrays, each element may overlap
-            told.add(pair)
+        if pair not in reported and behind.isdisjoint(pair):  # each element of an array may overlap
+            reported.add(pair)
             yield fault
 
 
@@ -133,8 +142,10 @@ def _overlap(first: Field, second: Field, bits: str = "") -> Overlap:
     bits = bits or (f"bit {start:,}" if end - start == 1 else f"bits {start:,} to {end - 1:,}")
     other = f"{quote(first.name)} ({line_of(first.source.place, second.source.at('at'))})"
     text = f"{quote(second.name)} overlaps {other} in {bits}"
-    text += ", and both can be there" if first.when or second.when else ""
-    return Fault.at(second.source, "at", text, _help(first, second)), (id(first.source), id(second.source))
+    text += ", and both can be present" if first.when or second.when else ""
+    related = Related(first.source.at("at"), f"{quote(first.name)} begins here")
+    fault = Fault.at(second.source, "at", text, _help(first, second), related=related)
+    return fault, (id(first.source), id(second.source))
 
 
 @rule("ICD022")
@@ -148,7 +159,9 @@ def width(ctx: Context) -> Iterator[Fault]:
         if not fits:
             article = "an" if field.type[0] in "aeio" else "a"
             message = f"{article} `{field.type}` field takes {words}, not {field.bits:,}"
-            yield Fault.at(field.source, "bits", message, "correct `bits` or `type`")
+            yield Fault.at(
+                field.source, "bits", message, "correct `bits` or `type`", "1" if field.type == "bool" else ""
+            )
 
 
 @rule("ICD023")
@@ -156,7 +169,7 @@ def bytes_boundary(ctx: Context) -> Iterator[Fault]:
     for field, _, _ in ctx.fields:
         if field.is_bytes and field.at % 8:
             text = f"{quote(field.name)} is `{field.type}`, but bit {field.at:,} is not the beginning of a byte"
-            help = f"bytes begin at bits {field.at // 8 * 8:,} and {field.at // 8 * 8 + 8:,}"
+            help = f"correct `at`: the nearest bytes begin at bits {field.at // 8 * 8:,} and {field.at // 8 * 8 + 8:,}"
             yield Fault.at(field.source, "at", text, help)
 
 
@@ -165,8 +178,8 @@ def order_of_nothing(ctx: Context) -> Iterator[Fault]:
     for key in ("byte_order", "bit_order"):
         for field, _, _ in ctx.having[key]:
             if field.is_bytes or (field.type == "bool" and key == "byte_order"):
-                what = f"{_ORDERLY[field.type]} stand as they come" if field.is_bytes else "it is one bit"
-                message = f"{quote(field.name)} is `{field.type}`: {what}, so there is no `{key}`"
+                what = f"{_ORDERLY[field.type]} are sent in order" if field.is_bytes else "it is one bit"
+                message = f"{quote(field.name)} is `{field.type}`: {what}, so `{key}` has no effect"
                 yield Fault.at(field.source, key, message, f"remove `{key}`")
 
 
@@ -180,20 +193,22 @@ def view_of_fields(ctx: Context) -> Iterator[Fault]:
         source, name = field.source, quote(field.name)
         if field.count:
             help = "write an overlay field for each element"
-            yield Fault.at(source, "view", f"{name} is an array: a view reads one number", help)
+            yield Fault.at(source, "view", f"{name} is an array, but an overlay field is one number", help)
             continue
         if field.is_bytes:
-            yield Fault.at(source, "view", f"{name} is `{field.type}`: a view reads a number", "remove `view`")
+            yield Fault.at(
+                source, "view", f"{name} is `{field.type}`, but an overlay field is a number", "remove `view`"
+            )
             continue
         if field.const is not None:
-            help = "remove it: the fields that have the bits may have one"
-            yield Fault.at(source, "const", f"{name} is a view, which is never set, so it has no `const`", help)
+            text = f"{name} is an overlay field, whose value is never set, so it cannot have `const`"
+            yield Fault.at(source, "const", text, "give `const` to the field that has the bits")
         free = _mask(field, node)
         for owner in message.owners:
             free &= ~0 if owner.when else ~_mask(owner, node)
         if free and is_read(message):
-            text = f"{name} is a view of {_bits_of(free)} that no field {'always ' * message.has_conditions}has"
-            yield Fault.at(source, "at", text, "describe what has them as a field, or correct `at` or `bits`")
+            text = f"{name} is an overlay of {_bits_of(free)} that no field {'always ' * message.has_conditions}has"
+            yield Fault.at(source, "at", text, "describe these bits as a field, or correct `at` or `bits`")
 
 
 def is_read(message: Message) -> bool:
@@ -211,8 +226,8 @@ def covered_bytes(message: Message) -> int:
 def reserved_end(ctx: Context) -> Iterator[Fault]:
     for message, _ in ctx.messages:
         free = max(message.length - covered_bytes(message), 0) if message.reserved else 0
-        if message.reserved > free:
-            text = f"{quote(message.name)} has {count(free, 'byte')} after its last field, {message.reserved} are called reserved"
+        if message.reserved > free and not tails.open_parts(message.source):  # else ICD121
+            text = f"{quote(message.name)} has {count(free, 'byte')} after its last field, but `reserved` is {message.reserved}"
             yield Fault.at(message.source, "reserved", text, "correct `reserved` or `length`, or the fields")
 
 
@@ -222,9 +237,8 @@ def undescribed_end(ctx: Context) -> Iterator[Fault]:
         covered = covered_bytes(message)
         if covered + message.reserved < message.length and is_read(message):
             left = message.length - covered - message.reserved
-            unknown = "there are no fields: what stands in them is unknown"
-            rest = f"the fields describe {covered:,}" if message.fields else unknown
-            text = f"{quote(message.name)} has {count(message.length, 'byte')}, {rest}"
+            described = f"its fields describe {covered:,}" if message.fields else "no field describes them"
+            text = f"{quote(message.name)} has {count(message.length, 'byte')}, but {described}"
             help = f"describe {'' if message.reserved else 'the last '}{count(left, 'byte')} or correct `length`"
             reserve = f"if the manual calls them reserved: `reserved: {left + message.reserved}`"
             yield Fault.at(message.source, "length", text, f"{help}; {reserve}")

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from icdgen.diagnostics import Related
 from icdgen.icd.fault import Fault
-from icdgen.icd.model import Message, Node
+from icdgen.icd.located import Map
+from icdgen.icd.model import KEYS_OF_IDS, TELEMETRY, Message, Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, line_of, quote
@@ -16,34 +18,46 @@ def _telemetry(ctx: Context, node: Node) -> dict[int, Message]:
     return {m.telemetry_id: m for m in ctx.messages_of(node) if m.telemetry_id is not None}
 
 
+def _id_key(message: Message) -> str:
+    """The key of a message's telemetry id."""
+    return next(key for key, direction in KEYS_OF_IDS[message.kind] if direction == TELEMETRY)
+
+
 @rule("ICD043", whole=True)
 def frame_exists(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         frames = _telemetry(ctx, node)
         missing = {m.id for n in ctx.scope(node) for m in n.missing if m.kind != "telecommand"}
-        by_name = {m.name: i for i, m in frames.items()}
+        by_name = {m.name: (m.source, _id_key(m)) for m in frames.values()}
         for row in node.loggable:
             if row.id not in frames and row.id not in missing:
                 close = close_to(row.name, by_name) if row.name else ""
-                help = f"{quote(close)} has id {by_name[close]}" if close else "correct `id`"
-                message = f"loggable bit {row.bit} points nowhere: there is no telemetry {row.id}"
-                yield Fault.at(row.source, "id", message, help)
+                help, fix = "correct `id`", ""
+                if close:
+                    fix = ctx.written(*by_name[close])
+                    help = f"{quote(close)} has id {fix}"
+                message = (
+                    f"loggable bit {row.bit} points nowhere: there is no telemetry {ctx.written(row.source, 'id')}"
+                )
+                yield Fault.at(row.source, "id", message, help, fix)
 
 
 @rule("ICD044")
 def bits_distinct(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         size = ctx.fact(node, "log_mask", "bytes")
-        bits: dict[int, int] = {}
-        ids: dict[int, int] = {}
+        bits: dict[int, Map] = {}
+        ids: dict[int, Map] = {}
         for row in node.loggable:
             source = row.source
             for key, value, seen in (("bit", row.bit, bits), ("id", row.id, ids)):
                 if value in seen:
-                    what = f"the mask bit {value}" if key == "bit" else f"the frame {value}"
-                    message = f"{what} stands twice in the table, first in line {seen[value]}"
-                    yield Fault.at(source, key, message, f"correct one `{key}`")
-                seen.setdefault(value, source.at(key).line)
+                    first = seen[value].at(key)
+                    what = f"{'mask bit' if key == 'bit' else 'frame'} {ctx.written(source, key)}"
+                    message = f"{what} is in the table twice, first in line {first.line}"
+                    related = Related(first, f"the first `{key}` of this value")
+                    yield Fault.at(source, key, message, f"correct one `{key}`", related=related)
+                seen.setdefault(value, source)
             if isinstance(size, int) and row.bit >= size * 8:
                 message = f"bit {row.bit} is outside the mask of {count(size, 'byte')}"
                 yield Fault.at(source, "bit", message, f"its bits are 0 to {size * 8 - 1}")
@@ -57,7 +71,7 @@ def frame_fits(ctx: Context) -> Iterator[Fault]:
             frame = frames.get(row.id)
             if frame is None:
                 continue
-            source, here = row.source, f"telemetry {row.id}"
+            source, here = row.source, f"telemetry {ctx.written(row.source, 'id')}"
             if row.name and row.name != frame.name:
                 other = f"{quote(frame.name)} ({line_of(frame.source.at('name'), source.at('name'))})"
                 text = f"{here} is called {other}, not {quote(row.name)}"

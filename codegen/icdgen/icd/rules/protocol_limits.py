@@ -11,7 +11,7 @@ from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, KEYS_OF_IDS, Message, 
 from icdgen.icd.rules.context import Context, said, section_of
 from icdgen.icd.rules.protocol_sizes import numbers, of_one_number
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import count, listing, quote, without_highest_term
+from icdgen.icd.rules.wording import count, listing, of_wide_value, quote
 from icdgen.icd.trees import at_path, mappings
 
 BYTE = 255
@@ -82,12 +82,12 @@ def _on_can(ctx: Context, node: Node) -> Iterator[Fault]:
     bits = _widths(can) if can is not None else {}
     if own is not None:
         for row in mappings(said(node, "can", "message_types", "values")):
-            yield from _fits(row, "value", bits.get("type"), "a message type")
+            yield from _fits(ctx, row, "value", bits.get("type"), "a message type")
         for role in ("source", "destination"):
-            yield from _fits(own, "node_address", bits.get(role), f"a {role} address")
+            yield from _fits(ctx, own, "node_address", bits.get(role), f"a {role} address")
     for message in ctx.messages_of(node):
         for key, _ in KEYS_OF_IDS[message.kind]:
-            yield from _fits(message.source, key, bits.get("channel"), "the channel of a CAN identifier")
+            yield from _fits(ctx, message.source, key, bits.get("channel"), "the channel of a CAN identifier")
 
 
 def _widths(can: Map) -> dict[str, int]:
@@ -95,10 +95,10 @@ def _widths(can: Map) -> dict[str, int]:
     return {str(row.get("role", row.get("name"))): row["bits"] for row in rows}
 
 
-def _fits(owner: Map, key: str, bits: int | None, what: str) -> Iterator[Fault]:
+def _fits(ctx: Context, owner: Map, key: str, bits: int | None, what: str) -> Iterator[Fault]:
     value = owner.get(key)
     if bits is not None and isinstance(value, int) and value >= 1 << bits:
-        message = f"{what} has {count(bits, 'bit')}: 0 to {(1 << bits) - 1}, not {value}"
+        message = f"{what} has {count(bits, 'bit')}: 0 to {(1 << bits) - 1}, not {ctx.written(owner, key)}"
         yield Fault.at(owner, key, message, f"correct `{key}`, or `bits` of the identifier")
 
 
@@ -114,8 +114,7 @@ def _checksum(crc: Map) -> Iterator[Fault]:
     for key in ("polynomial", "init", "xor_out", "empty", "check"):
         value = crc.get(key)
         if isinstance(value, int) and value >= 1 << width:
-            help = without_highest_term(key, value, width) or f"correct `{key}` or `width`"
-            yield Fault.at(crc, key, f"`{key}` does not fit {width} bits", help)
+            yield Fault.at(crc, key, f"`{key}` does not fit {width} bits", *of_wide_value(key, value, width))
     for direction in ("telecommand", "telemetry"):
         extra = at_path(crc, (direction, "extra_bytes"))
         if isinstance(extra, int) and extra * 8 < width:

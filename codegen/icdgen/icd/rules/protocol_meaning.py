@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from icdgen.diagnostics import Related
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 from icdgen.icd.model import CAN_DATA_BYTES, KEYS_OF_IDS, TELECOMMAND, TELEMETRY
@@ -31,7 +32,8 @@ def directions_differ(ctx: Context) -> Iterator[Fault]:
                 continue
             ranges[direction] = section
             if found[0] > found[1]:
-                message = f"the last id, {found[1]}, comes before the first, {found[0]}"
+                last, first = (ctx.written(section, key) for key in ("last", "first"))
+                message = f"the last id, {last}, comes before the first, {first}"
                 yield Fault.at(section, "last", message, "correct `first` or `last`")
             yield from _bit(said(node, "message_id", "direction_bit"), section, direction, *found)
         if len(ranges) == 2:
@@ -69,7 +71,8 @@ def message_types_differ(ctx: Context) -> Iterator[Fault]:
                 if first is not row:
                     other = f"{quote(first.get('name'))} ({line_of(first.at(key), row.at(key))})"
                     message = f"the value {value} already belongs to {other}" if key == "value" else f"a second {other}"
-                    yield Fault.at(row, key, message, f"correct one `{key}`")
+                    related = Related(first.at(key), f"the first `{key}`")
+                    yield Fault.at(row, key, message, f"correct one `{key}`", related=related)
 
 
 @rule("ICD105")

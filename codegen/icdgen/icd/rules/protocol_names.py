@@ -14,7 +14,8 @@ from icdgen.icd.model import Message, Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import VERBATIM, quote, suggestion
+from icdgen.icd.rules.wording import VERBATIM, quote
+from icdgen.icd.suggestions import suggestion
 from icdgen.icd.trees import at_path, mappings, named
 
 T = TypeVar("T")
@@ -42,8 +43,8 @@ def named_things_exist(ctx: Context) -> Iterator[Fault]:
             for key in MESSAGES:
                 for name, place in _values(section, key, str):
                     if name not in messages:
-                        help = suggestion(name, messages, VERBATIM)
-                        yield Fault(section, place, f"there is no message {quote(name)}", help)
+                        help, fix = suggestion(name, messages, VERBATIM)
+                        yield Fault.of_place(section, place, f"there is no message {quote(name)}", help, fix)
             for name, keys in MEMBERS:
                 known = named(enums, section.get(name))
                 if known is None:
@@ -87,7 +88,7 @@ def named_fields_exist(ctx: Context) -> Iterator[Fault]:
                 yield Fault.at(owner, key, text, "name the field that has the bits")
             elif owner[key] not in known:
                 text = f"{quote(message.name)} has no field {quote(owner[key])}"
-                yield Fault.at(owner, key, text, suggestion(owner[key], known, VERBATIM))
+                yield Fault.at(owner, key, text, *suggestion(owner[key], known, VERBATIM))
 
 
 @rule("ICD113", whole=True)
@@ -114,7 +115,7 @@ def message_types_exist(ctx: Context) -> Iterator[Fault]:
             name = at_path(can, (direction, key))
             if isinstance(name, str) and name not in known:
                 message = f"there is no message type {quote(name)}"
-                yield Fault.at(can[direction], key, message, suggestion(name, known, VERBATIM))
+                yield Fault.at(can[direction], key, message, *suggestion(name, known, VERBATIM))
 
 
 @rule("ICD109", whole=True)
@@ -125,8 +126,8 @@ def named_nodes_exist(ctx: Context) -> Iterator[Fault]:
             for name, place in _values(section, "nodes", str):
                 # A node that was not asked for is not loaded, but its file lies beside this one.
                 if name not in known and not Path(place.file).with_name(f"{name}.yaml").exists():
-                    help = suggestion(name, known, "correct it, or load the node's file too")
-                    yield Fault(section, place, f"there is no node {quote(name)}", help)
+                    help, fix = suggestion(name, known, "correct it, or load the node's file too")
+                    yield Fault.of_place(section, place, f"there is no node {quote(name)}", help, fix)
 
 
 def _values(section: Map, key: str, kind: type[T]) -> Iterator[tuple[T, Place]]:

@@ -10,7 +10,8 @@ from icdgen.icd.model import Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import quote, suggestion
+from icdgen.icd.rules.wording import quote
+from icdgen.icd.suggestions import suggestion, yaml_text
 from icdgen.icd.units import SPELLINGS, meant
 from icdgen.suggest import close_to
 
@@ -36,15 +37,15 @@ def enum_known(ctx: Context) -> Iterator[Fault]:
                     yield Fault.at(owner, key, *undeclared(ctx, node, "enumeration", "enums", owner[key]))
 
 
-def undeclared(ctx: Context, node: Node, what: str, section: str, name: str) -> tuple[str, str]:
-    """What is wrong with the name of what no ``section`` within reach of the node declares, and what to do."""
+def undeclared(ctx: Context, node: Node, what: str, section: str, name: str) -> tuple[str, str, str]:
+    """Message, help and fix for a name that no ``section`` of the node or of its includes declares."""
     elsewhere = next((n for n in ctx.icd.nodes for one in getattr(n, section) if one.name == name), None)
     if elsewhere is not None:
-        help = f"`{elsewhere.name}` declares it: include {elsewhere.file}"
+        help, fix = f"`{elsewhere.name}` declares it: include {elsewhere.file}", ""
     else:
         known = (one.name for n in ctx.scope(node) for one in getattr(n, section))
-        help = suggestion(name, known, f"declare it in `{section}:`")
-    return f"there is no {what} {quote(name)}", help
+        help, fix = suggestion(name, known, f"declare it in `{section}:`")
+    return f"there is no {what} {quote(name)}", help, fix
 
 
 @rule("ICD041", severity="warning", whole=True)
@@ -80,8 +81,8 @@ def unit_known(ctx: Context) -> Iterator[Fault]:
     for field, _, node in ctx.having["unit"]:
         if field.unit is None:
             unit = field.source["unit"]
-            help = "declare it in `units:`; `icdgen units` lists the built-in units"
+            help, fix = "declare it in `units:`; `icdgen units` lists the built-in units", ""
             if close := meant(unit, (u.symbol for n in ctx.scope(node) for u in n.units)):
                 otherwise = "" if unit in SPELLINGS else " If not, declare it in `units:`"
-                help = f"did you mean {quote(close)}?{otherwise}"
-            yield Fault.at(field.source, "unit", f"the unit {quote(unit)} is unknown", help)
+                help, fix = f"did you mean {quote(close)}?{otherwise}", yaml_text(close)
+            yield Fault.at(field.source, "unit", f"the unit {quote(unit)} is unknown", help, fix)

@@ -88,8 +88,8 @@ def struct_says(ctx: Context) -> Iterator[Fault]:
     for struct, _ in ctx.structs:
         for row in mappings(struct.source.get("fields")):
             if tails.is_open(row) and isinstance(row.get("name"), str):
-                message = f"{quote(row['name'])} has no fixed size, and a struct has no open end"
-                yield Fault.at(row, tails.key_of(row), message, "only the last part of a message may be open")
+                message = f"{quote(row['name'])} has a variable length, which is not supported in a struct"
+                yield Fault.at(row, tails.key_of(row), message, "move it to the end of the message")
         for field in struct.lines:
             if field.view:
                 message = f"{quote(field.name)} is a view, and a struct has none: there is no frame that it would read"

@@ -1,9 +1,10 @@
-"""Messages of variable length: what counts their open end, where it stands, and what carries them; frames that may end early."""
+"""Messages of variable length: counters, places, and links that carry them; frames that may end early."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
+from icdgen.diagnostics import Related
 from icdgen.icd import tails
 from icdgen.icd.fault import Fault
 from icdgen.icd.model import Message, Node
@@ -34,20 +35,31 @@ def _lengths(ctx: Context, node: Node) -> dict[str, int]:
 def at_the_end(ctx: Context) -> Iterator[Fault]:
     for field, _, _ in ctx.members:
         if "after" in field.source and not tails.is_open(field.source):
-            text = f"{quote(field.name)} has a fixed size, so it has a fixed place, too"
-            help = "remove `after`; only fields of variable length can stand behind one of variable length"
+            text = f"{quote(field.name)} has a fixed size, so its place is `at` and it cannot have `after`"
+            help = "remove `after`; only a variable-length field can follow another one"
             yield Fault.at(field.source, "after", text, help)
     for message, node in ctx.messages:
         for item in tails.open_parts(message.source):
             yield from tails.faults_of_place(message.source, item, _lengths(ctx, node))
+        for item in tails.fixed_behind(message.source):
+            first = tails.open_parts(message.source)[0]
+            text = (
+                f"{quote(item['name'])} follows {quote(first['name'])}, whose length varies, so it has no fixed place"
+            )
+            help = (
+                f"place it in front of {quote(first['name'])}: fields of fixed size behind it are not supported, "
+                "but a checksum at the end of a frame can be part of the link (`protocol`)"
+            )
+            related = Related(first.at("name"), "the variable-length field")
+            yield Fault.at(item, "at", text, help, related=related)
         if message.tail is None:
             continue
         for field in (one for one in message.views if one.derived is None):
             end = field.at + field.bits
             if end > 8 * (message.fixed if message.inner else message.least):
                 part = next(one for one in reversed(message.open_parts) if end > 8 * (one.begin or message.begin))
-                text = f"{quote(field.name)} is a view of {quote(part.name)}, which is not always there"
-                yield Fault.at(field.source, "at", text, "view what every frame of the message has")
+                text = f"{quote(field.name)} is an overlay of {quote(part.name)}, which not every frame has"
+                yield Fault.at(field.source, "at", text, "place the overlay on fields that every frame has")
 
 
 @rule("ICD122")
@@ -57,7 +69,7 @@ def carried(ctx: Context) -> Iterator[Fault]:
         for message in ctx.messages_of(node):
             if message.tail is not None:
                 longest = f"{message.least} to {count(message.length, 'byte')}"
-                text = f"{quote(message.name)} has {longest}, and the links of `protocol` carry messages of one length each"
+                text = f"{quote(message.name)} has {longest}, but the links in `protocol` need one length per message"
                 help = "leave `protocol` out of this ICD, or give the message a fixed `count`"
                 yield Fault.at(message.source, "length", text, help)
     longer = {message.name: message for message, _ in ctx.messages if message.tail is not None}
@@ -82,9 +94,9 @@ def ends_early(ctx: Context) -> Iterator[Fault]:
 def _never_early(message: Message, linked: bool) -> str:
     """Why no frame of a message can lack its zeros; empty if one can."""
     if tails.open_parts(message.source):
-        return "has an open end: how much of it there is says the length of a frame, and zeros are part of it"
+        return "has a variable-length field, and the zeros at the end of a frame belong to it"
     if message.length < 2:
-        return f"has {count(message.length, 'byte')}, and one is always sent"
+        return f"has {count(message.length, 'byte')}, and the first byte is always sent"
     if linked:
-        return "may end early, and the links of `protocol` carry messages of one length each"
+        return "may end early, but the links in `protocol` need one length per message"
     return ""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from icdgen.diagnostics import Place
-from icdgen.suggest import close_to
+from icdgen.icd.remedies import Remedy
 
 LONGEST = 60
 VERBATIM = "names are the manual's, to the letter"
@@ -15,12 +15,6 @@ def quote(text: object) -> str:
     """The text in back-ticks, cut where it is longer than a line can bear."""
     words = str(text)
     return f"`{words if len(words) <= LONGEST else words[: LONGEST - 3] + '...'}`"
-
-
-def suggestion(name: str, known: Iterable[str], otherwise: str) -> str:
-    """The question whether another of the known names is meant; what to do ``otherwise``, if none comes near."""
-    close = close_to(name, known)
-    return f"did you mean {quote(close)}?" if close else otherwise
 
 
 def line_of(other: Place, here: Place) -> str:
@@ -33,11 +27,12 @@ def count(number: int, noun: str) -> str:
     return f"{number:,} {noun}" + ("" if number == 1 else "s")
 
 
-def without_highest_term(key: str, value: int, width: int) -> str:
-    """Return the help for a CRC polynomial that is written with its highest term; empty for any other value."""
+def of_wide_value(key: str, value: int, width: int) -> Remedy:
+    """Return the help for a value of a checksum that has more bits than its ``width``."""
     if key != "polynomial" or value >> width != 1:
-        return ""
-    return f"write it without its highest term: 0x{value & (1 << width) - 1:0{-(-width // 4)}X}"
+        return Remedy(f"correct `{key}` or `width`")
+    polynomial = f"0x{value & (1 << width) - 1:0{-(-width // 4)}X}"
+    return Remedy(f"write it without its highest term: {polynomial}", polynomial)
 
 
 def listing(items: Iterable[str]) -> str:

@@ -1,0 +1,90 @@
+"""Corrected lines in reports: whoever writes them into the file gets rid of the finding."""
+
+from __future__ import annotations
+
+import shutil
+from contextlib import chdir
+from pathlib import Path
+
+import pytest
+
+from icdgen.diagnostics import Finding
+from icdgen.loading import load
+from tests.wrong.cases import CASES, FOLDER, name
+
+MISTAKES = {  # what somebody writes -> the corrected line
+    "bits: 1, name: A, type: unit": "bits: 1, name: A, type: uint",
+    "bits: 1, nmae: A, type: uint": "bits: 1, name: A, type: uint",
+    "bits: 1, name: A, type: enum, enum: Mod": "bits: 1, name: A, type: enum, enum: Mode",
+    "bits: 1, name: A, type: uint, unit: degC": "bits: 1, name: A, type: uint, unit: C",
+    "bits: 1, name: A, type: uint, view: yes": "bits: 1, name: A, type: uint, view: true",
+    "bits: 1, name: No, type: uint": 'bits: 1, name: "No", type: uint',
+    'bits: "1", name: A, type: uint': "bits: 1, name: A, type: uint",
+    "bits: 1, name: A, type: uint, const: 0X1": "bits: 1, name: A, type: uint, const: 0x1",
+    "bits: 1, name: @home, type: uint": 'bits: 1, name: "@home", type: uint',
+    "bits: 1, name: Time: of day, type: uint": 'bits: 1, name: "Time: of day", type: uint',
+    "bits: 8, name: A, type: bool": "bits: 1, name: A, type: bool",
+    "bits: 16, name: A, type: uint16": "bits: 16, name: A, type: uint",
+}
+ICD = """\
+icdgen: 1
+node: {{name: demo, title: Demo, byte_order: little, bit_order: lsb0}}
+enums: [{{name: Mode, members: [{{value: 0, name: Safe}}]}}]
+messages:
+  - name: Status
+    id: 1
+    kind: telemetry
+    length: 2
+    fields:
+      - {{at: 0, {}}}
+      - {{at: 8, bits: 8, name: State, type: enum, enum: Mode}}
+"""
+
+
+@pytest.mark.parametrize("wrong", MISTAKES)
+def test_a_common_mistake_is_reported_with_the_corrected_line(wrong, tmp_path):
+    path = tmp_path / "demo.yaml"
+    path.write_text(ICD.format(wrong))
+    corrections = [one.fix for one in load([path]).findings if one.fix is not None]
+    assert corrections
+    line = path.read_text().splitlines()[9]
+    place, text = corrections[0]
+    line = line[: place.column - 1] + text + line[place.column - 1 + place.length :]
+    assert line == f"      - {{at: 0, {MISTAKES[wrong]}}}"
+
+
+def _findings(case: Path) -> list[Finding]:
+    with chdir(case.parent):
+        return load([Path(case.name)]).findings
+
+
+WITH_FIXES = [case for case in CASES if any(one.fix is not None for one in _findings(case))]
+
+
+@pytest.mark.parametrize("case", WITH_FIXES, ids=name)
+def test_a_corrected_line_ends_the_finding(case, tmp_path):
+    folder = shutil.copytree(FOLDER / case.parent.name, tmp_path / case.parent.name)
+    copy = folder / case.name
+    before = _findings(copy)
+    for finding in before:
+        if finding.fix is None:
+            continue
+        place, text = finding.fix
+        path = folder / place.file
+        original = path.read_bytes().decode()
+        lines = original.splitlines(keepends=True)
+        line = lines[place.line - 1]
+        lines[place.line - 1] = line[: place.column - 1] + text + line[place.column - 1 + place.length :]
+        path.write_text("".join(lines))
+        after = _findings(copy)
+        path.write_bytes(original.encode())
+        assert (finding.code, finding.message, finding.place) not in {
+            (one.code, one.message, one.place) for one in after
+        }
+
+
+def test_values_that_span_lines_have_no_corrected_line(tmp_path):
+    """Their place is their first character, so a correction would leave the rest."""
+    path = tmp_path / "demo.yaml"
+    path.write_text(ICD.format("bits: 1, name: A, type: enum, enum: Mo\n          de X") + "    # Mode\n")
+    assert [one.fix for one in load([path]).findings if one.code == "ICD040"] == [None]
