@@ -18,8 +18,8 @@ from icdgen.errors import UserError
 
 if TYPE_CHECKING:
     from icdgen.definitions.model import Reader
+    from icdgen.import_results.targets import Target
     from icdgen.importer.run import Result
-    from icdgen.importer.targets import Target
 
 
 class _Pages(click.ParamType):  # type: ignore[type-arg]  # older versions of click know no argument
@@ -112,7 +112,8 @@ def import_(
 
     Exit status: 0 if the ICDs contain everything that was found and `icdgen check` has no errors for them, else 1.
     """
-    from icdgen.importer import console, profile, run, table_files, targets
+    from icdgen.import_results import targets
+    from icdgen.importer import console, profile, run, table_files
 
     has_tables = len(files) == 1 and table_files.is_folder_of_tables(files[0])
     definitions = [] if has_tables else _definitions(files, kind)
@@ -192,7 +193,7 @@ def _definitions(files: tuple[Path, ...], kind: str | None) -> list[tuple[Path, 
 def _define(files: list[tuple[Path, Reader]], out: Path, update: bool, dry_run: bool, form: str) -> None:
     """Imports definitions: one, or several that may refer to each other."""
     from icdgen.definitions import console, run
-    from icdgen.importer import targets
+    from icdgen.import_results import targets
 
     try:
         reads = [run.read(*files[0])] if len(files) == 1 else run.read_set(files)
@@ -272,10 +273,10 @@ def _say(result: Result, checked: list[Finding], dry_run: bool) -> None:
 
 
 def _say_files(targets: list[Target], checked: list[Finding], dry_run: bool) -> None:
-    from icdgen.importer import console
+    from icdgen.import_results import report
 
     if targets:
-        say("\n".join(console.files(targets, dry_run)))
+        say("\n".join(report.files(targets, dry_run)))
         say(_next_step(targets, checked, dry_run))
 
 

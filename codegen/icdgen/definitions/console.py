@@ -8,8 +8,8 @@ from typing import Any
 
 from icdgen.definitions.run import Read
 from icdgen.diagnostics import Finding
-from icdgen.importer import console
-from icdgen.importer.targets import Target
+from icdgen.import_results import report as shared
+from icdgen.import_results.targets import Target
 from icdgen.reports.excerpt import printable
 
 _LISTED = 20  # identifiers that are shown; all are in the JSON, and in the ICD
@@ -27,14 +27,14 @@ def report(reads: Sequence[Read], colour: bool = False) -> str:
 
 def _lines(read: Read, colour: bool) -> list[str]:
     found = read.definitions
-    return [*console.findings(found.troubles, found.file, colour), *map(printable, _summary(read))]
+    return [*shared.findings(found.troubles, found.file, colour), *map(printable, _summary(read))]
 
 
 def _summary(read: Read) -> list[str]:
     names, found = read.identifiers, read.definitions
     lines = [
         f"{found.files}: {read.kind}, {read.held} of {found.total} messages imported",
-        console.severities(found.troubles),
+        shared.severities(found.troubles),
     ]
     if names:
         many = f"{len(names)} names that are no identifiers got one"
@@ -51,7 +51,7 @@ def as_json(reads: Sequence[Read], targets: Sequence[Target], checked: Sequence[
     """
     listed = [_as_item(one) for one in reads]
     head = listed[0] if len(listed) == 1 else {"definitions": listed}
-    tail = {"files": console.files_as_json(targets), "check": console.checked_as_json(checked)}
+    tail = {"files": shared.files_as_json(targets), "check": shared.checked_as_json(checked)}
     return json.dumps({**head, **tail}, indent=2, ensure_ascii=False)
 
 
@@ -60,6 +60,6 @@ def _as_item(read: Read) -> dict[str, Any]:
     findings = []
     for one in found.troubles:
         place = {"file": one.spot.file} if one.spot.file else {}
-        findings.append({**console.finding_as_json(one), **place, "line": one.spot.line})
+        findings.append({**shared.finding_as_json(one), **place, "line": one.spot.line})
     return {"definition": found.file, "kind": read.kind, "messages": found.total, "held": read.held, "findings": findings,
             "identifiers": read.identifiers}  # fmt: skip

@@ -11,7 +11,7 @@ from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.icd import units, wire_ids
 from icdgen.icd.fmt.emit import Spelled
 from icdgen.icd.model import KEYS_OF_IDS
-from icdgen.importer.document import Spot, Trouble
+from icdgen.import_results.findings import Spot, Trouble
 
 UNREADABLE = "IMP005"
 NOT_HELD = "IMP070"

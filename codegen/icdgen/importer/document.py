@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from icdgen.diagnostics import Place
+from icdgen.import_results.findings import CERTAIN as CERTAIN
+from icdgen.import_results.findings import DOUBTFUL as DOUBTFUL
+from icdgen.import_results.findings import LIKELY as LIKELY
+from icdgen.import_results.findings import Spot as Spot
+from icdgen.import_results.findings import Trouble as Trouble
 from icdgen.importer.words import plain, table_name
-
-CERTAIN, LIKELY, DOUBTFUL = "certain", "likely", "doubtful"
 
 
 class Box(NamedTuple):
@@ -27,22 +29,6 @@ class Box(NamedTuple):
     @property
     def height(self) -> float:
         return self.bottom - self.top
-
-
-class Spot(NamedTuple):
-    """Where something stands in the manual: a page of a PDF, a line of a text, the number of a table."""
-
-    page: int | None = None
-    line: int | None = None
-    table: int | None = None
-    order: int | None = None  # which table it is, counted from 0: numbers may be missing, or occur twice
-    file: str = ""  # of several files that are one source, the file
-
-    @property
-    def place(self) -> str:
-        """``page 12``, ``line 482``, ``types.xml, line 3``; "" for the document as a whole."""
-        within = f"page {self.page}" if self.page is not None else f"line {self.line}" if self.line is not None else ""
-        return ", ".join(filter(None, (self.file, within)))
 
 
 @dataclass(slots=True)
@@ -212,18 +198,6 @@ class Text:
 
 
 Block = Table | Heading | Text
-
-
-class Trouble(NamedTuple):
-    """One thing that a person must look at. ``sure`` says how sure the importer is of what it did about it."""
-
-    code: str
-    message: str
-    spot: Spot = Spot()
-    help: str = ""
-    severity: str = "warning"  # "error" | "warning" | "note"
-    sure: str = LIKELY
-    place: Place | None = None  # of the rule that gave it
 
 
 @dataclass(slots=True)

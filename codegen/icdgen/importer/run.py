@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from icdgen.import_results.targets import Target
 from icdgen.importer import assemble, profile, reading, repairs, sources
 from icdgen.importer.document import CERTAIN, DOUBTFUL, LIKELY, Document, Table, Trouble
 from icdgen.importer.rules import interpret
 from icdgen.importer.rules.interpret import Interpretation
 from icdgen.importer.source_tables import SourceTable
-from icdgen.importer.targets import Target
 from icdgen.importer.understand import survey
 from icdgen.importer.understand.survey import Survey
 

@@ -11,7 +11,8 @@ from typing import Any
 from icdgen.diagnostics import Findings
 from icdgen.errors import UserError
 from icdgen.icd import source
-from icdgen.importer import console, profile, run, targets
+from icdgen.import_results import report, targets
+from icdgen.importer import profile, run
 from icdgen.importer.document import Document, Trouble
 from icdgen.importer.rules.language import ROLES
 from icdgen.importer.rules.parts import Part
@@ -173,8 +174,8 @@ class Session:
             targets.write(aimed)
             checked = targets.check(aimed)
             return {
-                "files": [f"{self.path}: written", *console.files(aimed)],
-                "check": console.checked_as_json(checked),
+                "files": [f"{self.path}: written", *report.files(aimed)],
+                "check": report.checked_as_json(checked),
                 "is_complete": bool(aimed) and self.result is not None and not self.result.failed,
             }
 
@@ -182,7 +183,7 @@ class Session:
 def _finding(trouble: Trouble) -> dict[str, Any]:
     table = trouble.spot.order + 1 if trouble.spot.order is not None else None
     line = trouble.place.line if trouble.place else None
-    return {**console.finding_as_json(trouble), "table": table, "page": trouble.spot.page, "rule_line": line}
+    return {**report.finding_as_json(trouble), "table": table, "page": trouble.spot.page, "rule_line": line}
 
 
 def _message(part: Part) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from icdgen.diagnostics import Finding
 from icdgen.errors import UserError, unreadable
 from icdgen.icd import schema
 from icdgen.icd.fmt import emit
-from icdgen.importer import update
+from icdgen.import_results import update
 
 
 @dataclass

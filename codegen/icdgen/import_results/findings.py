@@ -1,0 +1,37 @@
+"""Findings of an import, with their places in the source."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from icdgen.diagnostics import Place
+
+CERTAIN, LIKELY, DOUBTFUL = "certain", "likely", "doubtful"
+
+
+class Spot(NamedTuple):
+    """Place in the source of an import: page of a PDF, line of a text, number of a table."""
+
+    page: int | None = None
+    line: int | None = None
+    table: int | None = None
+    order: int | None = None  # of the table in the document, from 0: numbers may be missing or repeated
+    file: str = ""  # if several files are one source
+
+    @property
+    def place(self) -> str:
+        """``page 12``, ``line 482``, ``types.xml, line 3``; "" for the document as a whole."""
+        within = f"page {self.page}" if self.page is not None else f"line {self.line}" if self.line is not None else ""
+        return ", ".join(filter(None, (self.file, within)))
+
+
+class Trouble(NamedTuple):
+    """Finding of an import. ``sure`` is how certain the importer is of what it did."""
+
+    code: str
+    message: str
+    spot: Spot = Spot()
+    help: str = ""
+    severity: str = "warning"  # "error" | "warning" | "note"
+    sure: str = LIKELY
+    place: Place | None = None  # of the rule that gave it

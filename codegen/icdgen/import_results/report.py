@@ -1,0 +1,94 @@
+"""Reports of an import: what imports of manuals and of definitions have in common."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from typing import Any
+
+from icdgen.diagnostics import Finding
+from icdgen.icd.rules.wording import count
+from icdgen.import_results.findings import Spot, Trouble
+from icdgen.import_results.targets import Target
+from icdgen.reports.excerpt import printable
+
+_COLOURS = {"error": "31;1", "warning": "33;1", "note": "36"}
+
+
+def where(file: str, spot: Spot) -> str:
+    """``manual.pdf, page 12``, ``manual.txt:482``"""
+    file = spot.file or file
+    text = f"{file}:{spot.line}" if spot.line is not None else file
+    return f"{text}, page {spot.page}" if spot.page is not None else text
+
+
+def findings(troubles: Sequence[Trouble], file: str, colour: bool = False) -> list[str]:
+    """Return a block for each error and warning, then a line for each note."""
+    lines: list[str] = []
+    notes: list[Trouble] = []
+    for trouble in troubles:
+        if trouble.severity == "note":
+            notes.append(trouble)
+            continue
+        lines += [
+            _paint(f"{trouble.severity}[{trouble.code}]", trouble.severity, colour) + f": {printable(trouble.message)}",
+            f"  --> {printable(where(file, trouble.spot))}",
+        ]
+        lines += [f"  = rule: {trouble.place}"] if trouble.place else []
+        lines += [f"  = help: {printable(trouble.help)}"] if trouble.help else []
+        lines.append("")
+    if notes:
+        note = _paint("note", "note", colour)
+        lines += [f"{note}[{t.code}] {t.spot.place or 'the document'}: {printable(t.message)}" for t in notes]
+        lines.append("")
+    return lines
+
+
+def severities(troubles: Sequence[Trouble]) -> str:
+    """``findings: 2 errors, 1 note``"""
+    times = Counter(t.severity for t in troubles)
+    counts = ", ".join(count(times[s], s) for s in ("error", "warning", "note") if times[s])
+    return f"findings: {counts or 'none'}"
+
+
+def files(targets: Sequence[Target], dry: bool = False) -> list[str]:
+    """Return the content of each file and its changes; with ``dry`` those that writing would make."""
+    lines = []
+    for target in targets:
+        tree = target.tree
+        messages, enums = tree.get("messages", []), tree.get("enums", [])
+        fields = sum(len(m.get("fields", ())) for m in messages)
+        members = sum(len(e["members"]) for e in enums)
+        what = (
+            f"{count(len(messages), 'message')} with {count(fields, 'field')}, "
+            f"{count(len(enums), 'enumeration')} with {count(members, 'member')}"
+        )
+        state = "written" if target.changes is None else "unchanged" if target.same else "updated"
+        if dry and state != "unchanged":
+            state = f"would be {state}{' with --update' if target.refused else ''}"
+        lines.append(f"{target.path}: {state}; {what}")
+        lines += [f"  {change}" for change in target.changes or ()]
+    return lines
+
+
+def finding_as_json(trouble: Trouble) -> dict[str, Any]:
+    """Return a finding without its place."""
+    item: dict[str, Any] = {key: getattr(trouble, key) for key in ("code", "severity", "message", "help")}
+    return item | ({"rule": str(trouble.place)} if trouble.place else {})
+
+
+def checked_as_json(checked: Sequence[Finding]) -> list[dict[str, Any]]:
+    """Return the findings of `icdgen check` for the written files."""
+    return [
+        {"code": f.code, "severity": f.severity, "message": f.message, "help": f.help, "file": f.place.file, "line": f.place.line}
+        for f in checked
+    ]  # fmt: skip
+
+
+def files_as_json(targets: Sequence[Target]) -> list[dict[str, Any]]:
+    """Return the written files, with the changes of updated ones."""
+    return [{"file": str(target.path), "changes": target.changes} for target in targets]
+
+
+def _paint(text: str, severity: str, colour: bool) -> str:
+    return f"\x1b[{_COLOURS[severity]}m{text}\x1b[0m" if colour else text
