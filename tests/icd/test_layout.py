@@ -7,7 +7,19 @@ from pathlib import Path
 import pytest
 
 from icdgen import layout as bits
-from icdgen.icd.layout import Array, Counted, Layout, Orders, Overlay, Scalar, StructRef, flatten, size_of, walk
+from icdgen.icd.layout import (
+    Array,
+    Counted,
+    Layout,
+    Orders,
+    Overlay,
+    Scalar,
+    StructRef,
+    flatten,
+    size_of,
+    walk,
+    without_nodes,
+)
 from icdgen.icd.model import Icd, Message, Node
 from tests.conformance.icds import read
 from tests.conftest import ROOT
@@ -164,3 +176,21 @@ def test_layouts_of_an_icd_are_the_same_from_the_cache(tmp_path: Path):
         declared = {id(struct.layout) for struct in node.structs}
         for message in node.messages:
             assert {id(layout) for layout in structs_of(message.layout)} <= declared
+
+
+@pytest.mark.parametrize("path", SETS)
+def test_a_layout_without_a_node_has_nothing_that_depends_on_it(path):
+    for _, node, message in messages(path):
+        layout = message.layout
+        assert without_nodes(layout, lambda one: False) is layout
+        for left_out in layout.nodes:
+            smaller = without_nodes(layout, left_out.__eq__)
+            names = {one.name for one in smaller.nodes}
+            sizes = [size_of(one) for one in smaller.sequence]
+            assert left_out not in smaller.nodes
+            assert all(size.counter in names for size in sizes if isinstance(size, Counted))
+            assert smaller.sequence in (layout.sequence, ())
+            assert all(names.issuperset(one.derivation.fields) for one in smaller.derived)
+            kept = {one.name for one in layout.fixed} - {left_out.name}
+            assert kept == {one.name for one in smaller.fixed}
+            flatten(smaller, node.orders)

@@ -9,8 +9,8 @@ Read `icdgen.layout` next, which turns the position of a scalar into runs of bit
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import field
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import field, replace
 from fractions import Fraction
 from math import gcd
 from typing import Any, Literal, NamedTuple, TypeAlias
@@ -306,6 +306,46 @@ def _attributes(node: LayoutNode) -> dict[str, Any]:
     return {name: getattr(node, name) for name in LayoutNode.__dataclass_fields__}
 
 
+def scalar_of(node: LayoutNode) -> Scalar | None:
+    """Return the scalar that a node is, reads or computes, or that is an element of it; None for structs."""
+    match node:
+        case Scalar():
+            return node
+        case Overlay(scalar=scalar) | Derived(scalar=scalar) | Array(item=Scalar() as scalar):
+            return scalar
+    return None
+
+
+def struct_layout_of(node: LayoutNode) -> Layout | None:
+    """Return the layout of the struct that a node refers to; None if it refers to none."""
+    item = node.item if isinstance(node, Array) else node
+    return item.layout if isinstance(item, StructRef) else None
+
+
+def without_nodes(layout: Layout, is_left_out: Callable[[LayoutNode], bool]) -> Layout:
+    """Return a layout without some of its own nodes; the same object if all of them stay.
+
+    A value that is derived from a node that is left out is left out, too. So are all variable-length nodes if one of
+    them, or a field that counts one of them, is left out: their positions depend on each other.
+    """
+    if not any(map(is_left_out, layout.nodes)):
+        return layout
+    fixed = tuple(node for node in layout.fixed if not is_left_out(node))
+    names = {node.name for node in fixed}
+    sequence = layout.sequence
+    for node in layout.sequence:
+        size = size_of(node)
+        if is_left_out(node) or (isinstance(size, Counted) and size.counter not in names):
+            sequence = ()
+    names.update(node.name for node in sequence)
+    derived: list[Derived] = []
+    for value in layout.derived:  # each may be derived from those in front of it
+        if not is_left_out(value) and names.issuperset(value.derivation.fields):
+            derived.append(value)
+            names.add(value.name)
+    return replace(layout, fixed=fixed, sequence=sequence, derived=tuple(derived))
+
+
 def counter_of_rest(name: str, identifier: str | None, is_array: bool, most: int, source: Map) -> Scalar:
     """Return the scalar by which code calls a number of elements, or bytes, that only the length of a frame gives."""
     noun = "Count" if is_array else "Size"
@@ -335,9 +375,9 @@ def walk(layout: Layout, orders: Orders, owners: tuple[LayoutNode, ...] = ()) ->
     for node in layout.nodes:
         own = node.orders.within(orders)
         yield Visit(node, owners, own)
-        item = node.item if isinstance(node, Array) else node
-        if isinstance(item, StructRef):
-            yield from walk(item.layout, own, (*owners, node))
+        inner = struct_layout_of(node)
+        if inner is not None:
+            yield from walk(inner, own, (*owners, node))
 
 
 @dataclass(frozen=True, slots=True)

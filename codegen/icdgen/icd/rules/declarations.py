@@ -8,8 +8,10 @@ from dataclasses import replace
 from operator import attrgetter, is_
 from typing import NamedTuple
 
+from icdgen.icd.flat import message_with_lists
 from icdgen.icd.identifiers import Identifier
-from icdgen.icd.model import Field, Icd, Message, Node
+from icdgen.icd.layout import LayoutNode, scalar_of, struct_layout_of, without_nodes
+from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import REGISTERED
 
@@ -35,7 +37,7 @@ class Declared(NamedTuple):
 def declared(ctx: Context) -> list[Declared]:
     """What each language declares, worked out once a run."""
     if ctx.declared is None:
-        icd = _sound(ctx)
+        icd = _sound_icd(ctx)
         ctx.declared = []
         for one in ctx.languages if icd.nodes else ():
             identifiers = list(one.identifiers(icd))
@@ -44,37 +46,37 @@ def declared(ctx: Context) -> list[Declared]:
     return ctx.declared
 
 
-def _sound(ctx: Context) -> Icd:
-    """The model without fields that have errors, and without the second of two equal names."""
-    errors = ((code, f) for code, f in ctx.raised if REGISTERED[code].severity == "error")
-    bad = {id(f.owner) for code, f in errors if not ctx.accepts(code, f)}
-    twins = {id(f.owner) for code, f in ctx.raised if code in TWINS}
+def _sound_icd(ctx: Context) -> Icd:
+    """Return the ICDs without fields that have errors, and without the second of two equal names."""
+    errors = ((code, fault) for code, fault in ctx.raised if REGISTERED[code].severity == "error")
+    bad = {id(fault.owner) for code, fault in errors if not ctx.accepts(code, fault)}
+    twins = {id(fault.owner) for code, fault in ctx.raised if code in TWINS}
+    structs = {id(struct.layout): struct for struct, _ in ctx.structs}
+    bad_layouts: set[int] = set()  # of structs, by identity
 
-    def is_bad(field: Field) -> bool:
-        return id(field.source) in bad or (field.type == "enum" and not field.enum)
+    def is_bad(node: LayoutNode) -> bool:
+        scalar = scalar_of(node)
+        lacks_enum = scalar is not None and scalar.type == "enum" and scalar.enum is None
+        return id(node.source) in bad or lacks_enum or id(struct_layout_of(node)) in bad_layouts
 
-    wrong = {id(s) for s, _ in ctx.structs if id(s.source) in bad | twins or any(map(is_bad, (*s.fields, *s.members)))}
+    for struct, _ in ctx.structs:  # each stands behind those that it refers to
+        if id(struct.source) in bad | twins or any(map(is_bad, struct.layout.nodes)):
+            bad_layouts.add(id(struct.layout))
 
-    def sound(message: Message) -> Message:
-        members = {id(m.source) for m in message.members if m.struct is not None and id(m.source) in bad}
-        kept = tuple(
-            f
-            for f in message.fields
-            if not is_bad(f)
-            and not any(id(s.struct) in wrong or (s.member and id(s.member.source) in members) for s in f.path)
-        )
-        return message if len(kept) == len(message.fields) else message.with_fields(kept)
+    def sound_message(message: Message) -> Message:
+        layout = without_nodes(message.layout, is_bad)
+        return message if layout is message.layout else message_with_lists(replace(message, layout=layout), structs)
 
     def sound_node(node: Node) -> Node:
-        messages = tuple(sound(m) for m in node.messages if id(m.source) not in twins)
-        structs = tuple(one for one in node.structs if id(one) not in wrong)
-        enums = tuple({e.name: e for e in node.enums}.values())  # fields refer to the last of a name
+        messages = tuple(sound_message(message) for message in node.messages if id(message.source) not in twins)
+        sound_structs = tuple(struct for struct in node.structs if id(struct.layout) not in bad_layouts)
+        enums = tuple({enum.name: enum for enum in node.enums}.values())  # fields refer to the last of a name
         includes = tuple(name for name in node.includes if name != node.name)
-        if (messages, structs, enums, includes) == (node.messages, node.structs, node.enums, node.includes):
+        if (messages, sound_structs, enums, includes) == (node.messages, node.structs, node.enums, node.includes):
             return node
-        return replace(node, messages=messages, structs=structs, enums=enums, includes=includes)
+        return replace(node, messages=messages, structs=sound_structs, enums=enums, includes=includes)
 
-    first = {n.name: n for n in reversed(ctx.icd.nodes)}
+    first = {node.name: node for node in reversed(ctx.icd.nodes)}
     nodes = tuple(sound_node(node) for node in ctx.icd.nodes if first[node.name] is node)
     # What is described of a sound model for its names is described for its code too.
     return ctx.icd if all(map(is_, nodes, ctx.icd.nodes)) and len(nodes) == len(ctx.icd.nodes) else Icd(nodes)
