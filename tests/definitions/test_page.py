@@ -23,9 +23,10 @@ def blocks(language: str) -> list[str]:
 @pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
 def test_the_example_goes_from_a_database_to_a_program_as_printed(tmp_path):
     (tmp_path / "train.dbc").write_text(blocks("dbc")[0])
-    (tmp_path / "main.c").write_text(blocks("c")[0])
+    for name, program in zip(("main.c", "send.c"), blocks("c"), strict=False):
+        (tmp_path / name).write_text(program)
     sessions = blocks("console")
-    for session in sessions[:2]:
+    for session in sessions[:3]:
         expected = [line for line in session.splitlines() if not line.startswith("$ ")]
         said = []
         for command in re.findall(r"^\$ (.*)$", session, re.MULTILINE):
@@ -72,7 +73,7 @@ def test_the_electronic_data_sheet_goes_from_its_files_to_a_program_as_printed(t
     held = emit.text({key: tree[key] for key in ("structs", "messages")})
     assert read.definitions.troubles == [] and held.endswith(blocks("yaml")[4])
     (tmp_path / "heater.yaml").write_text(emit.text(tree))
-    (tmp_path / "main.c").write_text(blocks("c")[1])
+    (tmp_path / "main.c").write_text(blocks("c")[2])
     generated = f"{sys.executable} -m icdgen --lang c --out include heater.yaml"
     for command in (generated, "cc -std=c99 -Wall -Werror -Iinclude main.c -o main", "./main"):
         made = subprocess.run(command, shell=True, cwd=tmp_path, capture_output=True, text=True)

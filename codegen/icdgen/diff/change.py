@@ -70,7 +70,7 @@ class Change:
         """What is said below a change: consequences, how sure the match is, decisions about the manual."""
         said = list(self.details)
         if self.certainty:
-            said.append(f"That old and new are the same thing is {self.certainty} ({self.sure:.0%}).")
+            said.append(f"Matched by similarity, {self.certainty} ({self.sure:.0%}).")
         if self.errata:
             said.append(f"Because erratum {', '.join(self.errata)}.")
         return said
