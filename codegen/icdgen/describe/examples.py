@@ -41,7 +41,7 @@ class Example(NamedTuple):
 
 
 def worth_showing(message: MessageDescription) -> FieldDescription | None:
-    """The first field with a formula that leads back, else the first that is neither constant nor an array."""
+    """The first field with a formula that leads back, else the first that is neither constant nor an array or struct."""
     # these are the smallest in an example, whose frame has the fewest elements
     counters = {part.counter for part in message.model.open_parts}
     decides = {need.field.model.name for one in message.conditional for need in one.needs}  # what else is there
@@ -52,6 +52,7 @@ def worth_showing(message: MessageDescription) -> FieldDescription | None:
         and one.model.name not in decides
         and one.model.const is None
         and not one.model.is_bytes
+        and one.struct is None
         and not one.count
         and one.model.name not in counters
     ]
