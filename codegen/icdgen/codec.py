@@ -14,6 +14,7 @@ from functools import lru_cache
 
 from icdgen.icd.curve import Curve
 from icdgen.icd.model import Field, Icd, Message, Node, Special, Tail
+from icdgen.icd.places import AnyField
 
 
 class CodecError(ValueError):
@@ -243,7 +244,7 @@ def frame_with(node: Node, message: Message, raw: Mapping[str, int | bytes]) -> 
     return frame if message.tail is None else _without(frame[: message.begin + count * message.tail.step], gaps)
 
 
-def check_raw(field: Field, value: int | bytes) -> None:
+def check_raw(field: AnyField, value: int | bytes) -> None:
     """Raises `CodecError` unless the field can hold the raw value."""
     if field.is_bytes:
         if not isinstance(value, (bytes, bytearray)) or len(value) != field.bits // 8:
@@ -256,12 +257,12 @@ def check_raw(field: Field, value: int | bytes) -> None:
         raise CodecError(f"{field.name!r} takes {low} to {high}, not {value}")
 
 
-def physical(field: Field, raw: int) -> Fraction | None:
+def physical(field: AnyField, raw: int) -> Fraction | None:
     """Exact physical value of an integer field with a scale, else None."""
     return field.scale.physical(raw) if field.scale else None
 
 
-def physical_double(field: Field, raw: int) -> float | None:
+def physical_double(field: AnyField, raw: int) -> float | None:
     """The correctly rounded double of the physical value; of a curve, what its definition gives."""
     if field.curve is not None:
         return field.curve.double(float_value(field, raw) if field.type == "float" else raw)
@@ -269,7 +270,7 @@ def physical_double(field: Field, raw: int) -> float | None:
     return None if exact is None else to_double(exact)
 
 
-def value_double(field: Field, raw: int) -> float:
+def value_double(field: AnyField, raw: int) -> float:
     """The physical value of a number, of one without a formula its raw value, as a double."""
     physical = physical_double(field, raw)
     if physical is not None:
@@ -277,7 +278,7 @@ def value_double(field: Field, raw: int) -> float:
     return float_value(field, raw) if field.type == "float" else float(raw)
 
 
-def raw_from_physical(field: Field, value: Fraction | int | float) -> int:
+def raw_from_physical(field: AnyField, value: Fraction | int | float) -> int:
     """Nearest raw value, ties to even. Raises `CodecError` if it is not finite or does not fit."""
     if isinstance(value, float) and not math.isfinite(value):
         raise CodecError(f"{field.name!r} takes a finite number, not {value}")
@@ -291,7 +292,7 @@ def raw_from_physical(field: Field, value: Fraction | int | float) -> int:
     return raw
 
 
-def _raw_on_curve(field: Field, curve: Curve, value: float) -> int:
+def _raw_on_curve(field: AnyField, curve: Curve, value: float) -> int:
     if not field.leads_back:
         raise CodecError(f"the physical value of {field.name!r} does not lead back to a raw value")
     if field.type == "float":
@@ -311,7 +312,7 @@ def text(raw: bytes) -> str:
     return raw.split(b"\0", 1)[0].decode("ascii", "replace")
 
 
-def raw_from_text(field: Field, value: str) -> bytes:
+def raw_from_text(field: AnyField, value: str) -> bytes:
     """The bytes of a text, filled with NUL. Raises `CodecError` if it is too long, not ASCII or has a NUL in it."""
     size = field.bits // 8
     if not value.isascii() or "\0" in value or len(value) > size:
@@ -319,7 +320,7 @@ def raw_from_text(field: Field, value: str) -> bytes:
     return value.encode("ascii").ljust(size, b"\0")
 
 
-def special_of(field: Field, raw: int) -> Special | None:
+def special_of(field: AnyField, raw: int) -> Special | None:
     """The meaning that a raw value has, of floats the number: each NaN is the same, and so are both zeros."""
     if field.type != "float":
         return next((one for one in field.special if one.value == raw), None)
@@ -330,14 +331,14 @@ def special_of(field: Field, raw: int) -> Special | None:
     return None
 
 
-def float_value(field: Field, bits: int) -> float:
+def float_value(field: AnyField, bits: int) -> float:
     """The number that the bits of a float field stand for."""
     packed = bits.to_bytes(field.bits // 8, "little")
     value: float = struct.unpack("<f" if field.bits == 32 else "<d", packed)[0]
     return value
 
 
-def float_bits(field: Field, value: float) -> int:
+def float_bits(field: AnyField, value: float) -> int:
     """The bits of the nearest float of the field's width. Raises `CodecError` on overflow."""
     try:
         packed = struct.pack("<f" if field.bits == 32 else "<d", value)

@@ -6,7 +6,6 @@ Of structs, and of flags and numbers that are no words: as many of these as are 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from copy import copy
 from dataclasses import replace
 from math import gcd
 from typing import Any, NamedTuple
@@ -81,8 +80,7 @@ class Rounds(NamedTuple):
         """The elements of one round, counted from where its bytes begin; ``name`` is what they are called by in code."""
         found = []
         for element in range(self.in_round):
-            one = copy(first)
-            one.model = replace(first.model, at=element * first.model.bits, count=0)
+            one = first.moved(replace(first.model, at=element * first.model.bits, count=0))
             one.member = name(element)
             found.append(one)
         return tuple(found)

@@ -24,7 +24,8 @@ from icdgen.describe.numbers import (
 )
 from icdgen.describe.steps import Steps, steps
 from icdgen.icd.erratum import Erratum
-from icdgen.icd.model import CONFIGURATION, Condition, Enum, Field, Member, Message, Struct, Tail
+from icdgen.icd.model import CONFIGURATION, Condition, Enum, Member, Message, Struct, Tail
+from icdgen.icd.places import AnyField
 
 _LISTED = 6  # names in a row
 
@@ -103,19 +104,19 @@ def condition_text(condition: Condition, message: Message | None = None) -> str:
     return f"{words(condition.field)} is {' or '.join(values)}"
 
 
-def _said_of(field: Field | None, value: int) -> str:
+def _said_of(field: AnyField | None, value: int) -> str:
     if field is not None and field.type == "bool":
         return "true" if value else "false"
     members = field.enum.members if field is not None and field.enum is not None else ()
     return next((words(one.name) for one in members if one.value == value and one.to is None), str(value))
 
 
-def presence_comment(field: Field, message: Message) -> str:
+def presence_comment(field: AnyField, message: Message) -> str:
     """What tells whether a field is there."""
     return f"Whether {words(field.name)} is there: if {_conditions(field, message)}."
 
 
-def _conditions(field: Field, message: Message) -> str:
+def _conditions(field: AnyField, message: Message) -> str:
     return " and ".join(condition_text(one, message) for one in field.when)
 
 
@@ -168,7 +169,7 @@ def member_comment(member: Member, told: Mapping[str, str]) -> Comment:
     return _comment(f"{words(member.name)} ({member.value}).", (sentence(member.summary),), member.errata, told)
 
 
-def field_comment(field: Field, told: Mapping[str, str], message: Message) -> Comment:
+def field_comment(field: AnyField, told: Mapping[str, str], message: Message) -> Comment:
     """Name, place, range and unit; summary; values that are allowed or mean something. ``told``: as for a member."""
     tail = message.tail
     if tail is not None and field.implied:
@@ -194,16 +195,16 @@ def field_comment(field: Field, told: Mapping[str, str], message: Message) -> Co
     return _comment(head, (sentence(field.summary), " ".join(facts)), field.errata, told)
 
 
-def _limits(field: Field) -> str:
+def _limits(field: AnyField) -> str:
     return f"Must be {limits_text(bounds(field.limits), field)}, which setters do not check."
 
 
-def limits_text(limits: Iterable[Bound], field: Field) -> str:
+def limits_text(limits: Iterable[Bound], field: AnyField) -> str:
     """``above 0 and at most 10 mA``"""
     return " and ".join(f"{bound.kind.words} {exact_text(bound.value)}" for bound in limits) + _unit(field, " ")
 
 
-def _place(field: Field) -> str:
+def _place(field: AnyField) -> str:
     if field.is_bytes:
         where = byte_range(field.at // 8, field.width // 8)
         where += f", {octets_text(field.count, field.bits)}" if field.count else ""
@@ -216,7 +217,7 @@ def _place(field: Field) -> str:
     return ", ".join(filter(None, (where, elements, orders_text(field))))
 
 
-def _open_place(field: Field, message: Message, part: Tail) -> str:
+def _open_place(field: AnyField, message: Message, part: Tail) -> str:
     """``from byte 4 on, up to 12 elements of 16 bits``"""
     if field.is_bytes and field.count:
         what = f"up to {octets_text(part.most, field.bits)}{', text filled with NUL' if field.type == 'text' else ''}"
@@ -233,14 +234,14 @@ def _open_place(field: Field, message: Message, part: Tail) -> str:
     return ", ".join(filter(None, (place, what, counted, orders_text(field))))
 
 
-def orders_text(field: Field) -> str:
+def orders_text(field: AnyField) -> str:
     """``big-endian``: byte order and bit order where they are its own or its message's; else empty."""
     bit = {"msb0": "bit 0 of a byte is the most significant", "lsb0": "bit 0 of a byte is the least significant"}
     told = f"{field.byte_order}-endian" if field.byte_order else "", bit.get(field.bit_order, "")
     return ", ".join(filter(None, told))
 
 
-def _meaning(field: Field) -> str:
+def _meaning(field: AnyField) -> str:
     text = f", raw {field.raw_min} to {field.raw_max}" if field.type in ("uint", "int") else ""
     if field.type == "float":
         text = f", {field.bits}-bit float"
@@ -253,7 +254,7 @@ def _meaning(field: Field) -> str:
     return f"{text}; physical {how}" + (f", {range}{_unit(field, ' ')}" if range else _unit(field, ", in "))
 
 
-def span_text(field: Field) -> str:
+def span_text(field: AnyField) -> str:
     """``-327.68 to 327.67``: the physical values of all raw values; empty where a curve does not tell."""
     if field.curve is not None:
         ends = span(field.curve, field)
@@ -262,7 +263,7 @@ def span_text(field: Field) -> str:
     return _span_text(scaled) if scaled is not None else ""
 
 
-def takes_text(field: Field, is_narrow: bool) -> str:
+def takes_text(field: AnyField, is_narrow: bool) -> str:
     """``0 to 6553.5 m/s``, ``Mode, 0 to 15``: what a setter takes, or an encoder; also raw where more fits what holds it."""
     unit = _unit(field, " ")
     if field.type == "float":
@@ -279,21 +280,21 @@ def _span_text(scaled: Steps) -> str:
     return f"{exact_text(low)} to {exact_text(high)}"
 
 
-def physical_name(field: Field) -> str:
+def physical_name(field: AnyField) -> str:
     """``Roll Angle in deg``: what the accessors of a physical value are about."""
     return f"{words(field.name)}{_unit(field) or ', as a physical value'}"
 
 
-def _unit(field: Field, before: str = " in ") -> str:
+def _unit(field: AnyField, before: str = " in ") -> str:
     return before + words(field.unit.symbol) if field.unit else ""
 
 
-def text_comment(field: Field) -> str:
+def text_comment(field: AnyField) -> str:
     """What the text of a field of characters is."""
     return f"{words(field.name)} as text: what stands before the first NUL, up to {field.bits // 8} ASCII characters."
 
 
-def physical_comment(field: Field) -> str:
+def physical_comment(field: AnyField) -> str:
     """What the physical value is, its range and its limits."""
     limits = f" {_limits(field)}" if field.limits is not None else ""
     range = span_text(field)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
+from copy import copy
 from typing import Any, NamedTuple, Protocol, TypeVar
 
-from icdgen import layout, naming
+from icdgen import layout
 from icdgen.describe import steps
 from icdgen.describe.bounds import Bound, bounds
 from icdgen.describe.comments import Comment, field_comment, struct_comment, takes_text, words
@@ -16,17 +17,22 @@ from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, storage_of
 from icdgen.describe.wholes import Whole, part_of_unit
 from icdgen.icd.curve import Curve
-from icdgen.icd.model import Enum, Field, Message, Node, Struct, Tail
-from icdgen.icd.paths import Step, in_orders, placed
+from icdgen.icd.layout import UNDECLARED, Layout, Orders
+from icdgen.icd.model import Enum, Message, Node, Struct
+from icdgen.icd.places import NodePlace, places
 from icdgen.once import cached_property
 
 
 class Known(Protocol):
     """What describes the structs and enumerations that fields are of: `icdgen.describe.whole.Description`."""
 
-    def struct(self, struct: Struct) -> StructDescription: ...
+    def struct_of(self, layout: Layout) -> StructDescription: ...
 
     def enum(self, enum: Enum) -> EnumDescription: ...
+
+
+_OF_PLACE = ("needs", "places", "elements", "leaves", "instances", "blocks", "element", "comment")
+"""Attributes that are worked out for one place of a field."""
 
 
 class Need(NamedTuple):
@@ -36,7 +42,7 @@ class Need(NamedTuple):
     values: tuple[int, ...]
 
 
-class FieldDescription(Named[Field]):
+class FieldDescription(Named[NodePlace]):
     """A field of ``message``, or of a struct; of an array, an element, or among ``members`` all of it.
 
     Made by the ten thousand, and each asked for its names at once: what these need is worked out at the beginning.
@@ -57,40 +63,56 @@ class FieldDescription(Named[Field]):
     holder: str
     """Name of its struct in an expression, ``satellites[2]``; empty of what its message has itself."""
     declaration: FieldDescription
-    """The field as its struct, or its message, declares it."""
+    """The field as its struct, or its message, declares it; of an element its array."""
+    array: FieldDescription | None
+    """The array that it is an element of; else None."""
+    member_of_message: FieldDescription
+    """The member of its message that it is, or stands in."""
 
-    def __init__(
-        self,
-        field: Field,
-        message: Composite[Any],
-        enum: EnumDescription | None,
-        struct: StructDescription | None = None,
-        within: StructDescription | None = None,
-    ) -> None:
-        super().__init__(field, message.node.vocabulary, f"field `{field.name}` of `{message.model.name}`")
-        self.message, self.enum, self.struct = message, enum, struct
-        self.storage = enum.storage if enum is not None else storage_of(field.bits, field.signed)
-        self.steps, self.curve = steps.steps(field), field.curve
+    def __init__(self, place: NodePlace, message: Composite[Any], enum: EnumDescription | None) -> None:
+        super().__init__(place, message.node.vocabulary, f"field `{place.name}` of `{message.model.name}`")
+        self.message, self.enum = message, enum
+        self.struct = None if place.struct is None else message.struct_of(place.struct)
+        self.storage = enum.storage if enum is not None else storage_of(place.bits, place.signed)
+        self.steps, self.curve = steps.steps(place), place.curve
+        if place.derived is not None and place.unit is not None:  # it is a physical value, and has no raw one
+            self.name = f"{self.name}_{place.unit.identifier}"
         self.member = self.declared = self.name
         self.holder, self.declaration = "", self
-        if field.path:
-            self._within(field.path[0], within)
-        if field.derived is not None and field.unit is not None:  # it is a physical value, and has no raw one
-            self.name = self.member = self.declared = f"{self.name}_{field.unit.identifier}"
-        unit = "text" if self.is_text else field.unit.identifier if field.unit else "physical"
+        self.array, self.member_of_message = None, self
+        self.is_repeated = False
+        """Whether it stands in an element of an array of structs."""
+        unit = "text" if self.is_text else place.unit.identifier if place.unit else "physical"
         self.physical_name = f"{self.declared}_{unit}"
 
-    def _within(self, step: Step, struct: StructDescription | None) -> None:
-        """What it is called as an element of an array, or as a field of a struct."""
-        head = naming.snake(naming.words(step.identifier or step.name, self.message.node.vocabulary))
-        name, member = (head, head) if step.index is None else (f"{head}_{step.index}", f"{head}[{step.index}]")
-        if struct is None:
-            self.declared, self.name, self.member = head, name, member
-            return
-        inner = struct.known[self.model.name.removeprefix(f"{step.text}.")]
-        self.declaration, self.declared = inner.declaration, inner.declared
-        self.name, self.member = f"{name}_{inner.name}", f"{member}.{inner.member}"
-        self.holder = f"{member}.{inner.holder}" if inner.holder else member
+    def _element(self, place: NodePlace) -> FieldDescription:
+        """The description of an element of an array; of anything else the field itself."""
+        if place is self.model:
+            return self
+        element = self.moved(place)
+        element.name, element.member = f"{self.name}_{place.index}", f"{self.member}[{place.index}]"
+        element.array, element.is_repeated = self, self.is_repeated or self.struct is not None
+        return element
+
+    def _inner(self, place: NodePlace) -> FieldDescription:
+        """The description of a field of a struct, where the struct stands."""
+        assert self.struct is not None
+        declared = self.struct.member_for[id(place.node)]
+        inner = declared.moved(place)
+        inner.message, inner.member_of_message, inner.is_repeated = (
+            self.message, self.member_of_message, self.is_repeated,
+        )  # fmt: skip
+        inner.name, inner.member = f"{self.name}_{declared.name}", f"{self.member}.{declared.member}"
+        inner.holder, inner.declaration = self.member, declared
+        return inner
+
+    def moved(self, place: NodePlace) -> FieldDescription:
+        """A field that is declared like this one, at another place."""
+        other = copy(self)
+        other.model, other.owner = place, f"field `{place.name}` of `{self.message.model.name}`"
+        for name in _OF_PLACE:
+            other.__dict__.pop(name, None)
+        return other
 
     @property
     def count(self) -> int:
@@ -98,16 +120,20 @@ class FieldDescription(Named[Field]):
         return self.model.count
 
     @property
+    def index(self) -> int | None:
+        """Which element of its array it is; None of what is no element."""
+        return self.model.index
+
+    @property
     def is_open(self) -> bool:
-        """Whether it is the open end of its message, or an element of that."""
-        tail, path = self.message.model.tail, self.model.path
-        return tail is not None and tail.name == (path[0].name if path else self.model.name)
+        """Whether it is the open end of its message, or stands in it."""
+        sequence = self.message.model.layout.sequence
+        return bool(sequence) and self.member_of_message.model.node is sequence[-1]
 
     @property
     def is_inner(self) -> bool:
-        """Whether it is open with something else behind it, or an element of that."""
-        name = self.model.path[0].name if self.model.path else self.model.name
-        return any(part.name == name for part in self.message.model.open_parts[:-1])
+        """Whether it is open with something else behind it, or stands in such a part."""
+        return any(self.member_of_message.model.node is node for node in self.message.model.layout.sequence[:-1])
 
     @cached_property
     def needs(self) -> tuple[Need, ...]:
@@ -116,11 +142,24 @@ class FieldDescription(Named[Field]):
         return tuple(Need(known[one.field], tuple(sorted(one.values))) for one in self.model.when if one.field in known)
 
     @cached_property
+    def places(self) -> tuple[FieldDescription, ...]:
+        """The elements of an array, structs whole; of anything else the field itself."""
+        return tuple(map(self._element, self.model.elements()))
+
+    @cached_property
     def elements(self) -> tuple[FieldDescription, ...]:
-        """The fields of an array, or of a struct, that stands as one; else none."""
+        """All fields of an array, or of a struct, that stands as one; else none."""
         if not self.count and self.struct is None:
             return ()
-        return tuple(map(self.message.field, self.model.elements))
+        return tuple(self.scalars)
+
+    @property
+    def scalars(self) -> Iterator[FieldDescription]:
+        """All scalars that it is made of: itself, each element of an array, each field of a struct."""
+        if self.struct is None:
+            yield from self.places
+        else:
+            yield from (scalar for row in self.instances for one in row for scalar in one.scalars)
 
     @cached_property
     def leaves(self) -> tuple[FieldDescription, ...]:
@@ -134,9 +173,7 @@ class FieldDescription(Named[Field]):
         """The members of a struct wherever it stands: once, or as often as there are elements; else none."""
         if self.struct is None:
             return ()
-        members = [one.model for one in self.struct.members]
-        rows = (placed(self.model, place, members) for place in self.model.places)
-        return tuple(tuple(map(self.message.field, row)) for row in rows)
+        return tuple(tuple(map(place._inner, place.model.inner())) for place in self.places)
 
     @cached_property
     def blocks(self) -> tuple[FieldDescription, ...]:
@@ -149,11 +186,6 @@ class FieldDescription(Named[Field]):
     def element(self) -> StructDescription | None:
         """What an element of an array of structs is made of, in the orders that hold where it stands; else None."""
         return None if self.struct is None or not self.count else self.message.element(self, self.struct)
-
-    @property
-    def is_repeated(self) -> bool:
-        """Whether it stands in an element of an array of structs."""
-        return any(step.count and step.struct is not None for step in self.model.path)
 
     @property
     def is_narrow(self) -> bool:
@@ -194,7 +226,8 @@ class FieldDescription(Named[Field]):
     @property
     def pieces(self) -> tuple[layout.Piece, ...]:
         """The runs of bits of the frame that make up a number."""
-        return layout.pieces(self.model, self.message.node)
+        place = self.model
+        return () if place.derived else layout.pieces_at(place.at, place.bits, *place.orders(self.message.node))
 
     @property
     def is_text(self) -> bool:
@@ -255,17 +288,29 @@ class FieldDescription(Named[Field]):
 
 
 class TailDescription(NamedTuple):
-    """The open end of a message: see `icdgen.icd.model.Tail`."""
+    """A part of variable length: an array, bytes or text. Elements that a frame lacks are 0 in what it is decoded to."""
 
     part: FieldDescription  # the array as one, or the bytes or text
     counter: FieldDescription  # how many elements there are; implied, or a field of the frame
-    begin: int  # bytes before it
-    model: Tail
+    begin: int  # bytes before it in the longest frame
     step: int  # bytes of an element
     most: int  # elements
-    fewest: int  # elements: those that every frame has
-    low: int  # the smallest value of the counter: of a frame that has the fewest elements
-    high: int  # the largest
+    plus: int  # there are so many more elements than the counter says
+
+    @property
+    def fewest(self) -> int:
+        """Elements that every frame has."""
+        return max(0, self.plus)
+
+    @property
+    def low(self) -> int:
+        """The smallest value of the counter."""
+        return max(0, -self.plus)
+
+    @property
+    def high(self) -> int:
+        """The largest value of the counter."""
+        return self.most - self.plus
 
     @property
     def element(self) -> StructDescription | None:
@@ -289,9 +334,11 @@ Fielded = TypeVar("Fielded", bound=Message | Struct)
 class Composite(Named[Fielded]):
     """What has fields: a message, or a struct, that ``node`` declares."""
 
-    def __init__(self, description: Known, model: Fielded, node: Node, what: str) -> None:
+    def __init__(self, description: Known, model: Fielded, node: Node, what: str, outer: Orders = UNDECLARED) -> None:
         super().__init__(model, node.vocabulary, f"{what} `{model.name}`")
         self._description, self.node = description, node
+        self.outer_orders = outer
+        """Those of the array of which it is an element."""
         self.seen_from = node
         """The node in whose code it is read and written."""
 
@@ -303,22 +350,24 @@ class Composite(Named[Fielded]):
     @cached_property
     def all_fields(self) -> tuple[FieldDescription, ...]:
         """Fields and views, in the order of the ICD; each element of an array, each field of a struct."""
-        return tuple(map(self.field, self.model.fields))
+        return tuple(scalar for member in self.all_members for scalar in member.scalars)
 
     @cached_property
     def all_members(self) -> tuple[FieldDescription, ...]:
         """Members and views, in the order of the ICD: what is declared in code."""
-        declared = self.model.members
-        return self.all_fields if declared is self.model.fields else tuple(map(self.field, declared))
+        return tuple(map(self._member, places(self.model.layout, self.outer_orders)))
 
-    def field(self, field: Field) -> FieldDescription:
-        """The description of a field of it."""
-        enum = self._description.enum(field.enum) if field.enum else None
-        if field.struct is None and not field.path:
-            return FieldDescription(field, self, enum)
-        struct = self._description.struct(field.struct) if field.struct else None
-        within = field.path[0].struct if field.path else None
-        return FieldDescription(field, self, enum, struct, self._description.struct(within) if within else None)
+    def _member(self, place: NodePlace) -> FieldDescription:
+        return FieldDescription(place, self, self._description.enum(place.enum) if place.enum else None)
+
+    def struct_of(self, layout: Layout) -> StructDescription:
+        """The struct that a layout is of."""
+        return self._description.struct_of(layout)
+
+    @cached_property
+    def member_for(self) -> dict[int, FieldDescription]:
+        """Members by the identity of their nodes."""
+        return {id(member.model.node): member for member in self.all_members}
 
     @cached_property
     def views(self) -> tuple[FieldDescription, ...]:
@@ -377,8 +426,8 @@ class Composite(Named[Fielded]):
 
     def element(self, part: FieldDescription, struct: StructDescription) -> StructDescription:
         """What an array of structs in it has as an element."""
-        model = in_orders(struct.model, *part.model.orders(self.node))
-        found = StructDescription(self._description, model, struct.node)
+        outer = Orders(*part.model.orders(self.node))
+        found = StructDescription(self._description, struct.model, struct.node, outer)
         found.seen_from = self.seen_from
         return found
 
@@ -398,11 +447,13 @@ class Composite(Named[Fielded]):
     @property
     def is_narrow(self) -> bool:
         """Whether a field of it may be given a raw value that does not fit."""
-        return any(field.is_narrow for field in self.fields)
+        return any((member.struct or member).is_narrow for member in self.members)
 
     @property
     def has_floats(self) -> bool:
-        return any(field.type == "float" for field in self.model.owners)
+        return any(
+            member.struct.has_floats if member.struct else member.model.type == "float" for member in self.members
+        )
 
     @cached_property
     def has_wide_steps(self) -> bool:
@@ -412,28 +463,14 @@ class Composite(Named[Fielded]):
     @cached_property
     def tellers(self) -> dict[str, Thing]:
         """By the ids of errata: which part of it tells of it."""
-        return tellers((self.model, *self.model.members))
-
-
-def _wholes(fields: Iterable[FieldDescription]) -> Iterator[FieldDescription]:
-    """Those that are structs, and those in them."""
-    for field in fields:
-        if field.struct is not None:
-            yield field
-            for row in field.instances:
-                yield from _wholes(row)
+        return tellers((self.model, *(member.model for member in self.all_members)))
 
 
 class StructDescription(Composite[Struct]):
     """A struct."""
 
-    def __init__(self, description: Known, struct: Struct, node: Node) -> None:
-        super().__init__(description, struct, node, "struct")
-
-    @cached_property
-    def known(self) -> dict[str, FieldDescription]:
-        """Fields by name, and arrays and structs that stand as one."""
-        return {one.model.name: one for one in (*self.fields, *self.leaves, *_wholes(self.members))}
+    def __init__(self, description: Known, struct: Struct, node: Node, outer: Orders = UNDECLARED) -> None:
+        super().__init__(description, struct, node, "struct", outer)
 
     @cached_property
     def comment(self) -> Comment:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from icdgen.icd.erratum import Erratum
-from icdgen.icd.model import Enum, Field, Member, Message, Struct
+from icdgen.icd.model import Enum, Member, Message, Struct
+from icdgen.icd.places import AnyField
 
-Thing = Message | Struct | Field | Enum | Member
+Thing = Message | Struct | AnyField | Enum | Member
 
 
 def errata_of_message(message: Message) -> list[Erratum]:
@@ -33,6 +34,6 @@ def tellers(things: Iterable[Thing]) -> dict[str, Thing]:
     return found
 
 
-def told_elsewhere(thing: Field | Member, by: Mapping[str, Thing]) -> dict[str, str]:
+def told_elsewhere(thing: AnyField | Member, by: Mapping[str, Thing]) -> dict[str, str]:
     """By the ids of those errata of a thing that another one tells of: the name of that one."""
     return {one.id: by[one.id].name for one in thing.errata if by.get(one.id, thing) is not thing}

@@ -6,9 +6,10 @@ from typing import Generic, TypeVar
 
 from icdgen import naming
 from icdgen.icd.identifiers import Identifier
-from icdgen.icd.model import Enum, Field, Member, Message, Struct
+from icdgen.icd.model import Enum, Member, Message, Struct
+from icdgen.icd.places import NodePlace
 
-Model = TypeVar("Model", bound=Message | Struct | Field | Enum | Member)
+Model = TypeVar("Model", bound=Message | Struct | NodePlace | Enum | Member)
 
 
 class Named(Generic[Model]):

@@ -6,7 +6,7 @@ from fractions import Fraction
 from functools import lru_cache
 
 from icdgen.icd.curve import CLAMP, EXTRAPOLATE, REFUSE, Curve
-from icdgen.icd.model import Message, Special, Tail
+from icdgen.icd.model import Message, Special
 
 MOST_DIGITS = 24  # of a decimal that is shown in full
 _OUTSIDE = {"": "", CLAMP: "clamped outside", EXTRAPOLATE: "extrapolated outside", REFUSE: "no number outside"}
@@ -83,9 +83,9 @@ def length_text(message: Message) -> str:
     )
 
 
-def count_text(part: Tail) -> str:
-    """``Levels Count``, ``Size - 4``: how many elements, bytes or characters an open part has."""
-    return part.counter + (f" {'+' if part.plus > 0 else '-'} {abs(part.plus)}" if part.plus else "")
+def count_text(counter: str, plus: int) -> str:
+    """``Levels Count``, ``Size - 4``: how many elements, bytes or characters a part of variable length has."""
+    return counter + (f" {'+' if plus > 0 else '-'} {abs(plus)}" if plus else "")
 
 
 def byte_count(count: int) -> str:

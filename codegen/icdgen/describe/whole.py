@@ -15,7 +15,8 @@ from icdgen.describe.enums import EnumDescription, enum_widths
 from icdgen.describe.shared_ids import sharing
 from icdgen.describe.storage import holding
 from icdgen.icd.identifiers import Identifier
-from icdgen.icd.model import Enum, Icd, Message, Node, Struct, Tail
+from icdgen.icd.layout import Counted, Layout, size_of, stride
+from icdgen.icd.model import Enum, Icd, Message, Node, Struct
 from icdgen.icd.variants import Ids, Variant, common_length, ids_of
 from icdgen.once import cached_property
 
@@ -51,22 +52,27 @@ class MessageDescription(Composite[Message]):
         fields = self.sent_fields
         return tuple(field for field in fields if not field.model.when) if self.conditional else fields
 
-    @cached_property
+    @property
     def tail(self) -> TailDescription | None:
         """Its open end, where frames differ in length."""
-        tail = self.model.tail
-        return None if tail is None else self._open_part(tail, self.model.begin)
+        return self.open_parts[-1] if self.open_parts else None
 
-    @cached_property
+    @property
     def inner(self) -> tuple[TailDescription, ...]:
         """What is open in front of the tail."""
-        return tuple(self._open_part(one, one.begin) for one in self.model.inner)
+        return self.open_parts[:-1]
 
-    def _open_part(self, tail: Tail, begin: int) -> TailDescription:
-        part, counter = (
-            next(one for one in self.members if one.model.name == name) for name in (tail.name, tail.counter)
-        )
-        return TailDescription(part, counter, begin, tail, tail.step, tail.most, tail.fewest, tail.low, tail.high)
+    @cached_property
+    def open_parts(self) -> tuple[TailDescription, ...]:
+        """All parts of variable length, in the order of the frame."""
+        by_name = {member.model.name: member for member in self.members}
+        found = []
+        for node in self.model.layout.sequence:
+            size, part = size_of(node), by_name[node.name]
+            counter, plus = (size.counter, size.plus) if isinstance(size, Counted) else (size.counter.name, 0)
+            begin = part.model.at // 8
+            found.append(TailDescription(part, by_name[counter], begin, stride(node) // 8, size.most, plus))
+        return tuple(found)
 
     @cached_property
     def contained(self) -> tuple[tuple[MessageDescription, int], ...]:
@@ -100,7 +106,7 @@ class MessageDescription(Composite[Message]):
     @property
     def is_narrow(self) -> bool:
         """Whether a field of it may be given a raw value that does not fit, or a count."""
-        return super().is_narrow or any(one.is_bound for one in (*self.inner, *filter(None, (self.tail,))))
+        return super().is_narrow or any(one.is_bound for one in self.open_parts)
 
     @cached_property
     def comment(self) -> Comment:
@@ -304,6 +310,14 @@ class Description:
         if found is None or found.model is not struct:
             found = self._structs[key] = StructDescription(self, struct, self.icd.node(struct.node))
         return found
+
+    def struct_of(self, layout: Layout) -> StructDescription:
+        """The description of the struct that has a layout."""
+        return self.struct(self._structs_by_layout[id(layout)])
+
+    @cached_property
+    def _structs_by_layout(self) -> dict[int, Struct]:
+        return {id(struct.layout): struct for node in self.icd.nodes for struct in node.structs}
 
     def enum(self, enum: Enum) -> EnumDescription:
         """The description of an enumeration, whoever uses it."""

@@ -60,7 +60,7 @@ def remarks(
     part = _open_part(message, field)
     if part is not None and message is not None:
         is_rest = part is message.tail and message.counter is not None and message.counter.implied
-        yield "up to the end of the frame" if is_rest else f"as many as {count_text(part)} says"
+        yield "up to the end of the frame" if is_rest else f"as many as {count_text(part.counter, part.plus)} says"
         before = [one.name for one in message.inner if one.begin < field.at // 8 and one is not part]
         if before:
             yield f"behind {before[-1]}"

@@ -11,6 +11,7 @@ from itertools import pairwise
 
 from icdgen import codec
 from icdgen.icd.model import Field, Message, Node, Tail
+from icdgen.icd.places import AnyField
 
 RANDOM_FRAMES = 4
 
@@ -127,7 +128,7 @@ def random_frame(message: Message, seed: str) -> bytes:
     return hashlib.shake_128(f"{message.node}/{message.name}/{seed}".encode()).digest(message.length)
 
 
-def values(field: Field) -> list[int | bytes]:
+def values(field: AnyField) -> list[int | bytes]:
     """The raw values of a field that are worth a frame each, without repetition."""
     if field.is_bytes:
         size = field.bits // 8
@@ -144,7 +145,7 @@ def values(field: Field) -> list[int | bytes]:
     return list(dict.fromkeys(v for v in _numbers(field) if field.raw_min <= v <= field.raw_max))
 
 
-def _numbers(field: Field) -> Iterator[int]:
+def _numbers(field: AnyField) -> Iterator[int]:
     low, high = field.raw_min, field.raw_max
     yield from (0, low, high)
     if field.signed:
@@ -165,13 +166,13 @@ def _numbers(field: Field) -> Iterator[int]:
     yield from (number for near in _near(field) for number in (math.floor(near), math.ceil(near)))
 
 
-def _near_bits(field: Field) -> Iterator[int]:
+def _near_bits(field: AnyField) -> Iterator[int]:
     for number in _near(field):
         with suppress(codec.CodecError):
             yield codec.float_bits(field, number)
 
 
-def _near(field: Field) -> Iterator[float]:
+def _near(field: AnyField) -> Iterator[float]:
     """The points of a table, and what lies between them and beyond."""
     points = [raw for raw, _ in field.curve.points] if field.curve is not None else []
     if points:

@@ -117,9 +117,9 @@ def place(begin: int, step: int, in_round: int = 1) -> str:
 def elements(tail: TailDescription, counter: str = "") -> str:
     """How many elements a message has."""
     count = f"ICDGEN_SIZE({counter or f'message->{tail.counter.name}'})"
-    if not tail.model.plus:
+    if not tail.plus:
         return count
-    return f"({count} {'+' if tail.fewest else '-'} {abs(tail.model.plus)}u)"
+    return f"({count} {'+' if tail.fewest else '-'} {abs(tail.plus)}u)"
 
 
 def miscount(tail: TailDescription, counter: str = "") -> str:
@@ -155,7 +155,7 @@ def _group(group: Flags | Row | Array | Structs, message: Composite[Any]) -> str
 def _one(field: FieldDescription) -> str:
     one = field.model
     if one.is_bytes:
-        return f"(void)memcpy(message->{field.member}, &buffer[{one.at // 8}], {one.bits // 8}u);"
+        return f"(void)memcpy(message->{field.member}, &buffer[{one.at // 8}], {one.width // 8}u);"
     return number(field, f"message->{field.member}")
 
 

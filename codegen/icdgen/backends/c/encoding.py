@@ -69,7 +69,7 @@ class _Frame:
 
     def _one(self, field: FieldDescription) -> None:
         one = field.model
-        first, size = one.at // 8, one.bits // 8
+        first, size = one.at // 8, one.width // 8
         if one.is_bytes:
             self.whole[first] = size, f"(void)memcpy(&buffer[{first}], message->{field.member}, {size}u);"
         elif field.is_word:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from copy import copy
-from dataclasses import replace
 
 from icdgen.describe import FieldDescription
 from icdgen.describe.arrays import Repeated, Rounds, rounds_of
@@ -84,9 +82,10 @@ def in_groups(fields: Members) -> Groups:
     found: Groups = []
     index = 0
     while index < len(fields):
-        if fields[index].model.is_bytes and fields[index].model.index == 0:
-            found.append(_octets(fields[index]))
-            index += fields[index].model.path[-1].count
+        array = fields[index].array
+        if array is not None and array.model.is_bytes:  # lies in memory as in the frame
+            found.append(array)
+            index += array.count
             continue
         group = _array(fields[index]) or _flags(fields, positions, index) or _row(fields, index)
         found.append(group or fields[index])
@@ -94,20 +93,12 @@ def in_groups(fields: Members) -> Groups:
     return found
 
 
-def _octets(first: FieldDescription) -> FieldDescription:
-    """An array of bytes or texts as one, for it lies in memory as in the frame; ``first`` is its first element."""
-    whole = copy(first)
-    whole.model = replace(first.model, bits=first.model.bits * first.model.path[-1].count)
-    whole.member = first.member.removesuffix("[0]")
-    return whole
-
-
 def _array(first: FieldDescription) -> Array | None:
-    begins = first.model.index == 0 and not first.is_plain_word
-    rounds = rounds_of(first, first.model.path[-1].count) if begins else None
-    if rounds is None:
+    array = first.array if first.index == 0 and not first.is_plain_word else None
+    rounds = rounds_of(first, array.count) if array is not None else None
+    if array is None or rounds is None:
         return None
-    name = first.member.removesuffix("[0]")
+    name = array.member
     members = rounds.members(first, lambda element: f"{name}[element{f' + {element}u' if element else ''}]")
     return Array(members, rounds)
 
@@ -146,5 +137,5 @@ def _row(fields: Members, begin: int) -> Row | None:
             break
         end += 1
     row = fields[begin:end]
-    is_array = len(row) > 1 and all(field.model.index is not None for field in row)
+    is_array = len(row) > 1 and all(field.index is not None for field in row)
     return Row(row) if len(row) >= LONG_ENOUGH or is_array else None

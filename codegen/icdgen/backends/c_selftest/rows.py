@@ -16,7 +16,8 @@ from icdgen.backends.origin import origin
 from icdgen.describe import FieldDescription, MessageDescription, NodeDescription, describe
 from icdgen.describe.description import TailDescription
 from icdgen.describe.whole import Direction
-from icdgen.icd.model import Field, Icd, Message
+from icdgen.icd.model import Icd, Message
+from icdgen.icd.places import NodePlace
 from icdgen.render import Renderer
 from icdgen.vectors.ids import worth_asking
 from icdgen.vectors.make import MessageVectors, Raw, Row, make
@@ -113,7 +114,7 @@ class _Rows:
         vectors = _plain(message, vectors)
         for row in vectors.rows:  # reserved bits are those that no vector keeps
             kept = bytes(a | b for a, b in zip(kept, row.encoded.ljust(len(kept), b"\0"), strict=True))
-        tables: dict[str, str] = {}
+        tables: dict[tuple[int, ...], str] = {}
         fields = [self.field(field, vectors, tables) for field in message.all_fields]
         doubles = (f"UINT64_C(0x{double})" for row in vectors.rows for double in row.doubles.values())
         differ = len(message.model.lengths) > 1
@@ -139,12 +140,13 @@ class _Rows:
             data += value if isinstance(value, bytes) else (value & bits).to_bytes(field.packed, "little")
         return _bytes(bytes(data))
 
-    def field(self, one: FieldDescription, vectors: MessageVectors, known: dict[str, str]) -> FieldRow:
+    def field(self, one: FieldDescription, vectors: MessageVectors, known: dict[tuple[int, ...], str]) -> FieldRow:
         """``known``: of each line of the ICD the field that has its tables."""
         field, storage = one.model, one.storage
         is_bytes, index = field.is_bytes, field.index
+        line = tuple(map(id, (*field.owners, field.node)))
         stem = f"{names.stem(one.message)}_selftest_{one.name}"
-        tables = known.setdefault(".".join(step.name for step in field.path) if field.path else stem, stem)
+        tables = known.setdefault(line, stem)
         unfit = [v for v in vectors.unfit.get(field.name, ()) if not is_bytes and storage.min <= v <= storage.max]
         return FieldRow(
             field=one,
@@ -163,7 +165,7 @@ class _Rows:
         )
 
 
-def _type(field: Field) -> str:
+def _type(field: NodePlace) -> str:
     if field.derived is not None:
         return "ICDGEN_SELFTEST_DERIVED"
     return f"ICDGEN_SELFTEST_{'SIGNED' if field.signed else TYPES.get(field.type, 'UNSIGNED')}"
@@ -187,7 +189,7 @@ def _frame(row: SharedRow) -> str:
 
 def _plain(message: MessageDescription, vectors: MessageVectors) -> MessageVectors:
     """As C sees a message of which a field is not always there: its members are as in a new one then; other bits are 0."""
-    if message.model.inner:  # bits that are no field's are not at one place in all frames
+    if message.inner:  # bits that are no field's are not at one place in all frames
         return replace(vectors, rows=tuple(replace(row, frame=row.encoded) for row in vectors.rows))
     if not message.conditional:
         return vectors
@@ -207,7 +209,7 @@ def _tail(message: MessageDescription, tail: TailDescription, vectors: MessageVe
     """What there is of a message whose frames differ in length."""
     return {
         "least": message.model.least,
-        "counter": next(place for place, one in enumerate(message.all_fields) if one.model == tail.counter.model),
+        "counter": next(place for place, one in enumerate(message.all_fields) if one.model is tail.counter.model),
         "high": tail.high,
         "frames": _bytes(b"".join(frame.ljust(message.model.length, b"\0") for frame in vectors.miscounted)),
         "frame_lengths": list(map(len, vectors.miscounted)),

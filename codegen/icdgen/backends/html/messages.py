@@ -94,7 +94,7 @@ def _open_parts(message: Message) -> Iterator[tuple[str, str, str]]:
     arrays = {one.path[0].name for one in message.fields if one.path}
     for part in message.open_parts:
         is_told = message.counter is not None and message.counter.implied and part is message.tail
-        until = "up to the end" if is_told else f"as many as {count_text(part)} says"
+        until = "up to the end" if is_told else f"as many as {count_text(part.counter, part.plus)} says"
         most = count(part.most, "element" if part.step > 1 or part.name in arrays else "byte")
         yield "Open end" if part is message.tail else "Open part", f"{part.name}: up to {most}, {until}", ""
 

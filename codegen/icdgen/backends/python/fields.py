@@ -123,7 +123,7 @@ def inner(message: MessageDescription) -> list[str]:
 def open_part(one: TailDescription) -> str:
     """``_base.Tail(...)``: attributes, bytes and elements of what is open."""
     counter = "" if one.counter.model.implied else one.counter.name
-    plus = f", {one.model.plus}" if one.model.plus else ""
+    plus = f", {one.plus}" if one.plus else ""
     return f'_base.Tail("{one.part.name}", "{counter}", {one.step}, {one.most}{plus})'
 
 

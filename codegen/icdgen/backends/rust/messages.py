@@ -127,7 +127,7 @@ def _counted_text(tail: TailDescription) -> str:
 def _number(tail: TailDescription) -> str:
     """How many elements a message has."""
     counter = f"self.{field_name(tail.counter)}"
-    return f"number({counter}, {tail.low}, {tail.fewest})" if tail.model.plus else counter
+    return f"number({counter}, {tail.low}, {tail.fewest})" if tail.plus else counter
 
 
 def _is_default(field: FieldDescription) -> bool:

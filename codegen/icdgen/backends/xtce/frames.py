@@ -107,7 +107,7 @@ class Frames:
         needed = {need.field.name for one in parts for need in one.needs}
         found: list[Entry] = []
         for one in parts:
-            run = run_of_all(one.model.elements, message.node) if one.count else run_of(one.model, message.node)
+            run = run_of_all(one.model.elements(), message.node) if one.count else run_of(one.model, message.node)
             if one.model.view and (is_sent or made.lacks):  # of bits that are there
                 continue
             if run is None:
@@ -120,7 +120,9 @@ class Frames:
         can_stand = not message.inner and not any(one.needs for one in found)
         behind = self._open(made, tail) if tail is not None and can_stand else None
         if behind is None:
-            made.lacks += (f"`{part.name}`, which has no fixed size, is left out" for part in message.model.open_parts)
+            made.lacks += (
+                f"`{part.name}`, which has no fixed size, is left out" for part in message.model.layout.sequence
+            )
         if message.model.may_end_early:
             made.notes.append("it is sent with the zeros that it may be sent without")
         for one in message.derived:
@@ -137,7 +139,7 @@ class Frames:
         is_odd = tail.counter.model.implied or part.struct is not None or part.model.const is not None
         if is_odd or tail.counter.name not in made.names:
             return None
-        run = run_of(part.model, node) if part.model.is_bytes else run_of_all(part.model.elements, node)
+        run = run_of(part.model, node) if part.model.is_bytes else run_of_all(part.model.elements(), node)
         if run is None:
             return None
         name = self._give_name(made, part)
@@ -226,7 +228,7 @@ def _parts(message: MessageDescription) -> Iterator[FieldDescription]:
     for one in message.leaves:
         if one.is_open or one.is_inner or one.model.implied:
             continue
-        is_array = one.model.const is None and one.count and run_of_all(one.model.elements, message.node) is not None
+        is_array = one.model.const is None and one.count and run_of_all(one.model.elements(), message.node) is not None
         yield from (one,) if is_array or not one.count else one.elements
     yield from message.seen
 
