@@ -14,6 +14,7 @@ from icdgen.backends.c import CBackend
 from icdgen.backends.c.declared_names import FILE
 from icdgen.backends.c.text import comment, literal, plain
 from icdgen.describe import describe
+from icdgen.icd.flat import message_with_lists
 from icdgen.icd.model import Icd
 from icdgen.loading import load
 from tests.c import harness, odd
@@ -29,15 +30,13 @@ def shipped() -> dict[str, str]:
 
 
 def without_a_field(icd: Icd, node_name: str, message_name: str, field_name: str) -> Icd:
+    def fewer(message):
+        fixed = tuple(one for one in message.layout.fixed if one.name != field_name)
+        layout = dataclasses.replace(message.layout, fixed=fixed)
+        return message_with_lists(dataclasses.replace(message, layout=layout), {})
+
     def changed(node):
-        messages = tuple(
-            (
-                dataclasses.replace(m, fields=tuple(f for f in m.fields if f.name != field_name))
-                if m.name == message_name
-                else m
-            )
-            for m in node.messages
-        )
+        messages = tuple(fewer(m) if m.name == message_name else m for m in node.messages)
         return dataclasses.replace(node, messages=messages, digest="0" * 64)
 
     return Icd(tuple(changed(n) if n.name == node_name else n for n in icd.nodes))

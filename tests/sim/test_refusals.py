@@ -7,6 +7,8 @@ from dataclasses import replace
 import pytest
 
 from icdgen.errors import UserError
+from icdgen.icd.flat import message_with_lists
+from icdgen.icd.layout import overlay_of
 from icdgen.protocol import transfer
 from icdgen.sim.control import _check_wave, fitting
 from icdgen.sim.values import Values
@@ -53,9 +55,10 @@ def test_a_refusal_that_the_icd_does_not_know_is_a_time_out_at_last():
 def test_a_view_is_not_set_and_follows_what_is():
     node = ICD.node("cubeacp")
     frame = next(m for m in ICD.messages_of(node) if m.name == "Estimated Attitude Angles")
-    own = frame.fields[0]
-    view = replace(own, name="Seen", bits=8, type="int", scale=None, unit=None, view=True)
-    both = replace(frame, fields=(*frame.fields, view))
+    own = frame.layout.fixed[0]
+    seen = overlay_of(replace(own, name="Seen", bits=8, type="int", scale=None, unit=None))
+    both = message_with_lists(replace(frame, layout=replace(frame.layout, fixed=(*frame.layout.fixed, seen))), {})
+    view = both.fields[-1]
     values = Values(replace(ICD, nodes=tuple(_with(node, frame, both) for node in ICD.nodes)), node)
     values.update(both, {own.name: -2})
     assert values.raw(both)["Seen"] == -2

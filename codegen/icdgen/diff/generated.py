@@ -21,6 +21,9 @@ from icdgen.diff.pairs import (
     SideBySide,
     Thing,
 )
+from icdgen.icd.flat import message_with_lists
+from icdgen.icd.layout import Layout, Orders, Scalar, VariableNode, size_of
+from icdgen.icd.layout_copies import with_attributes
 from icdgen.icd.located import Map
 from icdgen.icd.model import TELEMETRY, Enum, Field, Icd, Message, Node
 
@@ -188,19 +191,42 @@ def _texts(samples: list[FieldPair], side: int) -> list[list[tuple[str, str]]]:
     """The generated names of one side of each sample, by language, all in one message of an ICD of its own."""
     marks = Marks[list[tuple[str, str]]]()
     found: list[list[tuple[str, str]]] = [[] for _ in samples]
-    usual: dict[str, Any] = {"identifier": None, "count": 0, "path": ()}
     fields = [
-        replace(pair.new if side else pair.old, name=f"Sample {number}", source=marks.of(found[number]), **usual)
+        _sample(pair.new if side else pair.old, f"Sample {number}", marks.of(found[number]))
         for number, pair in enumerate(samples)
     ]
     for vocabulary in dict.fromkeys(pair.owner.new_node.vocabulary for pair in samples):
         own = (f for f, pair in zip(fields, samples, strict=True) if pair.owner.new_node.vocabulary == vocabulary)
-        message = Message("Samples", TELEMETRY, 0, tuple(own), node="samples")
+        message = Message("Samples", TELEMETRY, 0, (), node="samples", layout=Layout("Samples", 0, tuple(own)))
+        message = message_with_lists(message, {})
         icd = Icd((Node("samples", "", "", "little", "lsb0", (message,), (), vocabulary=vocabulary),))
         for language in LANGUAGES:
             for texts, one in marks.names(icd, language):
                 texts.append((language, one.text))
     return found
+
+
+def _sample(field: Field, name: str, source: Map) -> Scalar:
+    """Return a scalar with what a field means, wherever the field stands."""
+    return Scalar(
+        name=name,
+        at=field.at,
+        bits=field.bits,
+        type=field.type,
+        enum=field.enum,
+        unit=field.unit,
+        formula=field.formula,
+        scale=field.scale,
+        curve=field.curve,
+        const=field.const,
+        special=field.special,
+        limits=field.limits,
+        display=field.display,
+        summary=field.summary,
+        orders=Orders(field.byte_order, field.bit_order),
+        present_if=field.when,
+        source=source,
+    )
 
 
 def _decisive(field: Field) -> object:
@@ -270,24 +296,41 @@ class _Cut:
 
     def message(self, message: Message, names: dict[str, str]) -> Message:
         pair = self.match.messages[id(message)]
-        fields = {_place(side): p for p in pair.parts if (side := self.side_of(p)) is not None}
-        own: list[Field] = []
-        for one in message.lines:
-            if one.implied:
-                own.append(one)
-                continue
-            part = fields[_place(one)]
-            if id(part) not in self.kept or not _is_sound(one) or part.is_of_struct:
-                continue
-            enum = self.enums.get(id(one.enum), one.enum)
-            field = self.marked(one, part, enum=enum)
-            self.fields[id(part)] = field
-            own += field.elements
-        kept = message.with_fields(tuple(own))
-        fields_of_it = tuple(one for one in own if kept.tail or not one.implied)
-        made = self.marked(kept, pair, fields=fields_of_it, node=names.get(message.node, message.node))
+        layout = self.layout(message, pair)
+        made = message_with_lists(
+            self.marked(message, pair, layout=layout, node=names.get(message.node, message.node)), {}
+        )
         self.messages[id(pair)] = made
         return made
+
+    def layout(self, message: Message, pair: MessagePair) -> Layout:
+        """The layout of a message with the lines that are kept, each with its mark; structs are left out."""
+        layout = message.layout
+        parts = {_place(side): part for part in pair.parts if (side := self.side_of(part)) is not None}
+        members = [one for one in message.members if not one.implied]
+        nodes: dict[int, Any] = {}  # id(node) -> what is kept of it
+        for member, node in zip(members, layout.nodes, strict=True):
+            part = None if member.struct else parts[_place(member)]
+            if part is not None and id(part) in self.kept and _is_sound(member):
+                mark, enum = self.marks.of(part), self.enums.get(id(member.enum), member.enum)
+                nodes[id(node)] = with_attributes(node, source=mark, enum=enum)
+                self.fields[id(part)] = replace(member, source=mark, enum=enum)
+        known = {node.name for node in nodes.values()} | {one.name for one in message.fields if one.implied}
+        fixed = [nodes[id(node)] for node in layout.fixed if id(node) in nodes]
+        derived = [nodes[id(node)] for node in layout.derived if id(node) in nodes]
+        sequence: tuple[VariableNode, ...] = tuple(nodes[id(node)] for node in layout.sequence if id(node) in nodes)
+        length = layout.length
+        if any(part.name not in known or part.counter not in known for part in message.open_parts):
+            at = {member.name: member.at for member in members}
+            fixed += [_of_full_size(node, at[node.name]) for node in sequence]
+            sequence, length = (), layout.longest
+        return replace(
+            layout,
+            length=length,
+            fixed=tuple(fixed),
+            sequence=sequence,
+            derived=tuple(one for one in derived if known.issuperset(one.derivation.fields)),
+        )
 
     @cached_property
     def names(self) -> Names:
@@ -326,6 +369,14 @@ class _Cut:
             array = f"[{field.count}]" if field.count else ""
             return f"uint8_t{array}[{field.bits // 8}]" if field.is_bytes else f"{c.type_of(one)}{array}"
         return python.annotation(one).replace("_lazy.", "")
+
+
+def _of_full_size(node: VariableNode, at: int) -> VariableNode:
+    """Return a variable-length node as one of fixed size, at its position in the longest frame."""
+    most = size_of(node).most
+    if isinstance(node, Scalar):
+        return replace(node, at=at, bits=8 * most, length=None)
+    return with_attributes(node, at=at, size=most)
 
 
 def _place(field: Field) -> tuple[str, int]:

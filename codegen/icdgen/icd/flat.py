@@ -47,7 +47,7 @@ def fields_of(layout: Layout, structs: Structs) -> tuple[Field, ...]:
         begin += size.most * stride(node) // 8
         fields += member.elements
         if isinstance(size, Rest):
-            fields.append(_implied_counter(size.counter, begin, member))
+            fields.append(_implied_counter(size.counter, begin))
     fields += (_derived_field(node, begin) for node in layout.derived)
     return tuple(fields)
 
@@ -98,6 +98,11 @@ def message_with_lists(message: Message, structs: Structs) -> Message:
     )
 
 
+def _struct_of(layout: Layout, structs: Structs) -> Struct:
+    """Return a struct for a layout of which no node declares a struct, such as that of a changed copy."""
+    return Struct(layout.name, layout.length, fields_of(layout, structs), node=layout.owner, layout=layout)
+
+
 def _member(node: FixedNode, orders: Orders, structs: Structs) -> Field:
     """Return the field that stands for a whole node; `orders` are those that the layout declares."""
     own = node.orders.within(orders)
@@ -118,7 +123,7 @@ def _member(node: FixedNode, orders: Orders, structs: Structs) -> Field:
                 summary=node.summary,
                 byte_order=own.byte,
                 bit_order=own.bit,
-                struct=structs[id(layout)],
+                struct=structs.get(id(layout)) or _struct_of(layout, structs),
                 errata=node.errata,
                 source=node.source,
             )
@@ -163,7 +168,7 @@ def _variable_member(node: VariableNode, orders: Orders, structs: Structs) -> Fi
     return replace(_member(node, orders, structs), bits=8 * most)
 
 
-def _implied_counter(counter: Scalar, end: int, member: Field) -> Field:
+def _implied_counter(counter: Scalar, end: int) -> Field:
     """Return the field for a number of elements that only the length of the frame gives; it has no bits."""
     return Field(
         name=counter.name,
@@ -172,7 +177,7 @@ def _implied_counter(counter: Scalar, end: int, member: Field) -> Field:
         type="uint",
         identifier=counter.identifier,
         implied=True,
-        source=member.source,
+        source=counter.source,
     )
 
 

@@ -9,8 +9,8 @@ Read `icdgen.layout` next, which turns the position of a scalar into runs of bit
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import field, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import field
 from fractions import Fraction
 from math import gcd
 from typing import Any, Literal, NamedTuple, TypeAlias
@@ -320,30 +320,6 @@ def struct_layout_of(node: LayoutNode) -> Layout | None:
     """Return the layout of the struct that a node refers to; None if it refers to none."""
     item = node.item if isinstance(node, Array) else node
     return item.layout if isinstance(item, StructRef) else None
-
-
-def without_nodes(layout: Layout, is_left_out: Callable[[LayoutNode], bool]) -> Layout:
-    """Return a layout without some of its own nodes; the same object if all of them stay.
-
-    A value that is derived from a node that is left out is left out, too. So are all variable-length nodes if one of
-    them, or a field that counts one of them, is left out: their positions depend on each other.
-    """
-    if not any(map(is_left_out, layout.nodes)):
-        return layout
-    fixed = tuple(node for node in layout.fixed if not is_left_out(node))
-    names = {node.name for node in fixed}
-    sequence = layout.sequence
-    for node in layout.sequence:
-        size = size_of(node)
-        if is_left_out(node) or (isinstance(size, Counted) and size.counter not in names):
-            sequence = ()
-    names.update(node.name for node in sequence)
-    derived: list[Derived] = []
-    for value in layout.derived:  # each may be derived from those in front of it
-        if not is_left_out(value) and names.issuperset(value.derivation.fields):
-            derived.append(value)
-            names.add(value.name)
-    return replace(layout, fixed=fixed, sequence=sequence, derived=tuple(derived))
 
 
 def counter_of_rest(name: str, identifier: str | None, is_array: bool, most: int, source: Map) -> Scalar:

@@ -6,6 +6,9 @@ import random
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+from icdgen.icd.flat import message_with_lists
+from icdgen.icd.layout import scalar_of, walk
+from icdgen.icd.layout_copies import with_enum
 from icdgen.icd.model import Enum, Icd, Message, Node
 from tests.diff.edits import BEYOND, EDITS
 
@@ -56,17 +59,26 @@ def piece(icd: Icd, node: Node, messages: tuple[Message, ...], name: str) -> Icd
     """The messages and the enumerations that they use, as a node of their own."""
     made: dict[int, Enum] = {}
 
-    def enum(one: Enum | None) -> Enum | None:
-        if one is not None and id(one) not in made:
-            made[id(one)] = replace(one, node=name)
-        return made.get(id(one))
+    def own(message: Message) -> Message:
+        layout = replace(message.layout, owner=name)
+        for visit in walk(message.layout, node.orders):
+            scalar = scalar_of(visit.node)
+            if scalar is not None and scalar.enum is not None:
+                enum = made.setdefault(id(scalar.enum), replace(scalar.enum, node=name))
+                layout = with_enum(layout, scalar.enum, enum)
+        return message_with_lists(replace(message, node=name, contains=(), layout=layout), {})
 
-    own = tuple(
-        replace(m, node=name, contains=(), fields=tuple(replace(f, enum=enum(f.enum)) for f in m.fields))
-        for m in messages
-    )
+    own_messages = tuple(map(own, messages))
     cut = replace(
-        node, name=name, messages=own, enums=tuple(made.values()), includes=(), loggable=(), missing=(), protocol={}, errata=(),
+        node,
+        name=name,
+        messages=own_messages,
+        enums=tuple(made.values()),
+        includes=(),
+        loggable=(),
+        missing=(),
+        protocol={},
+        errata=(),
         digest="0" * 64,
-    )  # fmt: skip
+    )
     return Icd((cut,))

@@ -7,7 +7,10 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import wraps
 
-from icdgen.icd.model import Enum, Field, Icd, Message, Node
+from icdgen.icd import layout_copies
+from icdgen.icd.flat import message_with_lists
+from icdgen.icd.layout import Layout, Scalar
+from icdgen.icd.model import Enum, Icd, Message, Node
 from icdgen.naming import words
 
 
@@ -57,20 +60,24 @@ def with_message(icd: Icd, node: Node, old: Message, *new: Message) -> Icd:
     return with_node(icd, node, replace(node, messages=tuple(messages)))
 
 
-def with_fields(icd: Icd, node: Node, message: Message, fields: list[Field], **more: object) -> Icd:
-    return with_message(icd, node, message, replace(message, fields=tuple(fields), **more))
+def with_layout(icd: Icd, node: Node, message: Message, layout: Layout) -> Icd:
+    return with_message(icd, node, message, message_with_lists(replace(message, layout=layout), {}))
 
 
-def with_field(icd: Icd, node: Node, message: Message, old: Field, new: Field) -> Icd:
-    return with_fields(icd, node, message, [new if one is old else one for one in message.fields])
+def with_fields(icd: Icd, node: Node, message: Message, fields: list[Scalar], **more: object) -> Icd:
+    """Puts other scalars in the place of those of a message, all other nodes stay; ``more`` is of the layout."""
+    others = [one for one in message.layout.fixed if not isinstance(one, Scalar)]
+    return with_layout(icd, node, message, replace(message.layout, fixed=(*fields, *others), **more))
+
+
+def with_field(icd: Icd, node: Node, message: Message, old: Scalar, new: Scalar) -> Icd:
+    return with_layout(icd, node, message, layout_copies.with_node(message.layout, old, new))
 
 
 def with_enum(icd: Icd, old: Enum, new: Enum) -> Icd:
-    def field(one: Field) -> Field:
-        return replace(one, enum=new) if one.enum is old else one
-
     def message(one: Message) -> Message:
-        return replace(one, fields=tuple(map(field, one.fields))) if any(f.enum is old for f in one.fields) else one
+        layout = layout_copies.with_enum(one.layout, old, new)
+        return one if layout is one.layout else message_with_lists(replace(one, layout=layout), {})
 
     return Icd(
         tuple(
@@ -98,8 +105,13 @@ def pick(rng: random.Random, items: Iterator | list):
     return rng.choice(items) if items else None
 
 
-def fields_of(icd: Icd, wanted: Callable[[Field], bool] = lambda f: True) -> list[tuple[Node, Message, Field]]:
-    return [(n, m, f) for n in icd.nodes for m in n.messages for f in m.fields if wanted(f)]
+def scalars(message: Message) -> list[Scalar]:
+    """The fields of a message that are no array, struct or overlay."""
+    return [one for one in message.layout.fixed if isinstance(one, Scalar)]
+
+
+def fields_of(icd: Icd, wanted: Callable[[Scalar], bool] = lambda f: True) -> list[tuple[Node, Message, Scalar]]:
+    return [(n, m, f) for n in icd.nodes for m in n.messages for f in scalars(m) if wanted(f)]
 
 
 def messages_of(icd: Icd, wanted: Callable[[Message], bool] = lambda m: True) -> list[tuple[Node, Message]]:
@@ -110,13 +122,13 @@ def members_of(icd: Icd) -> list[tuple[Enum, int]]:
     return [(e, i) for n in icd.nodes for e in n.enums for i in range(len(e.members))]
 
 
-def is_plain(field: Field) -> bool:
+def is_plain(field: Scalar) -> bool:
     """A number without anything that depends on its range."""
     return field.type in ("uint", "int") and field.const is None and not field.special and not field.limits
 
 
 def is_free(message: Message, name: str) -> bool:
-    return all(words(f.name) != words(name) and f.name != name for f in message.fields)
+    return all(words(f.name) != words(name) and f.name != name for f in message.layout.nodes)
 
 
 def free_id(icd: Icd) -> int | None:
@@ -127,7 +139,7 @@ def free_id(icd: Icd) -> int | None:
 # Edits of one thing, chosen at random
 
 
-def on_field(wanted: Callable[[Field], bool] = lambda f: True, **kind: bool) -> Callable[[Callable], Edit]:
+def on_field(wanted: Callable[[Scalar], bool] = lambda f: True, **kind: bool) -> Callable[[Callable], Edit]:
     """Registers ``function(icd, rng, node, message, field)``."""
     return _on(lambda icd: fields_of(icd, wanted), kind)
 

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from icdgen.icd.model import CONFIGURATION, TELECOMMAND, Field, Message
+from icdgen.icd.flat import message_with_lists
+from icdgen.icd.layout import Layout, Scalar, overlay_of
+from icdgen.icd.model import CONFIGURATION, TELECOMMAND, Message
 from icdgen.layout import gaps
 from tests.diff.edits.edit import (
     done,
@@ -17,8 +19,10 @@ from tests.diff.edits.edit import (
     on_field,
     on_message,
     pick,
+    scalars,
     with_field,
     with_fields,
+    with_layout,
     with_message,
     with_node,
 )
@@ -41,7 +45,7 @@ def swap_fields(icd, rng):
     found = [
         (n, m, a, b)
         for n, m, a in fields_of(icd)
-        for b in m.fields
+        for b in scalars(m)
         if a.at < b.at and a.bits == b.bits and (a.is_bytes) == (b.is_bytes)
     ]
     one = pick(rng, found)
@@ -49,7 +53,7 @@ def swap_fields(icd, rng):
         return None
     node, message, a, b = one
     places = {id(a): b.at, id(b): a.at}
-    fields = [replace(f, at=places.get(id(f), f.at)) for f in message.fields]
+    fields = [replace(f, at=places.get(id(f), f.at)) for f in scalars(message)]
     return done(with_fields(icd, node, message, fields), message.name, "DIF107")
 
 
@@ -62,27 +66,27 @@ def insert_field(icd, rng):
     if one is None:
         return None
     node, message, field = one
-    new = Field("Inserted", field.at, 8, "uint")
-    fields = [replace(f, at=f.at + 8) if f.at >= field.at else f for f in message.fields]
-    edited = with_fields(icd, node, message, [*fields, new], length=message.length + 1)
+    new = Scalar(name="Inserted", at=field.at, bits=8, type="uint")
+    fields = [replace(f, at=f.at + 8) if f.at >= field.at else f for f in scalars(message)]
+    edited = with_fields(icd, node, message, [*fields, new], length=message.layout.length + 1)
     return done(edited, message.name, "DIF106", "DIF108", "DIF311")
 
 
 def _cut_at(message: Message, bit: int) -> bool:
     """Whether no field lies across the bit."""
-    return not any(f.at < bit < f.at + f.bits for f in message.fields)
+    return not any(f.at < bit < f.at + f.bits for f in message.layout.fixed)
 
 
 @on_message(lambda m: is_free(m, "Appended"))
 def append_field(icd, rng, node, message):
-    new = Field("Appended", message.length * 8, 16, "int")
-    edited = with_fields(icd, node, message, [*message.fields, new], length=message.length + 2)
+    new = Scalar(name="Appended", at=message.layout.length * 8, bits=16, type="int")
+    edited = with_fields(icd, node, message, [*scalars(message), new], length=message.layout.length + 2)
     return done(edited, message.name, "DIF106", "DIF311")
 
 
 @on_field()
 def drop_field(icd, rng, node, message, field):
-    edited = with_fields(icd, node, message, [f for f in message.fields if f is not field])
+    edited = with_fields(icd, node, message, [f for f in scalars(message) if f is not field])
     return done(edited, message.name, "DIF113", "DIF306")
 
 
@@ -93,9 +97,9 @@ def take_field_out(icd, rng):
     if one is None:
         return None
     node, message, field = one
-    rest = [f for f in message.fields if f is not field]
+    rest = [f for f in scalars(message) if f is not field]
     fields = [replace(f, at=f.at - field.bits) if f.at > field.at else f for f in rest]
-    edited = with_fields(icd, node, message, fields, length=message.length - field.bits // 8)
+    edited = with_fields(icd, node, message, fields, length=message.layout.length - field.bits // 8)
     behind = [f for f in rest if f.at > field.at]
     must = ("DIF106", "DIF306", *(("DIF108",) if behind else ()))
     return done(edited, message.name, *must, may=() if behind else ("DIF113",))
@@ -108,8 +112,8 @@ def fill_gap(icd, rng):
     if one is None:
         return None
     node, message, gap = one
-    new = Field("Filler", gap.at, min(gap.bits, 8), "uint")
-    return done(with_fields(icd, node, message, [*message.fields, new]), message.name, "DIF114", "DIF311")
+    new = Scalar(name="Filler", at=gap.at, bits=min(gap.bits, 8), type="uint")
+    return done(with_fields(icd, node, message, [*scalars(message), new]), message.name, "DIF114", "DIF311")
 
 
 @on_field(lambda f: is_plain(f) and f.bits > 1)
@@ -125,10 +129,10 @@ def add_view(icd, rng, node, message, field):
         unit=None,
         scale=None,
         formula="",
-        view=True,
     )
     new = replace(new, const=None, special=(), limits=None, enum=None, errata=())
-    edited = with_fields(icd, node, message, [*message.fields, new])
+    layout = replace(message.layout, fixed=(*message.layout.fixed, overlay_of(new)))
+    edited = with_layout(icd, node, message, layout)
     return done(edited, message.name, "DIF311")
 
 
@@ -153,7 +157,8 @@ def make_bytes(icd, rng, node, message, field):
 
 @on_message()
 def change_length(icd, rng, node, message):
-    return done(with_message(icd, node, message, replace(message, length=message.length + 1)), message.name, "DIF106")
+    longer = replace(message.layout, length=message.layout.length + 1)
+    return done(with_layout(icd, node, message, longer), message.name, "DIF106")
 
 
 @edit()
@@ -191,9 +196,9 @@ def add_message(icd, rng):
     number, one = free_id(icd), pick(rng, icd.nodes)
     if number is None or any(m.name == "Added" for m in one.messages):
         return None
-    new = Message(
-        "Added", rng.choice([TELECOMMAND, "telemetry"]), 1, (Field("Level", 0, 8, "uint"),), number, node=one.name
-    )
+    layout = Layout("Added", 1, (Scalar(name="Level", bits=8, type="uint"),))
+    kind = rng.choice([TELECOMMAND, "telemetry"])
+    new = message_with_lists(Message("Added", kind, 1, (), number, node=one.name, layout=layout), {})
     return done(with_node(icd, one, replace(one, messages=(*one.messages, new))), "Added", "DIF102", "DIF311")
 
 
@@ -205,7 +210,7 @@ def change_kind(icd, rng, node, message):
 
 @edit()
 def turn_byte_order(icd, rng):
-    found = [n for n in icd.nodes if any(not f.is_bytes and f.bits > 8 for m in n.messages for f in m.fields)]
+    found = [n for n in icd.nodes if any(not f.is_bytes and f.bits > 8 for m in n.messages for f in scalars(m))]
     node = pick(rng, found)
     if node is None:
         return None
@@ -215,13 +220,14 @@ def turn_byte_order(icd, rng):
 
 @edit()
 def turn_field(icd, rng):
-    found = fields_of(icd, lambda f: f.type in ("uint", "int", "float") and f.bits > 8 and not f.byte_order)
-    one = pick(rng, found)
+    found = fields_of(icd, lambda f: f.type in ("uint", "int", "float") and f.bits > 8)
+    one = pick(rng, [(n, m, f) for n, m, f in found if not f.orders.within(m.layout.orders).byte])
     if one is None:
         return None
     node, message, field = one
     other = {"little": "big", "big": "little"}[node.byte_order]
-    return done(with_field(icd, node, message, field, replace(field, byte_order=other)), message.name, "DIF117")
+    turned = replace(field, orders=replace(field.orders, byte=other))
+    return done(with_field(icd, node, message, field, turned), message.name, "DIF117")
 
 
 @edit(beyond=True)

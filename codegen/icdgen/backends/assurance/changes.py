@@ -9,18 +9,31 @@ from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 from itertools import product
-from operator import is_
 from typing import Any, NamedTuple, TypeVar
 
-from icdgen import layout
 from icdgen.icd import floats
 from icdgen.icd.build import calibration, special
 from icdgen.icd.curve import OUTSIDE, Curve, doubles, table
-from icdgen.icd.derived import Derivation, parse
+from icdgen.icd.derived import parse
+from icdgen.icd.flat import message_with_lists
 from icdgen.icd.formula import FormulaError
+from icdgen.icd.layout import (
+    Array,
+    Counted,
+    Derived,
+    Layout,
+    LayoutNode,
+    Limits,
+    Orders,
+    Scalar,
+    scalar_of,
+    size_of,
+    stride,
+)
+from icdgen.icd.layout_copies import with_attributes
 from icdgen.icd.located import Map, plain
-from icdgen.icd.model import Enum, Field, Limits, Member, Message, Node, Struct
-from icdgen.icd.paths import members_of
+from icdgen.icd.model import Enum, Member, Message, Node
+from icdgen.layout import Piece, pieces_at
 
 OTHER_TYPES = {
     "uint": ("int", "float", "bytes", "bool"),
@@ -33,7 +46,7 @@ OTHER_TYPES = {
 }
 """Types that a field of the same width could be instead."""
 
-T = TypeVar("T", Field, Message, Node, Member)
+T = TypeVar("T", Message, Node, Member)
 _OTHER_ORDER = {"little": "big", "big": "little", "lsb0": "msb0", "msb0": "lsb0"}
 _WIDER = {**dict.fromkeys(("uint", "int", "enum"), (-1, 1)), **dict.fromkeys(("bytes", "text"), (-8, 8))}
 _LIMITS = ("min", "max", "above", "below")
@@ -50,104 +63,118 @@ class Change(NamedTuple):
     now: object
 
 
-def of_field(field: Field, message: Message | Struct, node: Node) -> Iterator[tuple[Change, Field]]:
-    """The changes of a member, and what it would be; none that no field of such a type or no frame of such a length can have."""
-    size, count = 8 * message.length, field.count or 1
-    source = field.source
-    parts = message.open_parts
-    if any(part.name == field.name for part in parts):
-        # how many elements there are, and where, is no change of a field
-        if not field.is_bytes and field.struct is None:
-            yield from (*_types(field), *_formulas(field), *_values(field))
+def of_line(node: LayoutNode, layout: Layout, orders: Orders) -> Iterator[tuple[Change, LayoutNode]]:
+    """List the changes of a line of a message or struct, each with the node that it gives.
+
+    Left out are changes that no field of such a type, or no frame of such a length, can have. `orders` are those of the
+    ICD node.
+    """
+    scalar = scalar_of(node)
+    if isinstance(node, Derived):
+        yield from _derived(node)
         return
-    if parts and isinstance(message, Message):
-        size = 8 * message.fixed
-        if any(part.counter == field.name for part in parts):
-            return  # it counts the elements: as another field it may count none
-    if field.derived is not None:
-        yield from _derived(field, field.derived)
+    if any(node is part for part in layout.sequence):
+        # Size and position of a variable-length part are no attributes of a field.
+        if scalar is not None and not scalar.is_bytes:
+            yield from (*_types(node, scalar), *_formulas(node, scalar), *_values(node, scalar))
         return
-    if isinstance(message, Message) and any(one.field == field.name for other in message.fields for one in other.when):
-        return  # others depend on it: as another field it may decide nothing
-    yield from _of_conditions(field, message)
-    for step in (-8, 8) if field.is_bytes or field.struct is not None else (-8, -1, 1, 8):
-        if 0 <= field.at + step <= size - field.width:
-            yield _step("offset", source, "at", field.at, step), replace(field, at=field.at + step)
-    for step in _WIDER.get(field.type, ()):
-        if 0 < (field.bits + step) * count <= size - field.at:
-            yield _step("width", source, "bits", field.bits, step), replace(field, bits=field.bits + step)
-    for step in (-1, 1) if field.count else ():
-        if 0 < field.count + step <= (size - field.at) // field.bits:
-            yield _step("count", source, "count", field.count, step), replace(field, count=field.count + step)
-    yield from _readings(field, node)
+    sizes = map(size_of, layout.sequence)
+    counters = {size.counter for size in sizes if isinstance(size, Counted)}
+    conditions = {one.field for other in layout.nodes for one in other.present_if}
+    if node.name in counters | conditions:
+        return  # other parts of the frame depend on its value
+    yield from _of_conditions(node, layout)
+    size, bits, source = 8 * layout.length, stride(node), node.source
+    count = node.size if isinstance(node, Array) and isinstance(node.size, int) else 1
+    for step in (-8, 8) if scalar is None or scalar.is_bytes else (-8, -1, 1, 8):
+        if 0 <= node.at + step <= size - bits * count:
+            yield _step("offset", source, "at", node.at, step), with_attributes(node, at=node.at + step)
+    for step in _WIDER.get(scalar.type, ()) if scalar else ():
+        if 0 < (bits + step) * count <= size - node.at:
+            yield _step("width", source, "bits", bits, step), with_attributes(node, bits=bits + step)
+    for step in (-1, 1) if isinstance(node, Array) else ():
+        if 0 < count + step <= (size - node.at) // bits:
+            yield _step("count", source, "count", count, step), with_attributes(node, size=count + step)
+    if scalar is not None:
+        yield from _types(node, scalar)
+    yield from _of_orders(node, layout.orders.within(orders))
+    if scalar is not None:
+        yield from (*_formulas(node, scalar), *_values(node, scalar))
 
 
-def _derived(field: Field, old: Derivation) -> Iterator[tuple[Change, Field]]:
-    """The changes of the formula by which it is derived."""
-    for text in formulas(field.formula):
-        with suppress(FormulaError):  # it would be none, or the number is one of a name
+def _derived(node: Derived) -> Iterator[tuple[Change, LayoutNode]]:
+    """List the changes of the formula of a derived value."""
+    old, formula = node.derivation, node.scalar.formula
+    for text in formulas(formula):
+        with suppress(FormulaError):  # not a formula any more, or the number is part of a name
             new = parse(text, old.fields)
             if new.sense({}) != old.sense({}):
-                change = Change("formula", field.source, "formula", field.formula, text)
-                yield change, replace(field, formula=text, derived=new)
+                change = Change("formula", node.source, "formula", formula, text)
+                yield change, with_attributes(node, formula=text, derivation=new)
 
 
-def _of_conditions(field: Field, message: Message | Struct) -> Iterator[tuple[Change, Field]]:
-    """The changes of a value that another field must have, where one is said, by its number, to others that it can have."""
-    known = {one.name: one for one in message.fields}
-    for place, one in enumerate(field.when):
-        said, other = field.source["when"].get(one.field), known[one.field]
-        for step in (-1, 1) if type(said) is int else ():
-            if not other.raw_min <= said + step <= other.raw_max:
+def _of_conditions(node: LayoutNode, layout: Layout) -> Iterator[tuple[Change, LayoutNode]]:
+    """List the changes of a value that another field must have, if the ICD states it as a number."""
+    scalars = {other.name: scalar for other in layout.nodes if (scalar := scalar_of(other)) is not None}
+    for place, condition in enumerate(node.present_if):
+        value, other = node.source["when"].get(condition.field), scalars[condition.field]
+        for step in (-1, 1) if type(value) is int else ():
+            if not other.raw_min <= value + step <= other.raw_max:
                 continue
-            now = replace(one, values=(said + step,))
-            changed = (*field.when[:place], now, *field.when[place + 1 :])
-            yield _step("condition", field.source["when"], one.field, said, step), replace(field, when=changed)
+            now = replace(condition, values=(value + step,))
+            present_if = (*node.present_if[:place], now, *node.present_if[place + 1 :])
+            change = _step("condition", node.source["when"], condition.field, value, step)
+            yield change, with_attributes(node, present_if=present_if)
 
 
-def _readings(field: Field, node: Node) -> Iterator[tuple[Change, Field]]:
-    """Changes of how its bits are read."""
-    yield from _types(field)
-    for key, order in zip(("byte_order", "bit_order"), field.orders(node), strict=True):
-        other = _with(field, key, _OTHER_ORDER[order])
-        if key in field.source and not field.is_bytes and layout.pieces(other, node) != layout.pieces(field, node):
-            yield Change(key.replace("_", " "), field.source, key, order, _OTHER_ORDER[order]), other
-    yield from _formulas(field)
-    yield from _values(field)
-
-
-def _types(field: Field) -> Iterator[tuple[Change, Field]]:
-    source = field.source
-    for kind in OTHER_TYPES[field.type] if "type" in source and "enum" not in source else ():
-        if _can_be(field, kind):
-            scale, curve = calibration(field.formula, kind)
-            if "points" in source and kind in ("uint", "int", "float"):
-                curve = field.curve
-            yield Change("type", source, "type", field.type, kind), replace(field, type=kind, scale=scale, curve=curve)
-
-
-def _formulas(field: Field) -> Iterator[tuple[Change, Field]]:
-    """The changes of what the physical value is computed by."""
-    if field.curve is not None and field.curve.points:
-        yield from _tables(field, field.curve)
+def _of_orders(node: LayoutNode, around: Orders) -> Iterator[tuple[Change, LayoutNode]]:
+    """List the changes of the orders of a line; `around` are those in effect around it."""
+    own, scalar = node.orders.within(around), scalar_of(node)
+    if scalar is not None and scalar.is_bytes:
         return
-    for text in formulas(field.formula) if field.has_formula else ():
-        scale, curve = calibration(text, field.type)
+    for key, name in (("byte_order", "byte"), ("bit_order", "bit")):
+        order = getattr(own, name)
+        other = replace(own, **{name: _OTHER_ORDER[order]})
+        places = (pieces_at(node.at, stride(node), one.byte, one.bit) for one in (own, other))
+        if key in node.source and next(places) != next(places):
+            change = Change(key.replace("_", " "), node.source, key, order, _OTHER_ORDER[order])
+            yield change, with_attributes(node, orders=replace(node.orders, **{name: _OTHER_ORDER[order]}))
+
+
+def _types(node: LayoutNode, scalar: Scalar) -> Iterator[tuple[Change, LayoutNode]]:
+    source = node.source
+    for kind in OTHER_TYPES[scalar.type] if "type" in source and "enum" not in source else ():
+        if _can_be(node, scalar, kind):
+            scale, curve = calibration(scalar.formula, kind)
+            if "points" in source and kind in ("uint", "int", "float"):
+                curve = scalar.curve
+            change = Change("type", source, "type", scalar.type, kind)
+            yield change, with_attributes(node, type=kind, scale=scale, curve=curve)
+
+
+def _formulas(node: LayoutNode, scalar: Scalar) -> Iterator[tuple[Change, LayoutNode]]:
+    """List the changes of the calibration."""
+    if scalar.curve is not None and scalar.curve.points:
+        yield from _tables(node, scalar, scalar.curve)
+        return
+    for text in formulas(scalar.formula) if scalar.has_formula else ():
+        scale, curve = calibration(text, scalar.type)
         if scale is not None or curve is not None:  # else its factor would be 0
-            change = Change("formula", field.source, "formula", field.formula, text)
-            yield change, replace(field, scale=scale, curve=curve)
+            change = Change("formula", node.source, "formula", scalar.formula, text)
+            yield change, with_attributes(node, scale=scale, curve=curve)
 
 
-def _tables(field: Field, old: Curve) -> Iterator[tuple[Change, Field]]:
-    source, said, outside = field.source, plain(field.source["points"]), field.source.get("outside", "")
-    others = [(Change("points", source, "points", said, points), points, outside) for points in tables(said)]
-    if outside and (field.type == "float" or not old.holds(field.raw_min, field.raw_max)):
-        others += [(Change("outside", source, "outside", outside, now), said, now) for now in OUTSIDE if now != outside]
-    for change, points, around in others:
-        with suppress(FormulaError):  # it would be none
-            new = table(doubles(points), around)
+def _tables(node: LayoutNode, scalar: Scalar, old: Curve) -> Iterator[tuple[Change, LayoutNode]]:
+    source, printed, outside = node.source, plain(node.source["points"]), node.source.get("outside", "")
+    others = [(Change("points", source, "points", printed, points), points, outside) for points in tables(printed)]
+    if outside and (scalar.type == "float" or not old.holds(scalar.raw_min, scalar.raw_max)):
+        words = (word for word in OUTSIDE if word != outside)
+        others += [(Change("outside", source, "outside", outside, word), printed, word) for word in words]
+    for change, points, beyond in others:
+        with suppress(FormulaError):  # not a lookup table any more
+            new = table(doubles(points), beyond)
             if new != old:
-                yield change, replace(field, curve=new)
+                yield change, with_attributes(node, curve=new)
 
 
 def tables(points: list[list[Any]]) -> Iterator[list[list[Any]]]:
@@ -159,40 +186,34 @@ def tables(points: list[list[Any]]) -> Iterator[list[list[Any]]]:
         yield [*points[:index], point, *points[index + 1 :]]
 
 
-def with_struct(fields: tuple[Field, ...], old: Struct, new: Struct) -> tuple[Field, ...]:
-    """The fields of a message, or of a struct, in which a struct is another; the same if it does not stand there."""
-    members, found = members_of(fields), []
-    for one in members:
-        if one.struct is not None:
-            inner = new.fields if one.struct is old else with_struct(one.struct.fields, old, new)
-            one = one if inner is one.struct.fields else replace(one, struct=replace(one.struct, fields=inner))
-        found.append(one)
-    if all(map(is_, members, found)):
-        return fields
-    return tuple(element for one in found for element in one.elements)
-
-
-def _values(field: Field) -> Iterator[tuple[Change, Field]]:
-    """Changes of the values that have a meaning."""
-    if field.const is not None:
+def _values(node: LayoutNode, scalar: Scalar) -> Iterator[tuple[Change, LayoutNode]]:
+    """List the changes of values that have a meaning."""
+    if scalar.const is not None:
         for step in (-1, 1):
-            yield _step("const", field.source, "const", field.const, step), replace(field, const=field.const + step)
-    for index, old in enumerate(field.special):
-        source = field.source["special"][index]
+            change = _step("const", node.source, "const", scalar.const, step)
+            yield change, with_attributes(node, const=scalar.const + step)
+    for index, old in enumerate(scalar.special):
+        source = node.source["special"][index]
         named = [name for name in floats.NAMED if old.number in floats.NAMED and name != old.number]
         for now in named or [source["value"] + step for step in (-1, 1)]:
-            new = special(field.type, field.bits, now, old.meaning)
+            new = special(scalar.type, scalar.bits, now, old.meaning)
             if new is not None and new != old:
                 change = Change("special", source, "value", source["value"], now)
-                yield change, replace(field, special=(*field.special[:index], new, *field.special[index + 1 :]))
-    held = field.limits or Limits()
+                specials = (*scalar.special[:index], new, *scalar.special[index + 1 :])
+                yield change, with_attributes(node, special=specials)
+    limits = scalar.limits or Limits()
     for key in _LIMITS:
-        value: Fraction | None = getattr(held, key)
+        value: Fraction | None = getattr(limits, key)
+        if value is None:
+            continue
         for step in (-1, 1):
-            if value is None:
-                break
-            limits = replace(held, **{key: value + step})
-            yield _step("limit", field.source, key, field.source[key], step), replace(field, limits=limits)
+            change = _step("limit", node.source, key, node.source[key], step)
+            yield change, with_attributes(node, limits=replace(limits, **{key: value + step}))
+
+
+def with_layout(message: Message, layout: Layout) -> Message:
+    """Return a message with another layout."""
+    return message_with_lists(replace(message, layout=layout), {})
 
 
 def of_message(message: Message, node: Node) -> Iterator[tuple[Change, Message]]:
@@ -200,18 +221,22 @@ def of_message(message: Message, node: Node) -> Iterator[tuple[Change, Message]]
     source = message.source
     for key in ("id", "set_id", "get_id", "length"):
         value = getattr(message, key)
-        if key == "length" and message.tail is not None:
-            continue  # what is open begins where it ends
+        if key == "length" and message.layout.sequence:
+            continue  # the variable-length part begins where the fixed part ends
         for step in (-1, 1) if value is not None else ():
             if value + step >= 0:
-                kind = "length" if key == "length" else "id"
-                yield _step(kind, source, key, value, step), _with(message, key, value + step)
-    for key in ("byte_order", "bit_order"):
+                if key == "length":
+                    layout = replace(message.layout, length=value + step)
+                    yield _step("length", source, key, value, step), with_layout(message, layout)
+                else:
+                    yield _step("id", source, key, value, step), _with(message, key, value + step)
+    for key, name in (("byte_order", "byte"), ("bit_order", "bit")):
         if key in source:
             now = _OTHER_ORDER[source[key]]
-            fields = tuple(one if key in one.source else _with(one, key, now) for one in message.fields)
-            if not _same_places(message.fields, node, fields, node):
-                yield Change(key.replace("_", " "), source, key, source[key], now), replace(message, fields=fields)
+            orders = replace(message.layout.orders, **{name: now})
+            layout = replace(message.layout, orders=orders)
+            if _places(message.layout, node.orders) != _places(layout, node.orders):
+                yield Change(key.replace("_", " "), source, key, source[key], now), with_layout(message, layout)
 
 
 def of_node(node: Node) -> Iterator[tuple[Change, Node]]:
@@ -221,11 +246,11 @@ def of_node(node: Node) -> Iterator[tuple[Change, Node]]:
         value = getattr(node, key)
         for step in (-1, 1) if value is not None else ():
             yield _step("node", source, key, value, step), _with(node, key, value + step)
-    every = tuple(field for message in node.messages for field in message.fields)
     for key in ("byte_order", "bit_order"):
         now = _OTHER_ORDER[getattr(node, key)]
         other = _with(node, key, now)
-        if not _same_places(every, node, every, other):
+        layouts = [message.layout for message in node.messages]
+        if any(_places(layout, node.orders) != _places(layout, other.orders) for layout in layouts):
             yield Change(key.replace("_", " "), source, key, getattr(node, key), now), other
 
 
@@ -266,22 +291,23 @@ def _step(kind: str, source: Map, key: str, value: float, step: int) -> Change:
     return Change(kind, source, key, old, old + step)
 
 
-def _can_be(field: Field, kind: str) -> bool:
-    """Whether a field of this width and with what else its line says may be of that type."""
-    if field.type == "float" and field.special:
+def _can_be(node: LayoutNode, scalar: Scalar, kind: str) -> bool:
+    """Return whether a scalar of this width, with the other keys of its line, can have a type."""
+    if scalar.type == "float" and scalar.special:
         return False
     if kind in ("uint", "int"):
-        return field.bits <= 64
-    if any(key in field.source for key in _OF_SCALED):
+        return scalar.bits <= 64
+    if any(key in node.source for key in _OF_SCALED):
         return False
     if kind == "bool":
-        return field.bits == 1
+        return scalar.bits == 1
     if kind == "float":
-        return field.bits in (32, 64)
-    return not field.count and field.bits % 8 == field.at % 8 == 0
+        return scalar.bits in (32, 64)
+    return not isinstance(node, Array) and scalar.bits % 8 == node.at % 8 == 0
 
 
-def _same_places(fields: tuple[Field, ...], node: Node, others: tuple[Field, ...], other: Node) -> bool:
-    """Whether every bit lies where it lay."""
-    pairs = zip(fields, others, strict=True)
-    return all(a.is_bytes or layout.pieces(a, node) == layout.pieces(b, other) for a, b in pairs)
+def _places(layout: Layout, orders: Orders) -> list[tuple[Piece, ...]]:
+    """Return the bits of the longest frame that each number has."""
+    fields = layout.frame(orders)
+    numbers = (one for one in fields if one.role in ("field", "overlay") and not one.scalar.is_bytes)
+    return [pieces_at(one.at, one.bits, one.byte_order, one.bit_order) for one in numbers]

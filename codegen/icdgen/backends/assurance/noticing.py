@@ -6,7 +6,7 @@ line of a field its fresh, special and least values, the numbers that it refuses
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
 from itertools import accumulate
@@ -14,7 +14,10 @@ from operator import or_
 from typing import Any
 
 from icdgen import codec
-from icdgen.icd.model import Field, Message, Node
+from icdgen.backends.assurance.changes import with_layout
+from icdgen.icd.layout import FrameField, Layout, Orders, overlay_of
+from icdgen.icd.layout_copies import with_enum
+from icdgen.icd.model import Enum, Field, Message, Node
 from icdgen.vectors.lines import MessageLines
 from icdgen.vectors.make import MessageVectors, Raw, Row, known_text
 from icdgen.vectors.settings import NEVER, bits_of, float_of
@@ -29,44 +32,64 @@ class MessageWatch:
     def __init__(self, node: Node, vectors: MessageVectors, lines: MessageLines) -> None:
         self.node, self.message, self.vectors, self.lines = node, vectors.message, vectors, lines
 
-    def field(self, index: int, now: Field) -> list[int]:
-        """Lines that notice that a field is another."""
+    def layout(self, now: Message) -> list[int]:
+        """Return the lines that notice another layout of the message."""
+        olds = self.message.fields
+        if [old.name for old in olds] != [field.name for field in now.fields]:
+            return self.places(now, self.node)
+        changed = [
+            (index, old, new) for index, (old, new) in enumerate(zip(olds, now.fields, strict=True)) if old != new
+        ]
+        if len(changed) > 1 and any(_place(old) != _place(new) for _, old, new in changed):
+            # A field can take bits that another one leaves.
+            lines = [self.lines.fields[old.name] for _, old, new in changed if self._line_notices(old, new)]
+            return lines + self.places(now, self.node)
+        return [line for index, _, new in changed for line in self.field(index, new, now)]
+
+    def field(self, index: int, now: Field, message: Message) -> list[int]:
+        """Return the lines that notice another field at an index of the message, which then is ``message``."""
         old = self.message.fields[index]
         if now.derived is not None:
-            changed = replace(self.message, fields=(*self.message.fields[:index], now))
             pairs = zip(self.lines.rows, self.vectors.rows, strict=True)
-            return [line for line, row in pairs if codec.derived(changed, row.raw)[now.name] != row.raw[now.name]]
+            return [
+                line for line, row in pairs if codec.derived(message, row.raw).get(now.name) != row.raw.get(now.name)
+            ]
         found = [self.lines.fields[old.name]] if self._line_notices(old, now) else []
+        frame = message.layout.frame(self.node.orders)
         needed = {one.field for one in (*old.when, *now.when)}
-        others = tuple(one for one in self.message.fields if one.name in needed)
-        alone = replace(self.message, fields=(now, *others), tail=None, inner=())
+        alone = self._alone(frame[index], *(one for one in frame if one.name in needed))
         rows = zip(self.lines.rows, self.vectors.rows, self._of_others[index], strict=True)
         return found + [number for number, row, others in rows if _notices(row, old, now, self.node, alone, others)]
 
-    def member(self, place: int, old: Field, now: Field) -> list[int]:
-        """Lines that notice that a member is another; it begins with the field at ``place``, and an array has more of them."""
-        if (old.count or old.struct) and _place(old) != _place(now):
-            fields = self.message.fields
-            return self.places((*fields[:place], *now.elements, *fields[place + len(old.elements) :]), self.node)
-        return [line for index, one in enumerate(now.elements, place) for line in self.field(index, one)]
+    def enum(self, old: Enum, new: Enum) -> list[int]:
+        """Return the lines that notice that an enumeration is another."""
+        layout = with_enum(self.message.layout, old, new)
+        return [] if layout is self.message.layout else self.layout(with_layout(self.message, layout))
 
-    def struct(self, fields: tuple[Field, ...]) -> list[int]:
-        """Lines that notice that fields of a struct are others; ``fields``: all of the message then."""
-        olds = self.message.fields
-        if [one.name for one in olds] != [one.name for one in fields]:
-            return self.places(fields, self.node)
-        both = [replace(now, path=old.path) for old, now in zip(olds, fields, strict=True)]
-        changed = [(index, now) for index, (old, now) in enumerate(zip(olds, both, strict=True)) if old != now]
-        if any(_place(olds[index]) != _place(now) for index, now in changed):  # one may take bits that another leaves
-            told = [olds[index].name for index, now in changed if self._line_notices(olds[index], now)]
-            return [*(self.lines.fields[name] for name in told), *self.places(both, self.node)]
-        return [line for index, now in changed for line in self.field(index, now)]
-
-    def places(self, fields: Iterable[Field], node: Node) -> list[int]:
-        """Lines that notice that fields lie elsewhere, or that those of another node do."""
-        changed = replace(self.message, fields=tuple(fields))
+    def places(self, now: Message, node: Node) -> list[int]:
+        """Return the lines that notice that bits lie elsewhere, by the layout of the message or the orders of its node."""
         pairs = zip(self.lines.rows, self.vectors.rows, strict=True)
-        return [number for number, row in pairs if _answer(node, changed, row.frame) != (row.raw, row.encoded)]
+        return [number for number, row in pairs if _answer(node, now, row.frame) != (row.raw, row.encoded)]
+
+    def _alone(self, *fields: FrameField) -> Message:
+        """Return the message with the longest frame in which only these fields are."""
+        scalars = (
+            replace(
+                field.scalar,
+                name=field.name,
+                at=field.at,
+                bits=field.bits,
+                length=None,
+                orders=Orders(field.byte_order, field.bit_order),
+            )
+            for field in fields
+        )
+        fixed = tuple(
+            overlay_of(scalar) if field.role == "overlay" else scalar
+            for scalar, field in zip(scalars, fields, strict=True)
+        )
+        layout = self.message.layout
+        return with_layout(self.message, Layout(layout.name, layout.longest, fixed, may_end_early=layout.may_end_early))
 
     def id(self, key: str) -> list[int]:
         """Lines that notice another id: frames are asked for by the id, by the set id where there are two."""
@@ -109,13 +132,13 @@ class MessageWatch:
     def _of_others(self) -> list[list[int]]:
         """Of each field, the bits that all other fields set in each row's frame."""
         columns = []
-        for field in self.message.fields:
-            alone = replace(self.message, fields=(replace(field, when=()),), tail=None, inner=())
-            values = ({field.name: row.raw.get(field.name, field.fresh)} for row in self.vectors.rows)
-            frames = (
-                codec.encode(self.node, alone, value) if field.name in row.raw else bytes(alone.length)
-                for row, value in zip(self.vectors.rows, values, strict=True)
-            )
+        for field in self.message.layout.frame(self.node.orders):
+            if not field.has_bits:
+                columns.append([0] * len(self.vectors.rows))
+                continue
+            alone = self._alone(replace(field, scalar=replace(field.scalar, present_if=())))
+            raws = (row.raw.get(field.name) for row in self.vectors.rows)
+            frames = (b"" if raw is None else codec.encode(self.node, alone, {field.name: raw}) for raw in raws)
             columns.append([_number(frame) for frame in frames])
         by_row = []
         for row in zip(*columns, strict=True):

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass
 
 from icdgen.backends.assurance import changes
 from icdgen.backends.assurance.changes import Change
 from icdgen.backends.assurance.noticing import MessageWatch
 from icdgen.backends.assurance.shared_ids import SharedIds
 from icdgen.icd.erratum import Erratum
+from icdgen.icd.layout import LayoutNode
+from icdgen.icd.layout_copies import with_node, with_struct_layout
 from icdgen.icd.located import Map
-from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node, Struct
+from icdgen.icd.model import Enum, Icd, Member, Message, Node, Struct
 from icdgen.vectors.lines import NodeLines, lines
 from icdgen.vectors.make import NodeVectors, make
 from icdgen.vectors.write import text
@@ -31,12 +32,12 @@ class Traced:
 
 @dataclass(frozen=True, slots=True)
 class Element:
-    """Something that a line of the ICD describes. ``row`` counts the members of its message or enumeration from 1."""
+    """Something that a line of the ICD describes. ``row`` counts the lines of its message or enumeration from 1."""
 
     kind: str  # "node" | "message" | "struct" | "field" | "enumeration" | "member"
     node: Node
     owner: Message | Struct | Enum | None  # of a field, its message; of a member, its enumeration
-    model: Node | Message | Struct | Field | Enum | Member
+    model: Node | Message | Struct | LayoutNode | Enum | Member
     row: int | None
     changes: tuple[Traced, ...]
 
@@ -105,37 +106,31 @@ class Trace:
                 yield Element("member", node, enum, member, row, own)
         for struct in node.structs:
             yield Element("struct", node, None, struct, None, ())
-            for row, field in enumerate(struct.members, 1):
-                yield Element("field", node, struct, field, row, tuple(self._of_struct(struct, field, node)))
+            for row, line in enumerate(struct.layout.nodes, 1):
+                yield Element("field", node, struct, line, row, tuple(self._of_struct(struct, line, node)))
         for message in node.messages:
             yield Element("message", node, None, message, None, tuple(self._of_message(message, node)))
-            watch = self._watches[node.name, message.name]
-            place = 0
-            for row, field in enumerate(message.members, 1):
-                if not field.implied:
-                    found = changes.of_field(field, message, node)
-                    own = tuple(self._of_member(message, node, watch, place, field, *one) for one in found)
-                    yield Element("field", node, message, field, row, own)
-                place += len(field.elements)
+            for row, line in enumerate(message.layout.nodes, 1):
+                yield Element("field", node, message, line, row, tuple(self._of_line(message, line, node)))
 
-    def _of_member(
-        self, message: Message, node: Node, watch: MessageWatch, place: int, field: Field, change: Change, now: Field
-    ) -> Traced:
-        fields = (*message.fields[:place], *now.elements, *message.fields[place + len(field.elements) :])
-        others = self._shared.of_message(message, replace(message, fields=fields))
-        return Traced(change, together([_noticed(node, watch.member(place, field, now)), others]))
+    def _of_line(self, message: Message, line: LayoutNode, node: Node) -> Iterator[Traced]:
+        """The changes of a line of a message."""
+        watch = self._watches[node.name, message.name]
+        for change, new in changes.of_line(line, message.layout, node.orders):
+            now = changes.with_layout(message, with_node(message.layout, line, new))
+            shared = self._shared.of_message(message, now)
+            yield Traced(change, together([_noticed(node, watch.layout(now)), shared]))
 
-    def _of_struct(self, struct: Struct, field: Field, node: Node) -> Iterator[Traced]:
-        """The changes of a member of a struct, noticed wherever the struct stands."""
-        for change, now in changes.of_field(field, struct, node):
-            others = tuple(one for member in struct.members for one in (now if member == field else member).elements)
-            changed = replace(struct, fields=others)
+    def _of_struct(self, struct: Struct, line: LayoutNode, node: Node) -> Iterator[Traced]:
+        """The changes of a line of a struct, noticed wherever the struct stands."""
+        for change, new in changes.of_line(line, struct.layout, node.orders):
+            changed = with_node(struct.layout, line, new)
             found: list[Noticed] = []
             for watch in self._watches.values():
-                fields = changes.with_struct(watch.message.fields, struct, changed)
-                if fields is not watch.message.fields:
-                    shared = self._shared.of_message(watch.message, replace(watch.message, fields=fields))
-                    found += (_noticed(watch.node, watch.struct(fields)), shared)
+                layout = with_struct_layout(watch.message.layout, struct.layout, changed)
+                if layout is not watch.message.layout:
+                    now = changes.with_layout(watch.message, layout)
+                    found += (_noticed(watch.node, watch.layout(now)), self._shared.of_message(watch.message, now))
             yield Traced(change, together(found))
 
     def _of_node(self, node: Node) -> Iterator[Traced]:
@@ -144,26 +139,14 @@ class Trace:
                 yield Traced(change, _noticed(node, [self._lines[node.name].head[change.key]]))
             else:
                 watches = (self._watches[node.name, message.name] for message in node.messages)
-                rows = [line for watch in watches for line in watch.places(watch.message.fields, now)]
+                rows = [line for watch in watches for line in watch.places(watch.message, now)]
                 yield Traced(change, together([_noticed(node, rows), self._shared.of_node(node, now)]))
 
     def _of_enum(self, enum: Enum) -> Iterator[Traced]:
         for change, now in changes.of_enum(enum):
             found = [{enum.node: [self._lines[enum.node].enums[enum.name]]}]
-            for watch, index in self._users.get((enum.node, enum.name), ()):
-                field = replace(watch.message.fields[index], enum=now)
-                found.append(_noticed(watch.node, watch.field(index, field)))
+            found += (_noticed(watch.node, watch.enum(enum, now)) for watch in self._watches.values())
             yield Traced(change, together(found))
-
-    @cached_property
-    def _users(self) -> dict[tuple[str, str], list[tuple[MessageWatch, int]]]:
-        """By enumeration, each field of it: what watches its message, and which of the fields it is."""
-        users: dict[tuple[str, str], list[tuple[MessageWatch, int]]] = {}
-        for watch in self._watches.values():
-            for index, field in enumerate(watch.message.fields):
-                if field.enum is not None:
-                    users.setdefault((field.enum.node, field.enum.name), []).append((watch, index))
-        return users
 
     def _of_message(self, message: Message, node: Node) -> Iterator[Traced]:
         watch = self._watches[node.name, message.name]
@@ -173,7 +156,7 @@ class Trace:
             elif change.kind == "length":
                 found = _noticed(node, watch.length())
             else:
-                found = _noticed(node, watch.places(now.fields, node))
+                found = _noticed(node, watch.places(now, node))
             yield Traced(change, together([found, self._shared.of_message(message, now)]))
 
     def _ids(self, message: Message, now: Message) -> Noticed:

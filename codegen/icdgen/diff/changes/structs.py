@@ -15,7 +15,10 @@ from icdgen.diff.generated import LANGUAGES, Marks, Name
 from icdgen.diff.pairs import MessagePair, NodePair
 from icdgen.diff.rule import Found, rule
 from icdgen.diff.wording import bits
-from icdgen.icd.model import Field, Icd, Node, Struct
+from icdgen.icd.flat import with_flat_lists
+from icdgen.icd.layout import Layout
+from icdgen.icd.layout_copies import with_attributes, with_node, with_struct_layout
+from icdgen.icd.model import Field, Icd, Node
 from icdgen.icd.rules.wording import count, quote
 
 
@@ -105,23 +108,28 @@ def _renamed(before: dict[int, list[Name]], after: dict[int, list[Name]]) -> Ite
 
 def _declared(icd: Icd, node: Node) -> dict[str, _Declared]:
     """By the name of each struct of a node."""
-    made: dict[int, Struct] = {}  # id(struct) -> the same with sources of its own: an ICD from elsewhere has none
     marks = Marks[tuple[str, int]]()  # name of the struct, and bit of the member
+    layouts: list[tuple[Layout, Layout]] = (
+        []
+    )  # each with its copy that has sources of its own: an ICD from elsewhere has none
+    structs = []
     for struct in node.structs:  # each stands after those that it has in it
-        members = [
-            replace(one, source=marks.of((struct.name, one.at)), struct=made.get(id(one.struct), one.struct))
-            for one in struct.members
-        ]
-        fields = tuple(chain.from_iterable(one.elements for one in members))
-        made[id(struct)] = replace(struct, fields=fields, source=marks.of((struct.name, -1)))
-    alone = replace(node, structs=tuple(made.values()), messages=())
-    around = Icd((*(replace(one, messages=()) for one in icd.included(node)), alone))
+        layout = struct.layout
+        for line in layout.fixed:
+            marked = with_attributes(line, source=marks.of((struct.name, line.at)))
+            layout = with_node(layout, line, marked)
+        for other, changed in layouts:
+            layout = with_struct_layout(layout, other, changed)
+        layouts.append((struct.layout, layout))
+        structs.append(replace(struct, layout=layout, source=marks.of((struct.name, -1))))
+    alone = replace(node, structs=tuple(structs), messages=())
+    around = with_flat_lists(Icd((*(replace(one, messages=()) for one in icd.included(node)), alone)))
     found = {struct.name: _Declared({}, {}) for struct in alone.structs}
     for language in LANGUAGES:
         for (name, at), one in marks.names(around, language):
             if one.text.isidentifier() and not one.text.endswith("_H"):
                 found[name].names.setdefault(at, []).append(Name(language, one.text))
-    for struct in alone.structs:
+    for struct in around.nodes[-1].structs:
         described = describe(around).struct(struct).members
         found[struct.name].members.update((one.name, declaration(one)) for one in described)
     return found

@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 from icdgen.icd.flat import message_with_lists
 from icdgen.icd.identifiers import Identifier
-from icdgen.icd.layout import LayoutNode, scalar_of, struct_layout_of, without_nodes
+from icdgen.icd.layout import LayoutNode, scalar_of, struct_layout_of
+from icdgen.icd.layout_copies import without_nodes
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import REGISTERED
