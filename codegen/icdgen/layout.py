@@ -10,6 +10,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from icdgen.icd.model import Field, Message, Node, Struct
+from icdgen.icd.places import AnyField
 from icdgen.icd.variants import Variant
 
 
@@ -45,12 +46,17 @@ def pieces_at(at: int, bits: int, byte_order: str, bit_order: str) -> tuple[Piec
     return tuple(pieces if byte_order == "little" else reversed(pieces))
 
 
-def pieces(field: Field, node: Node) -> tuple[Piece, ...]:
-    """The pieces of a number field, none of a derived one. A ``bytes`` field is whole bytes in order: see `byte_range`."""
-    return () if field.derived else pieces_at(field.at, field.bits, *field.orders(node))
+def pieces(field: AnyField, node: Node) -> tuple[Piece, ...]:
+    """Return the pieces of a number, none of a derived one. Bytes are whole bytes in order: see `byte_range`.
+
+    `node` is the ICD node whose orders a field has that declares none.
+    """
+    if field.derived:
+        return ()
+    return pieces_at(field.at, field.bits, field.byte_order or node.byte_order, field.bit_order or node.bit_order)
 
 
-def mask(field: Field, node: Node) -> int:
+def mask(field: AnyField, node: Node) -> int:
     """The bits of the frame that the field has; bit w of byte b is bit 8 * b + w."""
     if field.is_bytes:
         return ((1 << field.bits) - 1) << field.at

@@ -24,7 +24,8 @@ from icdgen.describe.numbers import (
 )
 from icdgen.describe.steps import Steps, steps
 from icdgen.icd.erratum import Erratum
-from icdgen.icd.model import CONFIGURATION, Condition, Enum, Member, Message, Struct, Tail
+from icdgen.icd.layout import LayoutNode, Scalar, VariablePart
+from icdgen.icd.model import CONFIGURATION, Condition, Enum, Member, Message, Struct
 from icdgen.icd.places import AnyField
 
 _LISTED = 6  # names in a row
@@ -98,16 +99,18 @@ def message_comment(message: Message, log_bit: int | None = None, sharing: str =
 
 def condition_text(condition: Condition, message: Message | None = None) -> str:
     """``Mode is 1 or 2``; of an enumeration the names of its members, where ``message`` is that of the field."""
-    known = {field.name: field for field in message.fields} if message else {}
+    known = {node.name: node for node in message.layout.fixed} if message else {}
     on = known.get(condition.field)
     values = [_said_of(on, value) for value in condition.values]
     return f"{words(condition.field)} is {' or '.join(values)}"
 
 
-def _said_of(field: AnyField | None, value: int) -> str:
-    if field is not None and field.type == "bool":
+def _said_of(field: LayoutNode | None, value: int) -> str:
+    if not isinstance(field, Scalar):
+        return str(value)
+    if field.type == "bool":
         return "true" if value else "false"
-    members = field.enum.members if field is not None and field.enum is not None else ()
+    members = field.enum.members if field.enum is not None else ()
     return next((words(one.name) for one in members if one.value == value and one.to is None), str(value))
 
 
@@ -171,8 +174,9 @@ def member_comment(member: Member, told: Mapping[str, str]) -> Comment:
 
 def field_comment(field: AnyField, told: Mapping[str, str], message: Message) -> Comment:
     """Name, place, range and unit; summary; values that are allowed or mean something. ``told``: as for a member."""
-    tail = message.tail
-    if tail is not None and field.implied:
+    parts = message.layout.parts
+    if field.implied:
+        tail = parts[-1]
         what = f"how much of {words(tail.name)} the frame has, up to {tail.most}; identified by its length"
         return Comment(f"{words(field.name)}: {what}.")
     if field.derived is not None:
@@ -186,10 +190,10 @@ def field_comment(field: AnyField, told: Mapping[str, str], message: Message) ->
     if field.limits is not None:
         facts.append(_limits(field))
     facts += (f"{special_text(special)}: {sentence(special.meaning)}" for special in field.special)
-    for part in (one for one in message.open_parts if one.counter == field.name):
+    for part in (one for one in parts if one.counter == field.name):
         plus = f", of which there are {abs(part.plus)} {'more' if part.plus > 0 else 'less'}" if part.plus else ""
         facts.append(f"Counts {words(part.name)}{plus}: at most {part.most}.")
-    opening = next((part for part in message.open_parts if part.name == field.name), None)
+    opening = next((part for part in parts if part.name == field.name), None)
     place = _open_place(field, message, opening) if opening else _place(field)
     head = f"{words(field.name)}: {place}{_meaning(field)}."
     return _comment(head, (sentence(field.summary), " ".join(facts)), field.errata, told)
@@ -217,7 +221,7 @@ def _place(field: AnyField) -> str:
     return ", ".join(filter(None, (where, elements, orders_text(field))))
 
 
-def _open_place(field: AnyField, message: Message, part: Tail) -> str:
+def _open_place(field: AnyField, message: Message, part: VariablePart) -> str:
     """``from byte 4 on, up to 12 elements of 16 bits``"""
     if field.is_bytes and field.count:
         what = f"up to {octets_text(part.most, field.bits)}{', text filled with NUL' if field.type == 'text' else ''}"
@@ -227,10 +231,9 @@ def _open_place(field: AnyField, message: Message, part: Tail) -> str:
         what = f"text of up to {part.most} character{'s' * (part.most != 1)}"
     else:
         what = f"up to {array_text(part.most, field.bits)}"
-    before = [one.name for one in message.open_parts[:-1] if 8 * one.begin < field.at]
+    before = [one.name for one in message.layout.parts[:-1] if 8 * one.begin < field.at]
     place = f"behind {words(before[-1])}" if before else f"from byte {field.at // 8} on"
-    is_counted = any(f.name == part.counter and not f.implied for f in message.fields)
-    counted = f"as many as {words(part.counter)} says" if is_counted else ""
+    counted = "" if part.is_rest else f"as many as {words(part.counter)} says"
     return ", ".join(filter(None, (place, what, counted, orders_text(field))))
 
 

@@ -17,9 +17,8 @@ from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, storage_of
 from icdgen.describe.wholes import Whole, part_of_unit
 from icdgen.icd.curve import Curve
-from icdgen.icd.layout import UNDECLARED, Layout, Orders
+from icdgen.icd.layout import UNDECLARED, Layout, NodePlace, Orders, places_of
 from icdgen.icd.model import Enum, Message, Node, Struct
-from icdgen.icd.places import NodePlace, places
 from icdgen.once import cached_property
 
 
@@ -203,9 +202,14 @@ class FieldDescription(Named[NodePlace]):
         return self.model.const or self.model.counts_from
 
     @property
+    def orders(self) -> Orders:
+        """Byte order and bit order in effect."""
+        return self.model.orders_in_effect(self.message.node.orders)
+
+    @property
     def byte_order(self) -> str:
         """``little`` or ``big``: its own, its message's or its node's."""
-        return self.model.orders(self.message.node)[0]
+        return self.orders.byte
 
     @property
     def order(self) -> str:
@@ -226,8 +230,9 @@ class FieldDescription(Named[NodePlace]):
     @property
     def pieces(self) -> tuple[layout.Piece, ...]:
         """The runs of bits of the frame that make up a number."""
-        place = self.model
-        return () if place.derived else layout.pieces_at(place.at, place.bits, *place.orders(self.message.node))
+        if self.model.derived:
+            return ()
+        return layout.pieces_at(self.model.at, self.model.bits, self.orders.byte, self.orders.bit)
 
     @property
     def is_text(self) -> bool:
@@ -355,7 +360,7 @@ class Composite(Named[Fielded]):
     @cached_property
     def all_members(self) -> tuple[FieldDescription, ...]:
         """Members and views, in the order of the ICD: what is declared in code."""
-        return tuple(map(self._member, places(self.model.layout, self.outer_orders)))
+        return tuple(map(self._member, places_of(self.model.layout, self.outer_orders)))
 
     def _member(self, place: NodePlace) -> FieldDescription:
         return FieldDescription(place, self, self._description.enum(place.enum) if place.enum else None)
@@ -426,8 +431,9 @@ class Composite(Named[Fielded]):
 
     def element(self, part: FieldDescription, struct: StructDescription) -> StructDescription:
         """What an array of structs in it has as an element."""
-        outer = Orders(*part.model.orders(self.node))
-        found = StructDescription(self._description, struct.model, struct.node, outer)
+        found = StructDescription(
+            self._description, struct.model, struct.node, part.model.orders_in_effect(self.node.orders)
+        )
         found.seen_from = self.seen_from
         return found
 

@@ -22,10 +22,10 @@ def enum_widths(icd: Icd) -> dict[tuple[str, str], int]:
             found[enum.node, enum.name] = max(found.get((enum.node, enum.name), 1), enum.bits)
         every: tuple[Struct | Message, ...] = (*node.structs, *node.messages)
         for one in every:
-            for field in one.fields:
-                if field.enum is not None:
-                    key = field.enum.node, field.enum.name
-                    found[key] = max(found.get(key, 1), field.bits)
+            for place in one.layout.places:
+                if place.enum is not None:
+                    key = place.enum.node, place.enum.name
+                    found[key] = max(found.get(key, 1), place.bits)
     return found
 
 
@@ -35,10 +35,10 @@ def holders(icd: Icd, node: Node) -> dict[tuple[str, str], Users]:
     found: dict[tuple[str, str], Users] = {}
     every: tuple[Struct | Message, ...] = (*node.structs, *node.messages)
     for one in every:
-        for field in one.members:
-            if field.enum is not None:
-                users = found.setdefault((field.enum.node, field.enum.name), {})
-                users.setdefault(field.name, []).append(one.name)
+        for place in one.layout.places:
+            if place.enum is not None:
+                users = found.setdefault((place.enum.node, place.enum.name), {})
+                users.setdefault(place.name, []).append(one.name)
     return found
 
 

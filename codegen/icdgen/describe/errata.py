@@ -13,7 +13,7 @@ Thing = Message | Struct | AnyField | Enum | Member
 
 def errata_of_message(message: Message) -> list[Erratum]:
     """Those of the message, of the structs in it and of its fields, each once."""
-    return _each_once((message, *message.members, *message.fields))
+    return _each_once((message, *message.layout.places, *message.layout.scalars))
 
 
 def errata_of_enum(enum: Enum) -> list[Erratum]:

@@ -43,7 +43,7 @@ class Example(NamedTuple):
 def worth_showing(message: MessageDescription) -> FieldDescription | None:
     """The first field with a formula that leads back, else the first that is neither constant nor an array or struct."""
     # these are the smallest in an example, whose frame has the fewest elements
-    counters = {part.counter for part in message.model.open_parts}
+    counters = {part.counter for part in message.model.layout.parts}
     decides = {need.field.model.name for one in message.conditional for need in one.needs}  # what else is there
     usual = [
         one
@@ -63,13 +63,16 @@ def example(message: MessageDescription) -> Example:
     """The example of a message."""
     field = worth_showing(message)
     shown = _shown(field) if field else None
+    owners = [place for place in message.model.layout.scalars if not place.view]
     raw: dict[str, int | bytes] = {
-        one.name: one.fresh for one in message.model.owners if one.const is not None or one.counts_from
+        place.name: place.fresh for place in owners if place.const is not None or place.smallest_raw
     }
     if shown is not None:
         raw[shown.field.model.name] = shown.raw
     in_arrays = {
-        one.name for one in message.model.owners if one.const is not None and any(step.count for step in one.path)
+        place.name
+        for place in owners
+        if place.const is not None and any(step.element is not None for step in place.steps)
     }
     few = raw if len(in_arrays) <= FEW else {name: value for name, value in raw.items() if name not in in_arrays}
     frame, brief = (codec.frame_with(message.node, message.model, values) for values in (raw, few))

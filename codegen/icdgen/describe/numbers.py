@@ -78,9 +78,8 @@ def byte_range(first: int, count: int) -> str:
 
 def length_text(message: Message) -> str:
     """``6 bytes``; where frames differ ``4 to 28 bytes``."""
-    return (
-        byte_count(message.length) if len(message.lengths) == 1 else f"{message.least} to {byte_count(message.length)}"
-    )
+    shortest, longest = message.layout.shortest, byte_count(message.layout.longest)
+    return longest if len(message.layout.lengths) == 1 else f"{shortest} to {longest}"
 
 
 def count_text(counter: str, plus: int) -> str:

@@ -15,7 +15,7 @@ from icdgen.describe.enums import EnumDescription, enum_widths
 from icdgen.describe.shared_ids import sharing
 from icdgen.describe.storage import holding
 from icdgen.icd.identifiers import Identifier
-from icdgen.icd.layout import Counted, Layout, size_of, stride
+from icdgen.icd.layout import Layout
 from icdgen.icd.model import Enum, Icd, Message, Node, Struct
 from icdgen.icd.variants import Ids, Variant, common_length, ids_of
 from icdgen.once import cached_property
@@ -66,13 +66,10 @@ class MessageDescription(Composite[Message]):
     def open_parts(self) -> tuple[TailDescription, ...]:
         """All parts of variable length, in the order of the frame."""
         by_name = {member.model.name: member for member in self.members}
-        found = []
-        for node in self.model.layout.sequence:
-            size, part = size_of(node), by_name[node.name]
-            counter, plus = (size.counter, size.plus) if isinstance(size, Counted) else (size.counter.name, 0)
-            begin = part.model.at // 8
-            found.append(TailDescription(part, by_name[counter], begin, stride(node) // 8, size.most, plus))
-        return tuple(found)
+        return tuple(
+            TailDescription(by_name[part.name], by_name[part.counter], part.begin, part.step, part.most, part.plus)
+            for part in self.model.layout.parts
+        )
 
     @cached_property
     def contained(self) -> tuple[tuple[MessageDescription, int], ...]:

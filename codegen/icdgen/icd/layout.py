@@ -233,6 +233,16 @@ class Layout:
         """All nodes, in the order in which code declares them."""
         return (*self.fixed, *self.sequence, *self.derived)
 
+    @cached_property
+    def places(self) -> tuple[NodePlace, ...]:
+        """The nodes where they stand in the longest frame, in the order of `nodes`; behind a variable part its count."""
+        return places_of(self)
+
+    @cached_property
+    def scalars(self) -> tuple[NodePlace, ...]:
+        """All scalars of the longest frame: each element of an array and each field of a struct by itself."""
+        return tuple(scalar for place in self.places for scalar in place.scalars())
+
     @property
     def longest(self) -> int:
         """Bytes of the longest frame."""
@@ -265,11 +275,69 @@ class Layout:
         """The results of `frame`, the oldest first."""
         return {}
 
+    @cached_property
+    def parts(self) -> tuple[VariablePart, ...]:
+        """The parts of variable length, in the order of the frame."""
+        parts: list[VariablePart] = []
+        begin = self.length
+        for node in self.sequence:
+            size, step = size_of(node), stride(node) // 8
+            is_rest = isinstance(size, Rest)
+            counter, plus = (size.counter.name, 0) if isinstance(size, Rest) else (size.counter, size.plus)
+            parts.append(VariablePart(node, counter, is_rest, begin, step, size.most, plus))
+            begin += size.most * step
+        return tuple(parts)
+
     def smallest_raw(self, counter: str) -> int:
         """Return the smallest raw value of a field that counts; 0 for any other field."""
         sizes = (size_of(node) for node in self.sequence)
         plus = (size.plus for size in sizes if isinstance(size, Counted) and size.counter == counter)
         return max((-value for value in plus if value < 0), default=0)
+
+
+class VariablePart(NamedTuple):
+    """A part of a message of which a frame need not have all, where it stands in the longest frame.
+
+    Elements that a frame lacks are 0 in what it is decoded to.
+    """
+
+    node: VariableNode
+    counter: str  # the field that says how many elements there are
+    is_rest: bool  # the counter has no bits: the length of the frame tells it
+    begin: int  # bytes before it
+    step: int  # bytes of an element
+    most: int  # elements
+    plus: int  # there are so many more elements than the counter says
+
+    @property
+    def name(self) -> str:
+        """The name of its node."""
+        return self.node.name
+
+    @property
+    def is_array(self) -> bool:
+        """Whether it is an array, and not bytes or text."""
+        return isinstance(self.node, Array)
+
+    @property
+    def fewest(self) -> int:
+        """Elements that every frame has."""
+        return max(0, self.plus)
+
+    @property
+    def low(self) -> int:
+        """The smallest value of the counter."""
+        return max(0, -self.plus)
+
+    @property
+    def high(self) -> int:
+        """The largest value of the counter."""
+        return self.most - self.plus
+
+    @property
+    def shortest(self) -> int:
+        """Bytes up to its end with the fewest elements, if all is there before it."""
+        return self.begin + self.fewest * self.step
 
 
 def size_of(node: VariableNode) -> Counted | Rest:
@@ -364,6 +432,12 @@ class PathStep:
     element: int | None = None
 
 
+def name_of_steps(steps: tuple[PathStep, ...]) -> str:
+    """Return the name of what stands at the end of the steps: ``Satellites[2].GNSS``."""
+    texts = (step.node.name if step.element is None else f"{step.node.name}[{step.element}]" for step in steps)
+    return ".".join(texts)
+
+
 Role: TypeAlias = Literal["field", "overlay", "derived", "count"]
 """What a scalar is in a frame: `count` is a number of elements that only the length of the frame gives; it has no bits."""
 
@@ -383,8 +457,7 @@ class FrameField:
     @cached_property
     def name(self) -> str:
         """``Satellites[2].GNSS``"""
-        texts = (step.node.name if step.element is None else f"{step.node.name}[{step.element}]" for step in self.steps)
-        return ".".join(texts)
+        return name_of_steps(self.steps)
 
     @property
     def conditions(self) -> tuple[Condition, ...]:
@@ -440,3 +513,284 @@ def _scalars(node: FixedNode, steps: tuple[PathStep, ...], at: int, orders: Orde
             for element in range(count):
                 steps_to = (*steps[:-1], PathStep(node, element))
                 yield from _scalars(item, steps_to, at + element * stride(item), orders)
+
+
+_NO_SCALAR = Scalar(name="", type="struct", bits=0)
+"""The scalar of a place where a struct stands."""
+
+
+@dataclass(frozen=True, eq=False)
+class NodePlace:
+    """A node, or an element of an array, at its bit of the longest frame or of a struct."""
+
+    steps: tuple[PathStep, ...]  # from the node of the message's own layout on
+    scalar: Scalar  # that stands here; of an array that stands as one, an element of it
+    struct: Layout | None  # that stands here instead of a scalar
+    at: int  # counted in the bit order in effect
+    bits: int  # of an array those of an element; of variable-length bytes and text the most
+    declared_orders: Orders  # of the node or what it stands in; empty where those of the ICD node hold
+    count: int = 0  # elements of an array that stands as one; else 0
+    smallest_raw: int = 0  # of a field that counts elements
+    is_count: bool = False  # it has no bits: the length of the frame tells its value
+
+    @cached_property
+    def name(self) -> str:
+        """``Satellites[2].GNSS``"""
+        return name_of_steps(self.steps)
+
+    @property
+    def node(self) -> LayoutNode:
+        """The node that stands here, or the array that it is an element of."""
+        return self.steps[-1].node
+
+    @property
+    def index(self) -> int | None:
+        """Which element of an array it is; None of what is no element."""
+        return self.steps[-1].element
+
+    @property
+    def width(self) -> int:
+        """Bits of all that stands here."""
+        return self.bits * (self.count or 1)
+
+    @property
+    def byte_order(self) -> str:
+        """Byte order of the node or what it stands in; empty where that of the ICD node holds."""
+        return self.declared_orders.byte
+
+    @property
+    def bit_order(self) -> str:
+        """Bit order of the node or what it stands in; empty where that of the ICD node holds."""
+        return self.declared_orders.bit
+
+    @property
+    def identifier(self) -> str | None:
+        """The words that the ICD gives instead of the name."""
+        return self.node.identifier
+
+    @property
+    def summary(self) -> str:
+        """The summary of the ICD."""
+        return self.node.summary
+
+    @property
+    def aliases(self) -> tuple[str, ...]:
+        """Other names by which people look for it."""
+        return self.node.aliases
+
+    @property
+    def errata(self) -> tuple[Erratum, ...]:
+        """The errata of the node."""
+        return self.node.errata
+
+    @property
+    def source(self) -> Map:
+        """The mapping that the node was read from."""
+        return self.node.source
+
+    @property
+    def when(self) -> tuple[Condition, ...]:
+        """It is in a frame only if all of them hold."""
+        return self.node.present_if
+
+    @property
+    def view(self) -> bool:
+        """Whether it reads bits of other fields, or is computed."""
+        return isinstance(self.node, Overlay | Derived)
+
+    @property
+    def derived(self) -> Derivation | None:
+        """How it is computed from other fields; None where it is not."""
+        return self.node.derivation if isinstance(self.node, Derived) else None
+
+    @property
+    def implied(self) -> bool:
+        """Whether it has no bits, because the length of the frame tells its value."""
+        return self.is_count
+
+    @property
+    def counts_from(self) -> int:
+        """The smallest raw value, of a field that counts elements."""
+        return self.smallest_raw
+
+    @property
+    def type(self) -> str:
+        """See `Scalar.type`."""
+        return self.scalar.type
+
+    @property
+    def enum(self) -> Enum | None:
+        """See `Scalar.enum`."""
+        return self.scalar.enum
+
+    @property
+    def unit(self) -> Unit | None:
+        """See `Scalar.unit`."""
+        return self.scalar.unit
+
+    @property
+    def unit_symbol(self) -> str:
+        """See `Scalar.unit_symbol`."""
+        return self.scalar.unit_symbol
+
+    @property
+    def formula(self) -> str:
+        """See `Scalar.formula`."""
+        return self.scalar.formula
+
+    @property
+    def scale(self) -> Scale | None:
+        """See `Scalar.scale`."""
+        return self.scalar.scale
+
+    @property
+    def curve(self) -> Curve | None:
+        """See `Scalar.curve`."""
+        return self.scalar.curve
+
+    @property
+    def const(self) -> int | None:
+        """See `Scalar.const`."""
+        return self.scalar.const
+
+    @property
+    def special(self) -> tuple[Special, ...]:
+        """See `Scalar.special`."""
+        return self.scalar.special
+
+    @property
+    def limits(self) -> Limits | None:
+        """See `Scalar.limits`."""
+        return self.scalar.limits
+
+    @property
+    def display(self) -> Display | None:
+        """See `Scalar.display`."""
+        return self.scalar.display
+
+    @property
+    def is_bytes(self) -> bool:
+        """See `Scalar.is_bytes`."""
+        return self.scalar.is_bytes
+
+    @property
+    def has_formula(self) -> bool:
+        """See `Scalar.has_formula`."""
+        return self.scalar.has_formula
+
+    @property
+    def raw_min(self) -> int:
+        """See `Scalar.raw_min`."""
+        return self.scalar.raw_min
+
+    @property
+    def raw_max(self) -> int:
+        """See `Scalar.raw_max`."""
+        return self.scalar.raw_max
+
+    @property
+    def signed(self) -> bool:
+        """See `Scalar.is_signed`."""
+        return self.scalar.is_signed
+
+    @property
+    def leads_back(self) -> bool:
+        """See `Scalar.is_invertible`."""
+        return self.scalar.is_invertible
+
+    @property
+    def ends(self) -> tuple[int, int]:
+        """See `Scalar.settable_raws`."""
+        return self.scalar.settable_raws
+
+    @property
+    def fresh(self) -> int | bytes:
+        """The raw value in a new message: the only valid one, or the smallest; of a float its bits."""
+        return bytes(self.bits // 8) if self.is_bytes else self.const or self.smallest_raw
+
+    def orders_in_effect(self, outer: Orders) -> Orders:
+        """Return the orders in effect, where those of the ICD node are `outer`."""
+        return self.declared_orders.within(outer)
+
+    def elements(self) -> tuple[NodePlace, ...]:
+        """Return the elements of an array, structs whole; of anything else the place itself."""
+        if not self.count:
+            return (self,)
+        before, stride = self.steps[:-1], self.bits
+        return tuple(
+            NodePlace(
+                (*before, PathStep(self.node, index)),
+                self.scalar,
+                self.struct,
+                self.at + index * stride,
+                stride,
+                self.declared_orders,
+            )
+            for index in range(self.count)
+        )
+
+    def inner(self) -> tuple[NodePlace, ...]:
+        """Return the places of what stands in a struct; of an array of structs, take an element first."""
+        assert self.struct is not None and not self.count, f"{self.name} is no single struct"
+        return tuple(_place(node, self.declared_orders, self.at, self.steps) for node in self.struct.fixed)
+
+    def scalars(self) -> Iterator[NodePlace]:
+        """Return all scalars that stand here, each element of an array and each field of a struct by itself."""
+        for element in self.elements():
+            if element.struct is None:
+                yield element
+            else:
+                for place in element.inner():
+                    yield from place.scalars()
+
+
+def places_of(layout: Layout, outer: Orders = UNDECLARED) -> tuple[NodePlace, ...]:
+    """Return the places of the nodes of a layout. `outer` are the orders of what it stands in, if it is an element.
+
+    `Layout.places` keeps those without `outer`.
+    """
+    orders = layout.orders.within(outer)
+    found = [_place(node, orders, smallest_raw=layout.smallest_raw(node.name)) for node in layout.fixed]
+    end = 8 * layout.length
+    for part in layout.sequence:
+        size, own, steps = size_of(part), part.orders.within(orders), (PathStep(part),)
+        if isinstance(part, Array):
+            found.append(_place_of_item(steps, part.item, end, own, size.most))
+        else:
+            found.append(NodePlace(steps, part, None, end, 8 * size.most, own))
+        end += size.most * stride(part)
+        if isinstance(size, Rest):
+            counter = size.counter
+            found.append(NodePlace((PathStep(counter),), counter, None, end, counter.bits, UNDECLARED, is_count=True))
+    found += (_place(node, UNDECLARED, end) for node in layout.derived)
+    return tuple(found)
+
+
+def _place(
+    node: LayoutNode, orders: Orders, begin: int = 0, owners: tuple[PathStep, ...] = (), smallest_raw: int = 0
+) -> NodePlace:
+    """Return the place of a node of fixed size in what begins at bit `begin`."""
+    own, at, steps = node.orders.within(orders), begin + node.at, (*owners, PathStep(node))
+    match node:
+        case Array(item=item, size=int(count)):
+            return _place_of_item(steps, item, at, own, count)
+        case StructRef() | Scalar():
+            return _place_of_item(steps, node, at, own, 0, smallest_raw)
+        case Overlay(scalar=scalar):
+            return NodePlace(steps, scalar, None, at, scalar.bits, own)
+        case Derived(scalar=scalar):
+            return NodePlace(steps, scalar, None, begin, scalar.bits, own)
+    raise TypeError(f"{node.name} has no fixed place")
+
+
+def _place_of_item(
+    steps: tuple[PathStep, ...],
+    item: Scalar | StructRef,
+    at: int,
+    orders: Orders,
+    count: int,
+    smallest_raw: int = 0,
+) -> NodePlace:
+    """Return the place of a scalar or struct, or of so many of them."""
+    scalar, struct = (item, None) if isinstance(item, Scalar) else (_NO_SCALAR, item.layout)
+    return NodePlace(steps, scalar, struct, at, stride(item), orders, count, smallest_raw)

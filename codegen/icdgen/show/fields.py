@@ -18,6 +18,7 @@ from icdgen.describe.numbers import (
     value_text,
 )
 from icdgen.icd.model import Field, Message, Node, Struct, Tail
+from icdgen.icd.places import AnyField
 from icdgen.tables import Column, render
 
 _COLUMNS = [
@@ -51,7 +52,7 @@ def _row(field: Field, message: Message | Struct) -> tuple[str, ...]:
 
 
 def remarks(
-    field: Field, number: Callable[[Fraction], str] = exact_text, message: Message | None = None
+    field: AnyField, number: Callable[[Fraction], str] = exact_text, message: Message | None = None
 ) -> Iterator[str]:
     """What is constant, exclusive limits, and what special values mean, that it is a view; ``number`` writes numbers.
 
@@ -74,7 +75,7 @@ def remarks(
         yield "a view of bits that other fields have"
     if told := orders_text(field):
         yield told
-    for step in field.path:
+    for step in field.path if isinstance(field, Field) else ():
         if step.struct is not None and step.is_open:
             most = "up to " if part is not None else ""
             every = f", every {byte_count(step.struct.length)}"
@@ -92,7 +93,10 @@ def remarks(
         yield f"{special_text(special) if special.number else number(Fraction(special.value))}: {special.meaning}"
 
 
-def _open_part(message: Message | None, field: Field) -> Tail | None:
+def _open_part(message: Message | None, field: AnyField) -> Tail | None:
     """The open part of its message that a line is, or stands in."""
-    name = field.path[0].name if field.path else field.name
+    if isinstance(field, Field):
+        name = field.path[0].name if field.path else field.name
+    else:
+        name = field.steps[0].node.name
     return next((part for part in (message.open_parts if message else ()) if part.name == name), None)

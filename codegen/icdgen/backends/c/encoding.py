@@ -19,7 +19,7 @@ def size(message: MessageDescription) -> list[str]:
     assert tail is not None
     parts = [_held(one) if one.step == 1 else f"{_held(one)} * {one.step}u" for one in (*message.inner, tail)]
     if message.inner:
-        return [f"{message.model.fixed}u", *parts]
+        return [f"{message.model.layout.length}u", *parts]
     if not tail.begin:
         return parts
     return [f"{tail.begin}u", parts[0] if tail.step == 1 else f"({parts[0]})"]

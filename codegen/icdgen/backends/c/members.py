@@ -43,8 +43,7 @@ def _statements(
 
 def initial(message: Composite[Any]) -> list[str]:
     """Statements that give fields with only one valid value that value, and what counts an open end its smallest."""
-    counts = {part.counter for part in message.model.open_parts if part.low}
-    counters = [field for field in message.members if field.model.name in counts]
+    counters = [field for field in message.members if field.model.smallest_raw]
     found = [f"message->{field.member} = {field.fresh}u;" for field in counters]
     for field in message.blocks:
         count = message.fewest if field.is_open else field.count

@@ -57,10 +57,10 @@ def like(candidate: Candidate, depth: int = 3) -> str:
     ``depth`` is that of the lines after the first.
     """
     message = candidate.message
-    terms = _lengths(message.model.lengths, constant(message, "length"))
+    terms = _lengths(message.model.layout.lengths, constant(message, "length"))
     for sign in candidate.signs:
         byte = f"buffer[{sign.byte}]"
-        if sign.byte >= message.model.least:
+        if sign.byte >= message.model.layout.shortest:
             byte = f"((length > {sign.byte}u) ? {byte} : 0u)"
         masked = byte if sign.mask == 0xFF else f"({byte} & 0x{sign.mask:02X}u)"
         terms.append(f"{masked} == 0x{sign.value:02X}u")

@@ -16,8 +16,8 @@ from icdgen.backends.origin import origin
 from icdgen.describe import FieldDescription, MessageDescription, NodeDescription, describe
 from icdgen.describe.description import TailDescription
 from icdgen.describe.whole import Direction
+from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import Icd, Message
-from icdgen.icd.places import NodePlace
 from icdgen.render import Renderer
 from icdgen.vectors.ids import worth_asking
 from icdgen.vectors.make import MessageVectors, Raw, Row, make
@@ -117,7 +117,7 @@ class _Rows:
         tables: dict[tuple[int, ...], str] = {}
         fields = [self.field(field, vectors, tables) for field in message.all_fields]
         doubles = (f"UINT64_C(0x{double})" for row in vectors.rows for double in row.doubles.values())
-        differ = len(message.model.lengths) > 1
+        differ = len(message.model.layout.lengths) > 1
         return {
             "message": message,
             "stem": names.stem(message),
@@ -144,7 +144,7 @@ class _Rows:
         """``known``: of each line of the ICD the field that has its tables."""
         field, storage = one.model, one.storage
         is_bytes, index = field.is_bytes, field.index
-        line = tuple(map(id, (*field.owners, field.node)))
+        line = tuple(id(step.node) for step in field.steps)
         stem = f"{names.stem(one.message)}_selftest_{one.name}"
         tables = known.setdefault(line, stem)
         unfit = [v for v in vectors.unfit.get(field.name, ()) if not is_bytes and storage.min <= v <= storage.max]
@@ -175,8 +175,8 @@ def _id(id: int, message: Message | None) -> str:
     """An id, the longest and the shortest frame of its message, and what becomes of the latter where all is 0."""
     if message is None:
         return f"{{{id}u, -1, 0u, ICD_ERROR_UNKNOWN_ID}}"
-    is_refused = any(part.low > 0 for part in message.open_parts)  # zeros count less than there can be
-    return f"{{{id}u, {message.length}, {message.least}u, {'ICD_ERROR_LENGTH' if is_refused else 'ICD_OK'}}}"
+    is_refused = any(part.low > 0 for part in message.layout.parts)  # zeros count less than there can be
+    return f"{{{id}u, {message.length}, {message.layout.shortest}u, {'ICD_ERROR_LENGTH' if is_refused else 'ICD_OK'}}}"
 
 
 def _frame(row: SharedRow) -> str:
@@ -208,7 +208,7 @@ def _plain(message: MessageDescription, vectors: MessageVectors) -> MessageVecto
 def _tail(message: MessageDescription, tail: TailDescription, vectors: MessageVectors) -> dict[str, object]:
     """What there is of a message whose frames differ in length."""
     return {
-        "least": message.model.least,
+        "least": message.model.layout.shortest,
         "counter": next(place for place, one in enumerate(message.all_fields) if one.model is tail.counter.model),
         "high": tail.high,
         "frames": _bytes(b"".join(frame.ljust(message.model.length, b"\0") for frame in vectors.miscounted)),

@@ -8,7 +8,8 @@ from icdgen import codec
 from icdgen.backends.html.texts import MINUS, number
 from icdgen.describe.display import base_of, digits_of, integer_text, number_text
 from icdgen.icd import floats
-from icdgen.icd.model import Field, Message, Node
+from icdgen.icd.layout import NodePlace
+from icdgen.icd.model import Message, Node
 from icdgen.tables import clean
 from icdgen.vectors import patterns
 
@@ -48,15 +49,15 @@ def examples(message: Message, node: Node) -> list[Example]:
     rows = [("random 0", patterns.random_frame(message, "vector 0")), ("all ones", b"\xff" * message.length)]
     found = []
     for why, frame in rows:
-        if message.tail is not None:
-            frame = patterns.cut(message, node, frame, message.tail.most)
-        raw = codec.decode(node, message, frame) if len(message.fields) <= _MOST else {}
-        cells = [_cell(field, raw.get(field.name)) for field in message.fields] if raw else []
+        if message.layout.parts:
+            frame = patterns.cut(message, node, frame, message.layout.parts[-1].most)
+        raw = codec.decode(node, message, frame) if len(message.layout.scalars) <= _MOST else {}
+        cells = [_cell(field, raw.get(field.name)) for field in message.layout.scalars] if raw else []
         found.append(Example(why, frame.hex(" ").upper(), frame, cells))
     return found
 
 
-def _cell(field: Field, raw: int | bytes | None) -> Cell:
+def _cell(field: NodePlace, raw: int | bytes | None) -> Cell:
     if raw is None:
         return Cell("", "not there")
     if isinstance(raw, bytes):
@@ -78,6 +79,6 @@ def _cell(field: Field, raw: int | bytes | None) -> Cell:
     return Cell(_raw(field, raw), "" if physical is None else number_text(field, physical).replace("-", MINUS))
 
 
-def _raw(field: Field, raw: int) -> str:
+def _raw(field: NodePlace, raw: int) -> str:
     """The raw value of an integer field in its display format."""
     return integer_text(field, raw) if base_of(field) else number(raw)

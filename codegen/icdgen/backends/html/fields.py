@@ -10,7 +10,8 @@ from icdgen import layout
 from icdgen.backends.html import texts
 from icdgen.backends.html.links import Links
 from icdgen.backends.html.sections import Section
-from icdgen.icd.model import Field, Message, Node
+from icdgen.icd.layout import NodePlace
+from icdgen.icd.model import Message, Node
 from icdgen.show.fields import remarks
 
 
@@ -21,7 +22,7 @@ class FieldRow:
     key: int
     at: int
     bits: int
-    field: Field | None = None
+    field: NodePlace | None = None
     name: str = ""
     anchor: str = ""
     type: str = ""
@@ -62,7 +63,7 @@ def rows(message: Message, node: Node, links: Links) -> list[FieldRow]:
     repeats, anchors = links.repeats(message), links.anchors(message)
     found = [
         _row(key, field, message, links, anchors[key - 1])
-        for key, field in enumerate(message.fields, 1)
+        for key, field in enumerate(message.layout.scalars, 1)
         if not field.implied and repeats.is_shown(key)
     ]
     for gap in layout.gaps(message, node):
@@ -84,7 +85,7 @@ def between(found: list[FieldRow], section: Section) -> list[FieldRow | FlagRow]
     return made
 
 
-def _row(key: int, field: Field, message: Message, links: Links, anchor: str) -> FieldRow:
+def _row(key: int, field: NodePlace, message: Message, links: Links, anchor: str) -> FieldRow:
     # of what is derived the formula says all
     told = () if field.derived else remarks(field, texts.number, message if message.has_conditions else None)
     return FieldRow(

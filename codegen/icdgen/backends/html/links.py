@@ -11,7 +11,8 @@ from zlib import crc32
 
 from icdgen.backends.html.repeats import Repeats
 from icdgen.icd.erratum import Erratum
-from icdgen.icd.model import Enum, Field, Icd, Message, Node
+from icdgen.icd.layout import NodePlace
+from icdgen.icd.model import Enum, Icd, Message, Node
 from icdgen.icd.units import Unit
 from icdgen.naming import snake, words
 
@@ -78,9 +79,9 @@ class Links:
 
     def anchors(self, message: Message) -> list[str]:
         """Anchors of the fields of a message, in their order."""
-        return [self.anchor(message, field.name) for field in message.fields]
+        return [self.anchor(message, field.name) for field in message.layout.scalars]
 
-    def field(self, message: Message, field: Field) -> str:
+    def field(self, message: Message, field: NodePlace) -> str:
         """``demo/estimated_roll.html#field-roll_angle``"""
         return f"{self.message(message)}#{self.anchor(message, field.name)}"
 
@@ -101,8 +102,8 @@ def _anchors_of_fields(message: Message, repeats: Repeats, vocabulary: tuple[str
     """By the name of the field; the fields of further elements have those of the first, where the page shows that alone."""
     taken: set[str] = set()
     found: dict[str, str] = {}
-    for field, leader, name in zip(message.fields, repeats.leaders, repeats.names, strict=True):
-        first = message.fields[leader - 1]
+    for field, leader, name in zip(message.layout.scalars, repeats.leaders, repeats.names, strict=True):
+        first = message.layout.scalars[leader - 1]
         if first is field:
             found[field.name] = _free("field-" + slug(field.identifier or name, vocabulary), taken)
         else:

@@ -90,19 +90,18 @@ def _facts(relations: Relations, node: Node, message: Message) -> list[tuple[str
 
 
 def _open_parts(message: Message) -> Iterator[tuple[str, str, str]]:
-    """How much there is of each open part."""
-    arrays = {one.path[0].name for one in message.fields if one.path}
-    for part in message.open_parts:
-        is_told = message.counter is not None and message.counter.implied and part is message.tail
-        until = "up to the end" if is_told else f"as many as {count_text(part.counter, part.plus)} says"
-        most = count(part.most, "element" if part.step > 1 or part.name in arrays else "byte")
-        yield "Open end" if part is message.tail else "Open part", f"{part.name}: up to {most}, {until}", ""
+    """How much there is of each part of variable length."""
+    parts = message.layout.parts
+    for part in parts:
+        until = "up to the end" if part.is_rest else f"as many as {count_text(part.counter, part.plus)} says"
+        most = count(part.most, "element" if part.is_array else "byte")
+        yield "Open end" if part is parts[-1] else "Open part", f"{part.name}: up to {most}, {until}", ""
 
 
 def _plan(
     relations: Relations, node: Node, message: Message, drawings: list[drawing.Drawing], panels: list[sections.Section]
 ) -> dict[str, object]:
-    enums = {field.enum.name: plan.enum_plan(field.enum) for field in message.fields if field.enum is not None}
+    enums = {field.enum.name: plan.enum_plan(field.enum) for field in message.layout.scalars if field.enum is not None}
     repeats = relations.links.repeats(message)
     return {
         **plan.message_plan(message, node),

@@ -31,7 +31,9 @@ def home(relations: Relations) -> dict[str, object]:
         (f"{len(errata):,}", "known errata"),
         (f"{notes:,}", "notes"),
     ]
-    example = next((m for m in messages if m.telemetry_id is not None and any(f.has_formula for f in m.fields)), None)
+    example = next(
+        (m for m in messages if m.telemetry_id is not None and any(f.has_formula for f in m.layout.scalars)), None
+    )
     return {
         "totals": totals,
         "cards": [_card(relations, node) for node in icd.nodes],

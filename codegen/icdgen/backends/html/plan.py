@@ -11,28 +11,30 @@ from icdgen import layout
 from icdgen.describe.bounds import bounds
 from icdgen.describe.display import base_of, digits_of
 from icdgen.describe.steps import EXACT_DOUBLE, steps
-from icdgen.icd.model import Enum, Field, Message, Node
+from icdgen.icd.layout import NodePlace
+from icdgen.icd.model import Enum, Message, Node
 
 
 def message_plan(message: Message, node: Node) -> dict[str, object]:
     """The plan of a message; ``node`` is the one that declares it. Fields stand in the order of the ICD."""
-    places = {field.name: place for place, field in enumerate(message.fields)}
-    fields = [_field(field, message, node, places) for field in message.fields]
+    places = {field.name: place for place, field in enumerate(message.layout.scalars)}
+    fields = [_field(field, message, node, places) for field in message.layout.scalars]
     plan: dict[str, object] = {"name": message.name, "length": message.length, "fields": fields}
-    if message.has_conditions:
+    if any(node.present_if for node in message.layout.fixed):
         plan["conditional"] = True
     if message.may_end_early:
         plan["endsEarly"] = True
-    if message.inner:
+    parts = message.layout.parts
+    if len(parts) > 1:
         plan["inner"] = [
             {"counter": places[one.counter], "begin": one.begin, "step": one.step, "most": one.most, "plus": one.plus}
-            for one in message.inner
+            for one in parts[:-1]
         ]
-        plan["fewest"] = message.least
-    if message.tail is not None:
-        tail = message.tail
+        plan["fewest"] = message.layout.shortest
+    if parts:
+        tail = parts[-1]
         plan["tail"] = {
-            "part": tail.name, "counter": tail.counter, "least": message.begin, "step": tail.step, "most": tail.most,
+            "part": tail.name, "counter": tail.counter, "least": tail.begin, "step": tail.step, "most": tail.most,
             **({"plus": tail.plus} if tail.plus else {}),
         }  # fmt: skip
     return plan
@@ -48,9 +50,10 @@ def integer(value: int) -> int | str:
     return value if abs(value) < EXACT_DOUBLE else str(value)
 
 
-def _field(field: Field, message: Message, node: Node, places: Mapping[str, int]) -> dict[str, object]:
+def _field(field: NodePlace, message: Message, node: Node, places: Mapping[str, int]) -> dict[str, object]:
     """The plan of a field; what does not apply is left out. ``places``: of the message's fields by name."""
-    scaled, curve, how, tail = steps(field), field.curve, field.derived, message.tail
+    scaled, curve, how = steps(field), field.curve, field.derived
+    variable = message.layout.sequence
     digits, base = digits_of(field), base_of(field)
     pieces = () if field.implied or field.is_bytes else layout.pieces(field, node)
     is_part = bool(curve) and field.leads_back and field.ends != (field.raw_min, field.raw_max)
@@ -83,8 +86,8 @@ def _field(field: Field, message: Message, node: Node, places: Mapping[str, int]
             [[places[one] for one in how.fields], list(how.numbers), list(map(list, how.steps))] if how else None
         ),
         # a new message has it, though it is not sent
-        "inner": bool(field.path) and any(one.name == field.path[0].name for one in message.inner),
+        "inner": field.name != field.steps[0].node.name and any(field.steps[0].node is part for part in variable[:-1]),
         # bytes or text, which a frame holds in part
-        "isOpen": tail is not None and field.name == tail.name,
+        "isOpen": bool(variable) and field.is_bytes and field.scalar.length is not None and field.node is variable[-1],
     }
     return {key: value for key, value in plan.items() if value is not None and value is not False}

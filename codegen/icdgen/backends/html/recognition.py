@@ -27,15 +27,17 @@ def index(relations: Relations) -> dict[str, Any]:
 
 def _tail(relations: Relations, message: Message) -> list[dict[str, Any]]:
     """Where frames differ in length: what these are, and the bits that count the elements."""
-    tail, counter = message.tail, message.counter
+    own, parts = message.layout, message.layout.parts
     if message.may_end_early:
-        return [{"least": message.least, "step": 1, "pieces": []}]
-    if tail is None or counter is None:
+        return [{"least": own.shortest, "step": 1, "pieces": []}]
+    if not parts:
         return []
-    if message.inner:  # what its frames say themselves, their decoder looks at
-        return [{"least": message.least, "step": message.lengths.step, "pieces": []}]
-    pieces = () if counter.implied else layout.pieces(counter, relations.icd.node(message.node))
-    found = {"least": message.least, "step": tail.step, "pieces": [[p.byte, p.shift, p.bits, p.at] for p in pieces]}
+    if len(parts) > 1:  # what its frames say themselves, their decoder looks at
+        return [{"least": own.shortest, "step": own.lengths.step, "pieces": []}]
+    tail, node = parts[-1], relations.icd.node(message.node)
+    counter = next((place for place in own.places if place.name == tail.counter and not tail.is_rest), None)
+    pieces = () if counter is None else layout.pieces(counter, node)
+    found = {"least": own.shortest, "step": tail.step, "pieces": [[p.byte, p.shift, p.bits, p.at] for p in pieces]}
     return [found | ({"low": tail.low} if tail.low else {})]
 
 

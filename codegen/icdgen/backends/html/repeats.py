@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections import Counter
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import pairwise
+from typing import TypeAlias
 
-from icdgen.icd.model import Field, Message
-from icdgen.icd.paths import Step, name_of
+from icdgen.icd.layout import NodePlace, PathStep, name_of_steps, size_of
+from icdgen.icd.model import Message
 
 _LONG = 16  # elements of an array of numbers that is shown by one element
+
+_Array: TypeAlias = "tuple[tuple[int, int | None], ...]"
+"""Way to an array: the identity of each node on it, and which element of an array around it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,15 +37,18 @@ class Repeats:
     """Those of a message, and the fields that its page shows."""
 
     def __init__(self, message: Message) -> None:
-        is_nested = any(field.path for field in message.fields)
-        found = _arrays(message) if is_nested and not message.contains else {}  # a composite has the bands of its parts
-        self.arrays = sorted(found.values(), key=lambda one: (one.first, -one.end))
-        keys = {field.name: key for key, field in enumerate(message.fields, 1)}
+        self._found: dict[_Array, Repeat] = {}
+        scalars = message.layout.scalars
+        if not message.contains:  # a composite has the bands of its parts
+            self._add_arrays(message, scalars)
+        self.arrays = sorted(self._found.values(), key=lambda one: (one.first, -one.end))
+        firsts = [self._first(scalar.steps) for scalar in scalars]
+        keys = {scalar.name: key for key, scalar in enumerate(scalars, 1)}
         # Key of the field of the first element that stands for each field, in the order of the fields.
-        self.leaders = [keys[_leader(field, found)] for field in message.fields]
-        self.names = [_name(field, found) for field in message.fields]
+        self.leaders = [keys[name_of_steps(steps)] for steps in firsts]
+        self.names = [self._label(steps).removesuffix("[]") for steps in firsts]
         # Name of the struct of the outermost array that each field is in, or of an array without structs; else empty.
-        self.elements = [_element(field, found) for field in message.fields]
+        self.elements = [self._element(scalar.steps) for scalar in scalars]
 
     def is_shown(self, key: int) -> bool:
         """Whether the page shows the field itself, and no other stands for it."""
@@ -61,62 +68,56 @@ class Repeats:
         name = self.names[key - 1]
         return name.rpartition("[].")[2] if self.elements[key - 1] else name
 
-
-def _arrays(message: Message) -> dict[str, Repeat]:
-    """The arrays that are shown by one element, by the name of their first element."""
-    times = {one.name: f"{one.fewest} to {one.most}" for one in message.open_parts}
-    starts = sorted(field.at for field in message.fields)
-    sizes = Counter(_array(field.path, depth) for field in message.fields for depth in range(len(field.path)))
-    found: dict[str, Repeat] = {}
-    for field in message.fields:
-        for depth, step in enumerate(field.path):
-            if step.index:  # only first elements lead to further arrays
-                break
-            name = _array(field.path, depth)
-            is_open = depth == 0 and step.name in times
-            if step.index is None or name in found or not (is_open or step.struct or step.count > _LONG):
+    def _add_arrays(self, message: Message, scalars: tuple[NodePlace, ...]) -> None:
+        """Find the arrays that are shown by one element."""
+        starts = sorted(scalar.at for scalar in scalars)
+        for place in _arrays(message.layout.places):
+            node, variable = place.node, message.layout.sequence
+            is_variable = any(node is part for part in variable)
+            if place.count < 2 or not (is_variable or place.struct is not None or place.count > _LONG):
                 continue
-            begin = sum(one.member.at for one in field.path[: depth + 1] if one.member) if step.struct else field.at
-            end = begin + step.stride * step.count
+            begin, end = place.at, place.at + place.width
             inside = bisect_left(starts, end) - bisect_left(starts, begin)
             # Other fields at the same place (alternatives, overlays) are to be seen: then every element is shown.
-            if step.count > 1 and begin % 8 == step.stride % 8 == 0 and inside == sizes[name]:
-                label = ".".join(filter(None, (_label(field.path[:depth], found), step.name)))
-                found[name] = Repeat(label, begin // 8, step.stride // 8, step.count, times.get(name, str(step.count)))
-    return found
+            if begin % 8 == place.bits % 8 == 0 and inside == sum(1 for _ in place.scalars()):
+                size = next((size_of(part) for part in variable if part is node), None)
+                times = str(place.count) if size is None else f"{size.fewest} to {size.most}"
+                label = ".".join(filter(None, (self._label(place.steps[:-1]), node.name)))
+                self._found[_array(place.steps, len(place.steps) - 1)] = Repeat(
+                    label, begin // 8, place.bits // 8, place.count, times
+                )
+
+    def _first(self, steps: tuple[PathStep, ...]) -> tuple[PathStep, ...]:
+        """Return the same place in the first element of every array that is shown by one."""
+        for depth, step in enumerate(steps):
+            if step.element and _array(steps, depth) in self._found:
+                steps = (*steps[:depth], PathStep(step.node, 0), *steps[depth + 1 :])
+        return steps
+
+    def _label(self, steps: tuple[PathStep, ...]) -> str:
+        """``satellites[].elev``"""
+        return ".".join(
+            f"{step.node.name}[]" if _array(steps, depth) in self._found else name_of_steps((step,))
+            for depth, step in enumerate(steps)
+        )
+
+    def _element(self, steps: tuple[PathStep, ...]) -> str:
+        for depth in range(len(steps)):
+            if _array(steps, depth) in self._found:
+                is_struct = depth + 1 < len(steps)
+                return name_of_steps(steps[: depth + 1] if is_struct else (*steps[:depth], PathStep(steps[depth].node)))
+        return ""
 
 
-def _array(path: tuple[Step, ...], depth: int) -> str:
-    """The name of the array that a step of a path leads into."""
-    return name_of((*path[:depth], replace(path[depth], index=None)))
+def _arrays(places: tuple[NodePlace, ...]) -> Iterator[NodePlace]:
+    """List the arrays among places, and of each the arrays within its first element."""
+    for place in places:
+        if place.count:
+            yield place
+        if place.struct is not None:
+            yield from _arrays(place.elements()[0].inner())
 
 
-def _first(path: tuple[Step, ...], found: dict[str, Repeat]) -> tuple[Step, ...]:
-    """The same place in the first element of every array that is shown by one."""
-    for depth, step in enumerate(path):
-        if step.index and _array(path, depth) in found:
-            path = (*path[:depth], replace(step, index=0), *path[depth + 1 :])
-    return path
-
-
-def _leader(field: Field, found: dict[str, Repeat]) -> str:
-    return name_of(_first(field.path, found)) if found and field.path else field.name
-
-
-def _name(field: Field, found: dict[str, Repeat]) -> str:
-    """``satellites[].elev``"""
-    if not found or not field.path:
-        return field.name
-    return _label(_first(field.path, found), found).removesuffix("[]")
-
-
-def _label(path: tuple[Step, ...], found: dict[str, Repeat]) -> str:
-    return ".".join(f"{step.name}[]" if _array(path, depth) in found else step.text for depth, step in enumerate(path))
-
-
-def _element(field: Field, found: dict[str, Repeat]) -> str:
-    for depth, step in enumerate(field.path):
-        array = _array(field.path, depth)
-        if array in found:
-            return name_of(field.path[: depth + 1]) if step.struct else array
-    return ""
+def _array(steps: tuple[PathStep, ...], depth: int) -> _Array:
+    """Return the way to the array that a step leads into."""
+    return (*((id(step.node), step.element) for step in steps[:depth]), (id(steps[depth].node), None))

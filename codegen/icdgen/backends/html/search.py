@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 from icdgen.backends.html import guide, protocol, texts
 from icdgen.backends.html.relations import Relations
-from icdgen.icd.model import CONFIGURATION, Enum, Field, Member, Message, Node
+from icdgen.icd.layout import NodePlace
+from icdgen.icd.model import CONFIGURATION, Enum, Member, Message, Node
 from icdgen.naming import words
 
 _MOST = 300  # characters of a text that is searched
@@ -123,7 +124,7 @@ def _of_enum(relations: Relations, node: Node, enum: Enum, is_error: bool) -> It
         yield Entry("member", member.name, context, _words(member, node), about, phrases, url, member.aliases)
 
 
-def _words(thing: Message | Field | Enum | Member, node: Node) -> str:
+def _words(thing: Message | NodePlace | Enum | Member, node: Node) -> str:
     """The words of its identifiers, unless they are those of its name."""
     found = " ".join(words(thing.identifier or thing.name, node.vocabulary)).lower()
     return "" if found == " ".join(re.findall(r"[^\W_]+", thing.name)).lower() else found

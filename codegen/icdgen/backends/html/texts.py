@@ -7,7 +7,8 @@ from fractions import Fraction
 
 from icdgen.describe.bounds import allowed_ends
 from icdgen.describe.numbers import exact_text, factor_text
-from icdgen.icd.model import CONFIGURATION, Field, Message
+from icdgen.icd.layout import NodePlace
+from icdgen.icd.model import CONFIGURATION, Message
 
 MINUS = "\N{MINUS SIGN}"
 BUSES = {"uart": "UART", "i2c": "I²C", "can": "CAN"}
@@ -28,21 +29,21 @@ def span(low: str, high: str) -> str:
     return f"{low} … {high}" if low or high else ""
 
 
-def raw_range(field: Field) -> str:
+def raw_range(field: NodePlace) -> str:
     """Raw values that the field can hold; empty where that says nothing."""
     if field.type in ("uint", "int"):
         return span(number(field.raw_min), number(field.raw_max))
     return ""
 
 
-def physical_range(field: Field) -> str:
+def physical_range(field: NodePlace) -> str:
     """Physical values from the smallest to the largest, as far as type and limits tell; empty where they are the raw ones."""
     if field.type in ("uint", "int") and not (field.has_formula or field.limits or field.unit):
         return ""
     return span(*("" if bound is None else number(bound) for bound in allowed_ends(field)))
 
 
-def type_name(field: Field) -> str:
+def type_name(field: NodePlace) -> str:
     """``uint16``, ``float32``, ``bytes``, ``derived``"""
     if field.derived is not None:
         return "derived"

@@ -28,7 +28,7 @@ def values(relations: Relations) -> dict[str, object]:
     widths: dict[str, set[int]] = defaultdict(set)
     for node in relations.icd.nodes:
         for message in node.messages:
-            for field in message.fields:
+            for field in message.layout.scalars:
                 counts[field.type] += 1
                 widths[field.type].add(field.bits)
     return {

@@ -79,8 +79,8 @@ def page_facts(message: Message, wire: Wire) -> dict[str, object]:
         "telemetry": message.telemetry_id,
         "crc": [crc_facts(one.facts) for one in wire.checked],
     }
-    if len(message.lengths) > 1:
-        facts["lengths"] = [message.least, message.lengths.step]
+    if len(message.layout.lengths) > 1:
+        facts["lengths"] = [message.layout.shortest, message.layout.lengths.step]
     facts |= framing_facts(wire.facts)
     if wire.facts.stream:
         facts["stream"] = envelopes.script_facts(wire.facts.stream, message)

@@ -60,7 +60,7 @@ def _known(under: Under) -> str:
 
 
 def _lengths(message: Message) -> str:
-    lengths = message.lengths
+    lengths = message.layout.lengths
     return f"range({lengths.start}, {lengths.stop}{f', {lengths.step}' if lengths.step > 1 else ''})"
 
 

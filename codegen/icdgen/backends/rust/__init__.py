@@ -52,7 +52,7 @@ class RustBackend:
             "id_bits": description.id_bits,
             **_functions(),
         }
-        has_tails = any(message.tail for node in icd.nodes for message in node.messages)
+        has_tails = any(message.layout.sequence for node in icd.nodes for message in node.messages)
         links = links_of(description)
         yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **common)
         of_crate = {"has_tails": has_tails, "nodes": icd.nodes, "summary": nodes.summary, "wired": bool(links)}

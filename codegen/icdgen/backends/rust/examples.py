@@ -41,7 +41,7 @@ def direction_example(direction: Direction, node: NodeDescription, crate: str) -
         [
             f"use {crate}::{node.name}::{name};",
             "",
-            f"let message = {name}::from_bytes({one}::{id.upper()}, &[0; {message.model.least}])?;",
+            f"let message = {name}::from_bytes({one}::{id.upper()}, &[0; {message.model.layout.shortest}])?;",
             f"assert_eq!(message.name(), {one}::NAME);",
         ],
         crate,

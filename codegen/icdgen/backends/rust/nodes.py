@@ -39,10 +39,10 @@ def typed(value: int) -> str:
 def guarded(candidate: Candidate, path: str) -> str:
     """What an arm takes: the id, and what of the bytes shows that they are of this message, its length and its constants."""
     model = candidate.message.model
-    terms = _lengths(model.lengths, f"{path}::LENGTH")
+    terms = _lengths(model.layout.lengths, f"{path}::LENGTH")
     for sign in candidate.signs:
         byte = f"bytes[{sign.byte}]"
-        if sign.byte >= model.least:  # a zero that may be cut off
+        if sign.byte >= model.layout.shortest:  # a zero that may be cut off
             byte = f"bytes.get({sign.byte}).map_or(0, |byte| *byte)"
         masked = byte if sign.mask == 0xFF else f"{byte} & {mask(sign.mask)}"
         terms.append(f"{masked} == {mask(sign.value)}")

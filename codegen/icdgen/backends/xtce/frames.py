@@ -127,7 +127,7 @@ class Frames:
             made.notes.append("it is sent with the zeros that it may be sent without")
         for one in message.derived:
             made.notes.append(f"`{one.model.name}` is left out: it is derived by `{one.model.formula}`")
-        self._lay_out(made, found, self.head + message.model.fixed * 8)
+        self._lay_out(made, found, self.head + message.model.layout.length * 8)
         if behind is not None:
             is_placed = any(one.at is not None for one in made.entries)
             made.entries.append(behind._replace(at=behind.run.at if is_placed else None))

@@ -7,8 +7,8 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from icdgen import layout
+from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import Node
-from icdgen.icd.places import AnyField
 
 
 class Run(NamedTuple):
@@ -28,11 +28,12 @@ class Run(NamedTuple):
         return not self.is_little or (self.at % 8 == 0 and self.bits % 8 == 0)
 
 
-def run_of(field: AnyField, node: Node) -> Run | None:
+def run_of(field: NodePlace, node: Node) -> Run | None:
     """The bits of a field in the frame of its message; None where XTCE has no word for their order."""
     if field.is_bytes:
         return Run(field.at, field.bits)
-    pieces = sorted(layout.pieces_at(field.at, field.bits, *field.orders(node)), key=lambda one: one.at)
+    orders = field.orders_in_effect(node.orders)
+    pieces = sorted(layout.pieces_at(field.at, field.bits, orders.byte, orders.bit), key=lambda one: one.at)
     falling = _joined([(8 * one.byte + 8 - one.shift - one.bits, one.bits) for one in reversed(pieces)])
     if falling is not None:
         return Run(falling, field.bits)
@@ -40,7 +41,7 @@ def run_of(field: AnyField, node: Node) -> Run | None:
     return None if rising is None else Run(rising, field.bits, is_little=True)
 
 
-def run_of_all(fields: Iterable[AnyField], node: Node) -> Run | None:
+def run_of_all(fields: Iterable[NodePlace], node: Node) -> Run | None:
     """The bits of the elements of an array; None where one does not follow the other."""
     runs = [run_of(one, node) for one in fields]
     found = [one for one in runs if one is not None and one.is_usual and one.is_little == (runs[0] or one).is_little]
