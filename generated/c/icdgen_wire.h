@@ -53,7 +53,7 @@ typedef struct {
     uint8_t start;
     /** Follows the escape byte at the end of a message. */
     uint8_t end;
-    /** Follows the escape byte where the escape byte itself is meant as data. */
+    /** Follows the escape byte if the escape byte itself is data. */
     uint8_t escaped;
     /** Whether the id is escaped like the data. */
     bool escapes_id;
@@ -112,17 +112,17 @@ typedef struct {
     uint32_t width;
     /** Generator polynomial, most significant bit first, without the leading term. */
     uint32_t polynomial;
-    /** Value of the register at the beginning. */
+    /** Initial value of the register. */
     uint32_t init;
     /** Whether each byte enters least significant bit first. */
     bool reflect_in;
     /** Whether the bits of the register are reversed at the end. */
     bool reflect_out;
-    /** What the register is combined with at the end. */
+    /** Value that is XORed with the register at the end. */
     uint32_t xor_out;
     /** Whether `empty` is known. */
     bool has_empty;
-    /** Checksum of no bytes at all, where it is not what the algorithm gives. */
+    /** Checksum of no bytes, if it is not the result of the algorithm. */
     uint32_t empty;
     const uint8_t *table8;   /**< Of a width of up to 8 bits. */
     const uint16_t *table16; /**< Of a greater one; both NULL: it is computed without. */
@@ -167,15 +167,15 @@ typedef enum {
 typedef struct {
     /** Data bytes of a packet. */
     uint8_t data_bytes;
-    /** Index of the byte that counts the packets still to come. */
+    /** Index of the byte that counts the packets that follow. */
     uint8_t left_at;
-    /** What that byte counts in the last packet. */
+    /** Value of that byte in the last packet. */
     uint8_t left_in_last;
     /** Most packets of a message. */
     uint32_t packets;
     /** Most bytes of a message. */
     uint32_t bytes;
-    /** Value of the bytes of the last packet that hold no data. */
+    /** Value of unused bytes of the last packet. */
     uint8_t fill;
     /** Longest time between two packets of a message, in milliseconds. */
     uint32_t packet_timeout;
@@ -185,7 +185,7 @@ typedef struct {
 typedef struct {
     /** Address of the node. */
     uint8_t node_address;
-    /** Most data bytes of one packet, of which CAN 2.0 has up to 8. */
+    /** Most data bytes of one packet; CAN 2.0 allows 8. */
     uint8_t data_bytes;
     icd_can_part_t type;
     icd_can_part_t channel;
@@ -363,7 +363,7 @@ typedef struct {
     icd_step_t information;
     /** Time between two polls of the busy flag, in milliseconds. */
     uint32_t poll_interval;
-    /** How long the busy flag may stay set, in milliseconds. */
+    /** Longest time that the busy flag stays set, in milliseconds. */
     uint32_t timeout;
 } icd_list_form_t;
 
@@ -375,17 +375,17 @@ typedef struct {
     icd_step_t ready;
     /** Starts the transfer of the block. */
     icd_step_t burst;
-    /** What the burst telecommand gives as length. */
+    /** Value of the length in the burst telecommand. */
     uint32_t message_length;
-    /** Whether the checksum of a block covers the fill of its last packet. */
+    /** Whether the checksum of a block covers the padding of its last packet. */
     bool checksum_covers_fill;
     /** Counter that goes with the type of the index file. */
     uint8_t index_counter;
     /** Time between two polls of the ready flag, in milliseconds. */
     uint32_t poll_interval;
-    /** How long a block may take to load, in milliseconds. */
+    /** Longest time to load a block, in milliseconds. */
     uint32_t ready_timeout;
-    /** A burst is over if no packet came for this long, in milliseconds. */
+    /** Time without a packet after which a burst is over, in milliseconds. */
     uint32_t silence;
     /** Most bursts for one block. */
     uint32_t rounds;
@@ -407,19 +407,19 @@ typedef struct {
     icd_step_t finalize;
     /** Tells whether the block is committed. */
     icd_step_t finalized;
-    /** What `initiate` gives as block size. */
+    /** Value of the block size in `initiate`. */
     uint32_t block_size;
-    /** Whether the checksum of a block covers the fill of its last packet. */
+    /** Whether the checksum of a block covers the padding of its last packet. */
     bool checksum_covers_fill;
     /** Time between two polls of a busy flag, in milliseconds. */
     uint32_t poll_interval;
-    /** How long the destination may take to be erased, in milliseconds. */
+    /** Longest time to erase the destination, in milliseconds. */
     uint32_t erase_timeout;
-    /** How long committing a block may take, in milliseconds. */
+    /** Longest time to commit a block, in milliseconds. */
     uint32_t finalize_timeout;
     /** Most rounds of packets for one block. */
     uint32_t rounds;
-    /** Bytes that a destination holds: no file may be larger; 0 if the ICD does not say. */
+    /** Size of a destination in bytes: no file may be larger; 0 if the ICD does not say. */
     uint32_t destination_bytes;
     /** The destinations that are supported; NULL: all. */
     const uint8_t *destinations;
@@ -435,7 +435,7 @@ typedef struct {
     icd_step_t progress;
     /** Time between two polls of the busy flag, in milliseconds. */
     uint32_t poll_interval;
-    /** How long it may take, in milliseconds. */
+    /** Longest duration, in milliseconds. */
     uint32_t timeout;
 } icd_erase_form_t;
 
@@ -447,9 +447,9 @@ typedef struct {
     icd_step_t progress;
     /** Time between two polls of that frame, in milliseconds. */
     uint32_t poll_interval;
-    /** How long it may take, in milliseconds. */
+    /** Longest duration, in milliseconds. */
     uint32_t timeout;
-    /** The programs that it may be asked for; NULL: all. */
+    /** The programs for which this is supported; NULL: all. */
     const uint8_t *programs;
     /** How many they are. */
     uint16_t programs_count;
@@ -538,13 +538,13 @@ typedef struct {
 
 /** How a client waits and tries again, in milliseconds. */
 typedef struct {
-    /** How long a reply may take, in milliseconds. */
+    /** Time-out of a reply, in milliseconds. */
     uint32_t reply_timeout;
-    /** How often a request is sent again. */
+    /** Number of retries of a request. */
     uint8_t retries;
     /** Time between two polls for an acknowledge, in milliseconds. */
     uint32_t poll_interval;
-    /** How long a telecommand may take to be processed, in milliseconds. */
+    /** Longest processing time of a telecommand, in milliseconds. */
     uint32_t poll_timeout;
 } icd_client_settings_t;
 

@@ -116,7 +116,7 @@ def test_a_fault_takes_with_it_only_what_it_spoils(faulty):
         (
             "IMP091",
             None,
-            "message `Nested`, `Value` is left out: it depends on `Inner`, which is not always there itself",
+            "message `Nested`, `Value` is left out: it depends on `Inner`, which is optional itself",
         ),
         ("IMP085", None, "`receivers` of `signal` is not used (5 times, first: message `Wide`, `Speed`)"),
     ]

@@ -22,7 +22,7 @@ def test_what_is_written_is_laid_out_and_without_findings(folder):
     result = icdgen("import", "train.dbc", cwd=folder)
     assert result.returncode == 0, result.stdout + result.stderr
     assert "train.dbc: a CAN database (DBC), 3 of 3 messages imported\n" in result.stdout
-    assert "2 names that are no identifiers got one:\n  value `2nd gear`: `value 2nd gear`\n" in result.stdout
+    assert "2 names that are not valid identifiers got one:\n  value `2nd gear`: `value 2nd gear`\n" in result.stdout
     assert result.stdout.endswith("`icdgen check icd/train.yaml`: no findings\n")
     assert icdgen("fmt", "--check", "icd", cwd=folder).returncode == 0
 

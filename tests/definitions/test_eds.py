@@ -59,7 +59,7 @@ def test_ids_are_the_application_processes_that_are_said_or_those_of_topics(came
     assert [message(camera, name)["id"] for name in ("Picture", "Housekeeping", "Noop", "Shoot")] == [300, 20, 10, 10]
     assert [field(camera, name, "Code")["const"] for name in ("Noop", "Shoot")] == [0, 1]
     (process,) = [one for one in camera.definitions.troubles if one.code == "IMP083"]
-    assert process.message == "nothing says the application processes of 3 messages, only `TopicId` of their interfaces"
+    assert process.message == "no application process is stated for 3 messages, only `TopicId` of their interfaces"
 
 
 @pytest.mark.parametrize(("topic", "id"), [("3", 2 ^ 0x60), ("${CFE_MISSION/TELECOMMAND_BASE_TOPICID} + 255", 255)])
@@ -146,7 +146,7 @@ def test_an_error_control_is_a_field_and_what_is_not_held_is_said_with_its_line(
     assert field(gyro, "State", "Crc")["summary"] == "CRC16_CCITT."
     assert ("IMP082", "`Crc` is CRC16_CCITT of what is in the frame") in said(gyro)
     (missing,) = [one for one in gyro.definitions.troubles if one.severity == "error"]
-    why = "`Extra` is there only on a condition"
+    why = "`Extra` is present only on a condition"
     assert missing.message == f"message `Sometimes`: from `Extra` on only bytes are imported: {why}"
     lines = (SHEETS / "gyro.xml").read_text().splitlines()
     assert 'name="Sometimes"' in lines[missing.spot.line - 1]
@@ -243,10 +243,10 @@ OPEN = '<StringDataType name="open" length="9" fixedLength="false"{}</StringData
     [
         (container("A", baseType="A"), "based on each other in a circle, or too deep: A -> A"),
         (container("A", baseType="B") + container("B", baseType="A"), "in a circle, or too deep: A -> B -> A"),
-        (container("A", entry("A")) + container("B", baseType="A"), "hold each other in a circle, or too deep: A -> A"),
+        (container("A", entry("A")) + container("B", baseType="A"), "contain each other in a circle, or too deep: A -> A"),
         (container("A", entry("x/y/nothing")), "of the package `x/y`, which is neither in the file nor in its folder"),
         (container("A", entry("nothing")), "there is no type `nothing`"),
-        (container("A", baseType="byte"), "it is based on `byte`, which is no container"),
+        (container("A", baseType="byte"), "it is based on `byte`, which is not a container"),
         (container("A", ENTRY, abstract="true") + container("B", entry("A")), "`Q` is any container that is based on `A`"),
         (container("A", "<SegmentEntry/>"), "it has a `SegmentEntry`"),
         (container("A", ENTRY * 5001), "it has more than 5000 fields or 65535 bytes"),
@@ -254,16 +254,16 @@ OPEN = '<StringDataType name="open" length="9" fixedLength="false"{}</StringData
         (array("many", "byte", 'size="99999999999"') + container("A", entry("many")), "a dimension of `Q` is `99999999999`"),
         (array("many", "many", 'size="2"') + container("A", entry("many")), "`Q` is an array of "),
         (array("wide", "w", 'size="2000"') + WORD + container("A", entry("wide")), "`Q` is an array of 2,000 elements"),
-        (array("many", "byte", 'indexTypeRef="byte"') + container("A", entry("many")), "nothing says how many elements `Q` has"),
+        (array("many", "byte", 'indexTypeRef="byte"') + container("A", entry("many")), "how many elements `Q` has"),
         (array("odd", "I", 'size="2"') + container("I", '<PaddingEntry sizeInBits="4"/>') + container("A", entry("odd")),
-         "`Q` is an array of containers that are not of so many bytes each"),
-        (OPEN.format(">") + container("A", entry("open") + ENTRY), "`P` stands behind `Q`, whose length is not fixed"),
+         "`Q` is an array of containers of different or partial bytes"),
+        (OPEN.format(">") + container("A", entry("open") + ENTRY), "`P` follows `Q`, whose length is not fixed"),
         (OPEN.format('><StringDataEncoding terminationCharacter="0"/>') + container("A", entry("open")),
          "`open` ends at the character `0`"),
         (container("A", entry("byte", tag="ListEntry", more=' listLengthField="N"')),
-         "`Q` is there as often as `N` says, which is no number"),
+         "`Q` is there as often as `N` says, which is not a number"),
         (container("A", entry("byte", tag="FixedValueEntry", more=' fixedValue="256"')), "`Q` is never `256`"),
-        (constrained('<ValueConstraint entry="X.Y" value="1"/>'), "it depends on `X.Y`, which is no field that it has"),
+        (constrained('<ValueConstraint entry="X.Y" value="1"/>'), "it depends on `X.Y`, but it has no such field"),
         (constrained('<ValueConstraint entry="P" value="-1"/>'), "it depends on `P`, which is never `-1`"),
         (constrained('<ValueConstraint entry="P" value="1"/><ValueConstraint entry="P" value="2"/>'), "is both 1 and 2"),
         (constrained(f'<RangeConstraint entry="P">{SEVERAL}</RangeConstraint>'), "`P`, which has one of several values"),
@@ -272,7 +272,7 @@ OPEN = '<StringDataType name="open" length="9" fixedLength="false"{}</StringData
          + container("C", "", '<ConstraintSet><ValueConstraint entry="Q" value="1"/></ConstraintSet>', baseType="A"),
          "has a value and is of the type float"),
         (nested(20, 3) + container("C20", ENTRY), "it has more than 5000 fields or 65535 bytes"),
-        (nested(40, 1) + container("C40", ENTRY), "containers hold each other in a circle, or too deep"),
+        (nested(40, 1) + container("C40", ENTRY), "containers contain each other in a circle, or too deep"),
     ],
 )  # fmt: skip
 def test_containers_that_cannot_be_held_are_left_out_and_end(types, says, tmp_path):

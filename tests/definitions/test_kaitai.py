@@ -62,11 +62,11 @@ def test_lines_over_a_field_are_its_formula_and_other_values_are_said(probe, fra
     assert field(frame, "frame unnumbered", "current")["formula"] == "raw/1000.0 + 0.5"
     assert "formula" not in field(frame, "frame unnumbered", "uptime")  # whole numbers are divided without the rest
     assert [(one.code, one.message) for one in (*troubles(probe.definitions), *troubles(frame.definitions))] == [
-        ("IMP078", "`body total`: `cells[0] + cells[1]` is no line over one field"),
+        ("IMP078", "`body total`: `cells[0] + cells[1]` is not a linear function of one field"),
         ("IMP081", "`header callsign` is not imported: its bytes are processed by `ror(1)` before they are read"),
-        ("IMP078", "`header ssid`: `(ssid_raw & 0x0f) >> 1` is no line over one field"),
-        ("IMP078", "`payload halves`: `uptime / 2` is no line over one field"),
-        ("IMP081", "`payload elsewhere` is not imported: it stands where an expression says"),
+        ("IMP078", "`header ssid`: `(ssid_raw & 0x0f) >> 1` is not a linear function of one field"),
+        ("IMP078", "`payload halves`: `uptime / 2` is not a linear function of one field"),
+        ("IMP081", "`payload elsewhere` is not imported: an expression gives its position"),
         ("IMP081", "`payload data` is not imported: its size is `size * 2`"),
     ]
     assert [one.spot.line for one in troubles(frame.definitions)] == [18, 28, 46, 47, 58]
@@ -136,8 +136,8 @@ def test_what_goes_on_as_long_as_a_field_says_is_an_open_end(attribute, held, tm
     read = run.read(tmp_path / "bad.ksy", kinds.get("ksy"))
     assert field(read, "bad", "b") == {"at": 8, "name": "b", **held} and "formula" not in field(read, "bad", "a")
     assert [one.message for one in troubles(read.definitions)] == [
-        "`z` is not imported: it stands behind a part whose size is not fixed",
-        "`d`: `a * 0.5` is no line over one field",
+        "`z` is not imported: it follows a part of variable size",
+        "`d`: `a * 0.5` is not a linear function of one field",
     ]
 
 
@@ -159,18 +159,18 @@ BROAD = "types:\n" + "".join(
     [
         ("{id: b, type: nothing}", "", "`b` is not imported: there is no type `nothing`"),
         ("{id: b, type: t}", "types:\n  t:\n    seq: [{id: c, type: u}]\n  u:\n    seq: [{id: d, type: t}]\n",
-         "`b c d` is not imported: types hold each other in a circle: bad -> t -> u -> t"),
-        ("{id: b, type: bad}", "", "`b` is not imported: types hold each other in a circle: bad -> bad"),
-        ("{id: b, size: a - 255}", "", "`b` is not imported: its size is `a - 255`, which is never more than nothing"),
+         "`b c d` is not imported: types contain each other in a circle: bad -> t -> u -> t"),
+        ("{id: b, type: bad}", "", "`b` is not imported: types contain each other in a circle: bad -> bad"),
+        ("{id: b, size: a - 255}", "", "`b` is not imported: its size is `a - 255`, which is never positive"),
         ("{id: b, size: a * 2}", "", "`b` is not imported: its size is `a * 2`"),
-        ("{id: b, size: c}", "", "`b` is not imported: `c` is no number in front of it"),
+        ("{id: b, size: c}", "", "`b` is not imported: `c` is not a number in front of it"),
         ("{id: t, size: 4, type: t}", "types:\n  t:\n    seq: [{id: n, type: u1}, {id: b, size: n}]\n",
          "`t b` is not imported: its size is `n`, within a part that has a size of its own"),
         ("{id: b, size: -1}", "", "`b` is not imported: its size is -1"),
         ("{id: b, size: 99999}", "", "`b` is not imported: its size is 99999"),
-        ("{id: b, type: str}", "", "`b` is not imported: nothing says its size"),
-        ("{id: b, type: strz, encoding: ASCII}", "", "`b` is not imported: its size is not said: it ends at a terminator"),
-        ("{id: b, type: u2}", "", "`b` is not imported: nothing says in which order the bytes of `u2` are"),
+        ("{id: b, type: str}", "", "`b` is not imported: its size is not stated"),
+        ("{id: b, type: strz, encoding: ASCII}", "", "`b` is not imported: its size is not stated: it ends at a terminator"),
+        ("{id: b, type: u2}", "", "`b` is not imported: the byte order of `u2` is not stated"),
         ("{id: b, type: b65}", "", "`b` is not imported: an integer has 65 bits"),
         ("{id: b, type: f2be}", "", "`b` is not imported: there is no type `f2be`"),
         ("{id: b, type: u1, enum: e}", "", "`b` is not imported: there is no enumeration `e`"),
@@ -179,10 +179,10 @@ BROAD = "types:\n" + "".join(
         ("{id: b, type: u1, repeat: until, repeat-until: _ == 0}", "",
          "`b` is not imported: it is repeated as often as `_ == 0` says"),
         ("{id: b, type: u1, if: a > 3}", "", "`b` is not imported: it depends on `a > 3`, which is more than equalities of fields"),
-        ("{id: b, type: u1, if: c == 3}", "", "`b` is not imported: `c` is no number in front of it"),
+        ("{id: b, type: u1, if: c == 3}", "", "`b` is not imported: `c` is not a number in front of it"),
         ("{id: b, type: t(1)}", "", "`b` is not imported: the type `t(1)` has parameters"),
         ("{id: b, contents: [300]}", "", "`b` is not imported: its contents are `300`"),
-        ("{id: b, type: t0}", NESTED, "more than 50 types hold each other"),
+        ("{id: b, type: t0}", NESTED, "more than 50 types contain each other"),
         ("{id: b, type: {switch-on: a}}", "", "`b` is not imported: a switch has no cases"),
         ("{id: b, type: {switch-on: a, cases: {'\"x\"': u1}}}", "",
          '`b` is not imported: it depends on whether a field is `"x"`'),
@@ -220,7 +220,7 @@ BOMB = (
         ("", "not a Kaitai Struct definition: it has no `meta`", 1),
         (
             "meta:\n  id: x\nseq: 5\n",
-            "no message can be imported: message `x` is not imported: the `seq` of `x` is no list",
+            "no message can be imported: message `x` is not imported: the `seq` of `x` is not a list",
             1,
         ),
         ("meta:\n  id: x\nseq: []\n", "no message can be imported", 1),
@@ -253,4 +253,4 @@ def test_ways_to_go_on_are_bounded(tmp_path):
                f"{{id: d, type: {{switch-on: b, cases: {{{cases}}}}}}}")  # fmt: skip
     found = kaitai.Kaitai().read("bad.ksy", text.encode())
     assert len(found.networks[0].messages) == kaitai.MOST_MESSAGES
-    assert found.troubles[-1].message.endswith("it goes on in more than 256 ways; the others are not imported")
+    assert found.troubles[-1].message.endswith("it branches in more than 256 ways; the others are not imported")

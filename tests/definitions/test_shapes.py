@@ -339,7 +339,7 @@ def test_xtce_a_field_of_unknown_size_costs_what_follows_and_not_the_message(tmp
     )
     (lost,) = errors(read)
     assert (lost.code, lost.spot.line) == ("IMP081", 83)
-    assert lost.message == "message `Orbit`: from `Position` on only bytes are imported: its size stands in front of it"
+    assert lost.message == "message `Orbit`: from `Position` on only bytes are imported: it has a length prefix"
     assert read.held == 5 and [(one["name"], one["type"]) for one in message(read, "Orbit")["fields"]] == [
         ("Elapsed", "uint"), ("Position", "bytes"),
     ]  # fmt: skip

@@ -48,7 +48,7 @@ def test_a_value_has_its_unit_and_factor_and_where_another_register_has_the_fact
     assert power["summary"] == "Power. In W times 10 to the power of W_SF."
     assert "unit" not in power and "formula" not in power
     (said,) = (one for one in charger.definitions.troubles if one.code == "IMP078")
-    assert said.message == "message `charger`: the factors of 1 points stand in other registers: `W`"
+    assert said.message == "message `charger`: the factors of 1 points are in other registers: `W`"
     assert said.severity == "note"
 
 
@@ -82,7 +82,7 @@ def test_groups_that_are_there_several_times_are_structs(charger):
 def test_a_model_that_cannot_be_held_is_named_with_the_reason_and_the_others_are_held(charger):
     (said,) = (one for one in charger.definitions.troubles if one.severity == "error")
     assert said.message == (
-        "message `curves` is not imported: `Pt`, which is there any number of times, stands in another group"
+        "message `curves` is not imported: `Pt`, which has any number of repetitions, is inside another group"
     )
     assert (charger.held, charger.definitions.total) == (2, 3)
 
@@ -128,7 +128,7 @@ def test_groups_without_end_are_left_out():
     for _ in range(50):
         deep = {"name": "a", "points": [], "groups": [deep]}
     made = sunspec.SunSpec().read("deep.json", json.dumps({"id": 1, "group": deep}).encode())
-    assert "groups stand in each other more than 8 deep" in made.troubles[0].message
+    assert "groups are nested more than 8 deep" in made.troubles[0].message
 
 
 VALUES = (

@@ -186,13 +186,13 @@ MASKED = "<RestrictionCriteria><CustomAlgorithm/></RestrictionCriteria>"
         (container("A", base="nothing"), "there is no container `nothing`"),
         (container("A", '<ParameterRefEntry parameterRef="../../../etc"/>'), "there is no parameter `../../../etc`"),
         (container("A", '<ContainerSegmentRefEntry containerRef="A"/>'), "it has a `ContainerSegmentRefEntry`"),
-        (container("B") + container("A", base="B", of=GREATER), "it depends on `P > 1`, which is no equality"),
+        (container("B") + container("A", base="B", of=GREATER), "it depends on `P > 1`, which is not an equality"),
         (container("B") + container("A", base="B", of=MASKED), "it depends on a `CustomAlgorithm`"),
-        (container("A", entry("<IncludeCondition/>")), "`P` is there only on a condition"),
-        (container("A", entry(MANY)), "`P` is there 99999 times"),
+        (container("A", entry("<IncludeCondition/>")), "`P` is present only on a condition"),
+        (container("A", entry(MANY)), "`P` is repeated 99999 times"),
         (container("A", ENTRY * 5001), "it has more than 5000 fields"),
         (nested(40, 2) + container("C40", ""), "the file says more than 1,000,000 things"),
-        (nested(99, 1), "more than 50 containers inherit or hold each other"),
+        (nested(99, 1), "more than 50 containers inherit or contain each other"),
     ],
 )  # fmt: skip
 def test_containers_that_cannot_be_held_are_left_out_and_end(text, says, tmp_path, monkeypatch):
@@ -208,9 +208,9 @@ def test_containers_that_cannot_be_held_are_left_out_and_end(text, says, tmp_pat
         (BYTE.replace("Encoding", 'Encoding sizeInBits="1e9"'), "a size is `1e9`"),
         (BYTE.replace("Encoding", 'Encoding sizeInBits="999"'), "an integer has 999 bits"),
         ('<ArrayParameterType name="byte" arrayTypeRef="byte"/>', "an array of no dimensions"),
-        (type_("Aggregate", ITSELF), "has members of members without end"),
+        (type_("Aggregate", ITSELF), "has members nested without end"),
         (type_("Enumerated", LABELS), "has a label for the values 0 to 99999999999"),
-        (type_("String", NO_SIZE), "its size stands in front of it"),
+        (type_("String", NO_SIZE), "it has a length prefix"),
         ("<BinaryParameterType name='byte'/>", "the type `byte` has no encoding"),
     ],
 )  # fmt: skip
@@ -252,7 +252,7 @@ OUTSIDE = '<!DOCTYPE x [<!ENTITY e SYSTEM "file:///etc/passwd">]>'
         (OUTSIDE + system(container("A", "&e;")), "the XML has a document type"),
         ("<SpaceSystem>", "not XML: no element found"),
         (system("") , "no message can be imported, for none is defined"),
-        ('<SpaceSystem name="a">' * 102 + "</SpaceSystem>" * 102, "more than 100 systems stand within each other"),
+        ('<SpaceSystem name="a">' * 102 + "</SpaceSystem>" * 102, "more than 100 systems are nested"),
     ],
 )  # fmt: skip
 def test_hostile_files_are_refused(text, says, tmp_path):

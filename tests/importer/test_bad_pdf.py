@@ -38,7 +38,7 @@ def drawn(pages: int = 1, text: str = "Nothing but prose.", encrypt=None, pictur
         (drawn(encrypt=StandardEncryption("secret", canPrint=0)), "the PDF is encrypted", "remove the password"),
         (drawn(text="", picture=True), "only pictures of pages: there is no text layer", "text recognition"),
         (drawn(text=""), "pages without text", "text recognition"),
-        (b"%PDF-1.4\n" + b"\x00garbage" * 40, "damaged", "fetch it anew"),
+        (b"%PDF-1.4\n" + b"\x00garbage" * 40, "damaged", "download it again"),
         (b"%PDF-1.7\n", "", ""),
     ],
 )

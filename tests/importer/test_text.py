@@ -173,7 +173,7 @@ def test_a_table_that_is_not_understood_is_named(tmp_path):
         (b"", "the file is empty"),
         (b"nothing but prose\n", "no message and no enumeration"),
         (b"ID\t1\n\xff\xfe\n", "not UTF-8"),
-        (b"PK\x03\x04 a zip archive", "no kind of document that icdgen reads"),
+        (b"PK\x03\x04 a zip archive", "icdgen does not read this kind of document"),
     ],
 )
 def test_a_text_without_anything_to_import_is_a_finding(tmp_path, data, message):
@@ -186,5 +186,5 @@ def test_a_text_without_anything_to_import_is_a_finding(tmp_path, data, message)
 def test_a_field_that_names_no_table_has_none_of_the_enumerations_without_numbers(tmp_path):
     tables = MESSAGE.replace(" Possible values are in Table 8: PumpMode Enumeration Values", "")
     result, tree = read(tmp_path, tables + ENUM.replace("Table 8: PumpMode Enumeration Values", "PumpMode"))
-    assert "field `Mode`: it does not say where its values stand" in found(result, "IMP050")[0]
+    assert "field `Mode`: it does not say in which table its values are" in found(result, "IMP050")[0]
     assert tree["messages"][0]["fields"][1]["type"] == "uint"

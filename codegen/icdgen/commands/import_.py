@@ -47,7 +47,7 @@ ABOUT_FILES = frozenset({"IMP002", "IMP003", "IMP005"})
     "--profile",
     "words",
     metavar="PROFILE",
-    help="Rules that say what the tables mean: a YAML file, or the name of a shipped one.",
+    help="Profile with rules for the tables: a YAML file, or the name of a shipped profile.",
 )
 @click.option(
     "--update",

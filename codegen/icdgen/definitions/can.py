@@ -172,7 +172,7 @@ def _network(title: str, messages: list[Any], account: Account, to: Definitions)
 
 def _message(message: Any, signals: list[Any], id: int, order: str, enums: Enumerations, to: Definitions) -> Item:
     if message.is_container:
-        raise NotHeld("it holds other messages in an order that each frame tells")
+        raise NotHeld("it contains other messages in an order that differs from frame to frame")
     made: Item = {"name": message.name, "id": Spelled(f"{id:#05X}".replace("X", "x"))}
     made |= {"kind": "telemetry", "length": message.length}
     senders = [sender for sender in message.senders if sender not in _NOBODY]
@@ -276,11 +276,11 @@ def _condition(signal: Any, signals: list[Any]) -> Item:
     told = signal.multiplexer_signal
     by = next((one for one in signals if one.name == told), None)
     if by is None:
-        raise NotHeld(f"it depends on `{told}`, which is no signal of the message")
+        raise NotHeld(f"it depends on `{told}`, which is not a signal of the message")
     if by.multiplexer_ids is not None:
-        raise NotHeld(f"it depends on `{told}`, which is not always there itself")
+        raise NotHeld(f"it depends on `{told}`, which is optional itself")
     if by.is_float or (by.scale, by.offset) != (1, 0):
-        raise NotHeld(f"it depends on `{told}`, which is no plain number")
+        raise NotHeld(f"it depends on `{told}`, which is scaled or not an integer")
     first, last = raws(by.length, by.is_signed)
     values = sorted(set(signal.multiplexer_ids))
     within = [value for value in values if first <= value <= last]

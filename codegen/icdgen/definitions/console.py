@@ -37,8 +37,8 @@ def _summary(read: Read) -> list[str]:
         shared.severities(found.troubles),
     ]
     if names:
-        many = f"{len(names)} names that are no identifiers got one"
-        what = many if len(names) > 1 else "1 name that is no identifier got one"
+        many = f"{len(names)} names that are not valid identifiers got one"
+        what = many if len(names) > 1 else "1 name that is not a valid identifier got one"
         lines += [f"{what}:", *(f"  {one}" for one in names[:_LISTED])]
         lines += [f"  and {len(names) - _LISTED} more"] if len(names) > _LISTED else []
     return lines

@@ -165,8 +165,8 @@ def _say_process(found: list[_Found], to: Definitions) -> None:
     if not found:
         return
     parameters = "`, `".join(sorted({one.parameter for one in found}))
-    text = f"nothing says the application processes of {len(found)} messages, only `{parameters}` of their interfaces"
-    help = "their ids are what the library of cFS makes of these: correct them if your mission has code of its own for that"
+    text = f"no application process is stated for {len(found)} messages, only `{parameters}` of their interfaces"
+    help = "their ids are computed as the library of cFS does; correct them if your mission has its own code for this"
     to.warn(PROCESS, text, help, line=found[0].line)
 
 

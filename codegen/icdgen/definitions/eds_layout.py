@@ -69,7 +69,7 @@ class Layout:
         chain = self.chain(container)
         if any(one in within for one in chain) or len(within) > _DEEPEST:
             circle = " -> ".join(one.get("name", "") for one in (*within[-5:], container))
-            raise NotHeld(f"containers hold each other in a circle, or too deep: {line(circle, 200)}")
+            raise NotHeld(f"containers contain each other in a circle, or too deep: {line(circle, 200)}")
         users = {one: (*within, *chain[: number + 1]) for number, one in enumerate(chain)}  # who has its entries
         for one in reversed(chain):
             self._entries(one, "EntryList", path, users[one])
@@ -86,7 +86,7 @@ class Layout:
             self.types.step()
             found = self.sheets.find("type", base, chain[-1])
             if found.tag != CONTAINER:
-                raise NotHeld(f"it is based on `{line(base, 60)}`, which is no container")
+                raise NotHeld(f"it is based on `{line(base, 60)}`, which is not a container")
             if found in chain or len(chain) > _DEEPEST:
                 circle = " -> ".join(one.get("name", "") for one in (*chain[-5:], found))
                 raise NotHeld(f"containers are based on each other in a circle, or too deep: {line(circle, 200)}")
@@ -120,9 +120,9 @@ class Layout:
         self.types.step()
         name = line(self.sheets.attribute(entry, "name"), 100) or f"unnamed {self.at}"
         if entry.find("PresentWhen") is not None:
-            raise NotHeld(f"`{name}` is there only on a condition")
+            raise NotHeld(f"`{name}` is present only on a condition")
         if self.parts and not self.parts[-1].bits:
-            raise NotHeld(f"`{name}` stands behind `{self.parts[-1].path[-1]}`, whose length is not fixed")
+            raise NotHeld(f"`{name}` follows `{self.parts[-1].path[-1]}`, whose length is not fixed")
         if entry.tag == "PaddingEntry":
             self.at += whole(self.sheets.attribute(entry, "sizeInBits"), "the size of a padding", 0, 8 * MOST_BYTES)
         elif entry.tag in (*_FIELDS, "ListEntry"):
@@ -217,14 +217,14 @@ class Layout:
             return max(values) - min(values) + 1
         low, high = self.types.piece(type_, type_, f"the index of `{name}`").range.of_integers()
         if low is None or high is None or high < low:
-            raise NotHeld(f"nothing says how many elements `{name}` has")
+            raise NotHeld(f"the definition does not state how many elements `{name}` has")
         return int(high - low) + 1
 
     def _repeat(self, part: Part, count: int, name: str) -> None:
         """Makes an array of a scalar; one of bytes that is longer than any is bytes. Raises `NotHeld`."""
         item, bits = part.item, part.bits
         if not bits or "const" in item:
-            raise NotHeld(f"`{name}` is an array of what has no fixed length, or a fixed value")
+            raise NotHeld(f"`{name}` is an array of elements of variable length, or of a constant")
         if count > MOST_ELEMENTS and bits == 8 and item["type"] == "uint":
             item.clear()
             item["type"] = "bytes"
@@ -241,7 +241,7 @@ class Layout:
             inner = Layout(self.sheets, self.types, self.structs, within=within)
             inner.read(container)
             if inner.at % 8 or not inner.at or any(not part.bits for part in inner.parts):
-                raise NotHeld(f"`{name}` is an array of containers that are not of so many bytes each")
+                raise NotHeld(f"`{name}` is an array of containers of different or partial bytes")
             called = container.get("name", "")
             if called in self.structs.names:
                 called = f"{self.sheets.package(container)} {called}"
@@ -260,7 +260,7 @@ class Layout:
         by = next((one for one in reversed(self.parts) if one.path == (*path[:-1], *counter.split("."))), None)
         if by is None or by.piece is None or by.piece.item["type"] != "uint" or by.piece.bits != by.bits:
             raise NotHeld(
-                f"`{name}` is there as often as `{line(counter, 60)}` says, which is no number in front of it"
+                f"`{name}` is there as often as `{line(counter, 60)}` says, which is not a number in front of it"
             )
         if count != 1 or self.at % 8:
             raise NotHeld(f"`{name}` is a list of arrays, or begins within a byte")
@@ -272,7 +272,7 @@ class Layout:
             order = {"byte_order": LITTLE} if piece.order == LITTLE and bits > 8 else {}
             again(item, {"bits": bits, **item, **order})
         if not bits or bits % 8:
-            raise NotHeld(f"`{name}` is a list of what has no fixed number of bytes")
+            raise NotHeld(f"`{name}` is a list of elements without a fixed number of bytes")
         _, most = by.piece.range.within(eds_ranges.Range(Fraction(0), Fraction((1 << by.bits) - 1))).of_integers()
         item["up_to"] = max(1, min(int(most or 1), MOST_ELEMENTS))
         item |= {key: text for key, text in described(entry).items() if key not in item or "struct" in item}

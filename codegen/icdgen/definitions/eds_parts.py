@@ -77,7 +77,7 @@ def constrain(part: Part | None, told: Told, sheets: Sheets, types: Types) -> in
     """Gives a field the value that a constraint says, or narrows its limits (None). Raises `NotHeld` for all others."""
     one, name = told.constraint, line(".".join(told.path), 100)
     if part is None or part.piece is None or part.bits != part.piece.bits:
-        raise NotHeld(f"it depends on `{name}`, which is no field that it has")
+        raise NotHeld(f"it depends on `{name}`, but it has no such field")
     piece, where = part.piece, f"it depends on `{name}`, which"
     if one.tag == "ValueConstraint":
         raw = piece.raw(sheets.attribute(one, "value"), where)

@@ -73,7 +73,7 @@ class _Sum:
             return value
         power = self._power(depth + 1)
         if power.denominator != 1 or not 0 <= power <= _MOST_POWER:
-            raise ValueError("a power that is no small number")
+            raise ValueError("an exponent that is not a small number")
         return _bounded(Fraction(value ** int(power)))
 
     def _single(self, depth: int) -> Fraction:

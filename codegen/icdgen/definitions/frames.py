@@ -79,7 +79,7 @@ def _owned(name: str, placed: list[tuple[Item, Place]], order: str, to: Definiti
             owners.append((field, mask))
             continue
         if "when" in field:
-            to.without_field(name, field["name"], f"it is not always there, and overlaps `{over['name']}`")
+            to.without_field(name, field["name"], f"it is optional, and overlaps `{over['name']}`")
             left_out.append(field)
             continue
         pairs.append(f"`{field['name']}` and `{over['name']}`")

@@ -89,7 +89,7 @@ def _messages(root: Type, shared: File) -> list[Layout]:
         found.append(layout)
         if len(found) >= MOST_MESSAGES and left:
             shared.to.total += 1
-            shared.to.left_out(root.name, f"it goes on in more than {MOST_MESSAGES} ways; the others are not imported")
+            shared.to.left_out(root.name, f"it branches in more than {MOST_MESSAGES} ways; the others are not imported")
             break
     return found
 

@@ -43,7 +43,7 @@ def masked(text: object) -> Masked:
     """``header.flags & 0x13``. Raises `NotHeld`."""
     found = _MASKED.match(str(text).strip()) if len(str(text)) <= _LONGEST else None
     if found is None:
-        raise NotHeld(f"`{line(str(text), 80)}` is no field, nor bits of one")
+        raise NotHeld(f"`{line(str(text), 80)}` is neither a field nor bits of a field")
     return Masked(found["path"].removesuffix(".to_i"), None if found["mask"] is None else integer(found["mask"]))
 
 
@@ -85,7 +85,7 @@ def number(text: str, members: Members) -> int:
 
 
 def line_of(text: object, is_integer: bool) -> tuple[str, str] | None:
-    """The field that a value is computed from, and the formula; None if it is no line over one field.
+    """The field that a value is computed from, and the formula; None if it is not a linear function of one field.
 
     ``is_integer`` of a field: there the division of whole numbers drops the rest.
     """

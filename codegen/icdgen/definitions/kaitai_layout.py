@@ -62,7 +62,7 @@ class Layout:
             known = False
             try:
                 if self.open:
-                    raise NotHeld("it stands behind a part whose size is not fixed")
+                    raise NotHeld("it follows a part of variable size")
                 if "if" in one and not self._is_there(one, name, scope):
                     continue
                 known = True
@@ -97,9 +97,9 @@ class Layout:
         inner = scope.type.find(str(name_of_type))
         if any(inner is other for other in within):
             circle = " -> ".join(other.name for other in (*within, inner))
-            raise NotHeld(f"types hold each other in a circle: {line(circle, 200)}")
+            raise NotHeld(f"types contain each other in a circle: {line(circle, 200)}")
         if len(within) >= _DEEPEST:
-            raise NotHeld(f"more than {_DEEPEST} types hold each other")
+            raise NotHeld(f"more than {_DEEPEST} types contain each other")
         if count is not None:
             self._structs(where, inner, count, one, within)
             return
@@ -155,12 +155,12 @@ class Layout:
             raise NotHeld(why)
         of = scope.find(found[0])
         if of.item.get("type") != "uint" or "count" in of.item or of.mask or not any(of is one for one in self.parts):
-            raise NotHeld(f"{why}, which is no number in front of it")
+            raise NotHeld(f"{why}, which is not a number in front of it")
         made = Counter(of, found[1])
         if self.ends:
             raise NotHeld(f"{why}, within a part that has a size of its own")
         if made.most < 1:
-            raise NotHeld(f"{why}, which is never more than nothing")
+            raise NotHeld(f"{why}, which is never positive")
         return made
 
     def _align(self) -> None:
@@ -180,13 +180,13 @@ class Layout:
         if not piece.bits and self.ends:
             piece.bits = self.ends[-1] - self.at
             if piece.bits <= 0:
-                raise NotHeld("there is no byte left for it")
+                raise NotHeld("no byte is left for it")
         if "enum" in one:
             reference = str(one["enum"])
             named(piece.item, piece.bits, reference, scope.type, self.file.enums, self.file.heard(reference))
         if count is not None:
             if piece.item["type"] == "bytes" or not piece.bits:
-                raise NotHeld("it is an array of what is no number")
+                raise NotHeld("its elements are not numbers")
             piece.item |= {"bits": piece.bits, "count": REST if isinstance(count, Counter) else count}
         piece.item |= summary(str(one.get("doc") or "")) | unit(_unit(one))
         part = Part(where, piece.item, piece, self.at, counter=counter)
@@ -197,7 +197,7 @@ class Layout:
     def _fit(self, part: Part) -> None:
         """Adds a part if there is room for it. Raises `NotHeld`."""
         if self.ends and self.at + part.bits > self.ends[-1]:
-            raise NotHeld("it goes beyond the bytes that are there for it")
+            raise NotHeld("it is longer than the part that contains it")
         self._add(part)
 
     def _add(self, part: Part) -> None:
@@ -323,7 +323,7 @@ class Layout:
         part = scope.find(of.path)
         item = part.item
         if "count" in item or item["type"] not in ("uint", "int", "enum", "bool"):
-            raise NotHeld(f"it depends on `{of.path}`, which is no whole number")
+            raise NotHeld(f"it depends on `{of.path}`, which is not an integer")
         whole = (1 << part.bits) - 1
         mask = whole if of.mask is None else of.mask & whole
         raw = {option & mask: option for option in options if option in (option & mask, (option & mask) - whole - 1)}
@@ -356,13 +356,13 @@ class Layout:
             where = " ".join((*path, name))
             if "value" not in one:
                 settle(one)
-                text = f"`{where}` is not imported: it stands where an expression says"
+                text = f"`{where}` is not imported: an expression gives its position"
                 self.file.note(AS_BYTES, text, "the fields of the sequence are imported", "error", one.place.line)
                 continue
             if not self._formula(one, scope):
                 settle(one)
                 said = line(str(one["value"]), 80)
-                text = f"`{where}`: `{said}` is no line over one field"
+                text = f"`{where}`: `{said}` is not a linear function of one field"
                 self.file.note(
                     RAW_ONLY, text, "the fields that it is computed from are imported", "warning", one.place.line
                 )

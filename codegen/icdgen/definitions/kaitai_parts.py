@@ -96,7 +96,7 @@ class Scope:
             else:
                 here = here.names.get(name)
         if not isinstance(here, Part):
-            raise NotHeld(f"`{line(path, 80)}` is no number in front of it")
+            raise NotHeld(f"`{line(path, 80)}` is not a number in front of it")
         return here
 
 

@@ -50,7 +50,7 @@ class Type:
         if found is None:
             return []
         if not isinstance(found, Seq) or not all(isinstance(one, Map) for one in found):
-            raise NotHeld(f"the `seq` of `{self.name}` is no list of attributes")
+            raise NotHeld(f"the `seq` of `{self.name}` is not a list of attributes")
         return found
 
     @property
@@ -115,7 +115,7 @@ def built_in(name: str, attribute: Map, within: Type) -> Piece | None:
             raise NotHeld(f"there is no type `{name}`")
         order = _ORDERS[said] if said else within.endian
         if order is None and size != "1":
-            raise NotHeld(f"nothing says in which order the bytes of `{name}` are")
+            raise NotHeld(f"the byte order of `{name}` is not stated")
         return Piece({"type": _KINDS[kind]}, 8 * int(size), order or BIG)
     if (bits := _BITS.match(name)) is not None:
         width, order = int(bits[1]), _ORDERS[bits[2]] if bits[2] else within.bit_endian
@@ -134,8 +134,8 @@ def built_in(name: str, attribute: Map, within: Type) -> Piece | None:
     if attribute.get("size-eos") is True:
         return Piece({"type": kind}, 0)
     if name == "strz" or "terminator" in attribute:
-        raise NotHeld("its size is not said: it ends at a terminator")
-    raise NotHeld("nothing says its size")
+        raise NotHeld("its size is not stated: it ends at a terminator")
+    raise NotHeld("its size is not stated")
 
 
 def sized(attribute: Map) -> int | None:

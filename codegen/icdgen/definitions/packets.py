@@ -88,7 +88,7 @@ def _packets(found: Sequence[Sent], network: Network, to: Definitions) -> None:
     for one in found:
         try:
             if one.header is None:
-                raise NotHeld("it does not begin with the header of a space packet, as others do")
+                raise NotHeld("it does not begin with the header of a space packet, although others do")
             if one.header.apid is None:
                 raise NotHeld("its application process is not stated")
             if one.header.version not in (None, version) or one.header.kind not in (None, one.kind):

@@ -51,7 +51,7 @@ def parse(file: str, data: bytes, lines: dict[Element, int] | None = None, accou
         if not isinstance(error, DefusedXmlException):
             raise unreadable(file, f"not XML: {error}", "save it as UTF-8") from None
         help = "remove the document type; entities are neither expanded nor fetched"
-        raise unreadable(file, "the XML has a document type, with which a file could ask for anything", help) from None
+        raise unreadable(file, "the XML has a document type, which could load other files", help) from None
     for element in root.iter():
         if isinstance(element, AccountedElement):
             element.is_text_read = False  # the builder itself reads the text while it adds to it

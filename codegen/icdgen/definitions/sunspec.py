@@ -128,20 +128,20 @@ class _Model:
         told: Item = {"name": self.name, "id": self.id, "kind": "telemetry", "length": end // 8} | _said(self.group)
         if self.scaled:
             shown = ", ".join(f"`{name}`" for name in self.scaled[:3]) + (" ..." if len(self.scaled) > 3 else "")
-            text = f"message `{self.name}`: the factors of {len(self.scaled)} points stand in other registers: {shown}"
+            text = f"message `{self.name}`: the factors of {len(self.scaled)} points are in other registers: {shown}"
             self.to.warn(RAW_ONLY, text, "raw values are imported; their summaries name the scale factor", "note")
         return {**told, "fields": fields}
 
     def block(self, group: dict[str, Any], fields: list[Item], at: int, before: str, depth: int) -> int:
         """Appends the points of a group and of those in it; the bit where what has a fixed place ends. Raises `NotHeld`."""
         if depth > _MOST_DEPTH:
-            raise NotHeld(f"groups stand in each other more than {_MOST_DEPTH} deep")
+            raise NotHeld(f"groups are nested more than {_MOST_DEPTH} deep")
         for point in _list(group, "points"):
             fields.append(self.point(point, before, at, is_head=not depth and at < _HEAD))
             at += fields[-1]["bits"]
         for inner in _list(group, "groups"):
             if fields and "up_to" in fields[-1]:
-                raise NotHeld(f"`{_text(inner, 'name')}` follows a group that is there any number of times")
+                raise NotHeld(f"`{_text(inner, 'name')}` follows a group with any number of repetitions")
             if inner.get("count", 1) == 1 and type(inner.get("count", 1)) is int:
                 at = self.block(inner, fields, at, f"{before}{_text(inner, 'name')} ", depth + 1)
             else:
@@ -155,7 +155,7 @@ class _Model:
         count, name = group["count"], _text(group, "name")
         is_open = type(count) is not int or count <= 0
         if is_open and depth:
-            raise NotHeld(f"`{name}`, which is there any number of times, stands in another group")
+            raise NotHeld(f"`{name}`, which has any number of repetitions, is inside another group")
         parts: list[Item] = []
         length = self.block(group, parts, 0, "", depth + 1) // 8
         if not length:
@@ -169,7 +169,7 @@ class _Model:
         if not is_open:
             return {**one, "count": count}
         if count != 0 and not any(part["name"] == count for part in fields):
-            raise NotHeld(f"`{name}` is counted by `{line(str(count), 60)}`, which does not stand in front of it")
+            raise NotHeld(f"`{name}` is counted by `{line(str(count), 60)}`, which is not in front of it")
         count = count or REST
         return {**one, "count": count, "up_to": max(1, min((_LONGEST - at // 8) // length, MOST_ELEMENTS))}
 

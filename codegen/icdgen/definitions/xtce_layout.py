@@ -78,9 +78,9 @@ class Layout:
         """Adds the entries of a container behind those that it inherits. Raises `NotHeld`."""
         if any(container is one for one in within):
             circle = " -> ".join(one.get("name", "") for one in (*within, container))
-            raise NotHeld(f"containers hold or inherit each other in a circle: {line(circle, 200)}")
+            raise NotHeld(f"containers contain or inherit each other in a circle: {line(circle, 200)}")
         if len(within) >= _DEEPEST:
-            raise NotHeld(f"more than {_DEEPEST} containers inherit or hold each other")
+            raise NotHeld(f"more than {_DEEPEST} containers inherit or contain each other")
         self.types.step()
         start = self.at if is_included else 0
         within = (*within, container)
@@ -113,7 +113,7 @@ class Layout:
         self.jumps, self.behind = True, _named(entry)
         for part in self.parts[before:]:
             if "when" in part.item:
-                raise NotHeld(f"`{_named(entry)}` is there only on conditions within each other")
+                raise NotHeld(f"`{_named(entry)}` is present only on nested conditions")
             part.item |= needs
 
     def _lose(self, entry: Element, why: NotHeld, before: int, at: int) -> None:
@@ -129,17 +129,17 @@ class Layout:
         location = entry.find("LocationInContainerInBits")
         said = "previousEntry" if location is None else location.get("referenceLocation", "previousEntry")
         if self.behind and said == "previousEntry":
-            raise NotHeld(f"`{_named(entry)}` stands behind `{self.behind}`, which is there only on a condition")
+            raise NotHeld(f"`{_named(entry)}` follows `{self.behind}`, which is present only on a condition")
         self.behind = ""
         if location is None:
             return
         bits = fixed(location)
         if bits is None or said not in ("previousEntry", "containerStart"):
-            raise NotHeld(f"where `{_named(entry)}` stands is not said by a number of bits from what is before it")
+            raise NotHeld(f"where `{_named(entry)}` is located is not a number of bits from the previous entry")
         self.at = (self.at if said == "previousEntry" else start) + bits
         self.jumps = True
         if self.at < 0:
-            raise NotHeld(f"`{_named(entry)}` stands in front of its container")
+            raise NotHeld(f"`{_named(entry)}` is located in front of its container")
 
     def _entry(self, entry: Element, container: Element, within: tuple[Element, ...]) -> None:
         count = _count(entry)
@@ -173,7 +173,7 @@ class Layout:
         """Puts a piece where the last one ended; members of aggregates one after the other."""
         of, path = reference
         if len(path) > _DEEPEST:
-            raise NotHeld(f"`{name}` has members of members without end")
+            raise NotHeld(f"`{name}` has members nested without end")
         for member, type_ in piece.members:
             of_member = self.types.piece(type_, f"`{name} {member}`")
             self._place(Reference(of, (*path, member)), f"{name} {member}", of_member, described(type_))
@@ -182,7 +182,7 @@ class Layout:
         if piece.members:
             return
         if self.parts and not self.parts[-1].piece.bits:
-            raise NotHeld(f"`{name}` stands behind `{self.parts[-1].item['name']}`, whose size is not fixed")
+            raise NotHeld(f"`{name}` follows `{self.parts[-1].item['name']}`, whose size is not fixed")
         if piece.order == LITTLE and (self.at % 8 or piece.bits % 8):
             if self.at // 8 == (self.at + piece.bits - 1) // 8:
                 raise NotHeld(f"the least significant byte of the {piece.bits} bits of `{name}` is sent first")
@@ -229,14 +229,14 @@ class Layout:
     def _needs(self, condition: Element, seen_from: Element, named: str) -> Item:
         """The key of what other fields must be for an entry to be there. Raises `NotHeld`."""
         found: Item = {}
-        for alternatives in self._all_of(condition, seen_from, f"`{named}` is there only where there is"):
+        for alternatives in self._all_of(condition, seen_from, f"`{named}` is present only if there is"):
             names = {self._part(one).item["name"]: self._part(one) for one in alternatives}
             if len(names) > 1 or (name := next(iter(names))) in found:
-                raise NotHeld(f"`{named}` is there on a condition of several fields")
+                raise NotHeld(f"`{named}` is present on a condition of several fields")
             raws = [self._raw(names[name], one) for one in alternatives]
             found[name] = raws if len(raws) > 1 else raws[0]
         if not found:
-            raise NotHeld(f"`{named}` is there only on a condition, which says nothing")
+            raise NotHeld(f"`{named}` is present only on a condition that is empty")
         return {"when": found}
 
     def _all_of(self, criteria: Iterable[Element], seen_from: Element, said: str) -> Iterator[list[Told]]:
@@ -265,7 +265,7 @@ class Layout:
         name = of.get("argumentRef" if is_argument else "parameterRef", "")
         if operator.strip() != "==":
             compared = f"`{line(name, 60)} {line(operator, 5)} {line(value, 60)}`"
-            raise NotHeld(f"{said} {compared}, which is no equality")
+            raise NotHeld(f"{said} {compared}, which is not an equality")
         reference = self._parameter(name, seen_from, is_argument)
         return Told(reference, value, of.get("useCalibratedValue") == "false")
 
@@ -401,7 +401,7 @@ def _count(entry: Element) -> int:
         return 1
     count = fixed(repeat.find("Count"))
     if count is None or repeat.find("Offset") is not None:
-        raise NotHeld(f"how often `{_named(entry)}` is there, or with what between, is not a number")
+        raise NotHeld(f"how often `{_named(entry)}` is repeated, or the gap between, is not a number")
     if not 0 <= count <= MOST_ELEMENTS:
-        raise NotHeld(f"`{_named(entry)}` is there {count} times")
+        raise NotHeld(f"`{_named(entry)}` is repeated {count} times")
     return count

@@ -46,7 +46,7 @@ class Names:
         while left:
             system, above, depth = left.pop()
             if depth > _DEEPEST:
-                raise unreadable(file, f"more than {_DEEPEST} systems stand within each other", "make them flat")
+                raise unreadable(file, f"more than {_DEEPEST} systems are nested", "make them flat")
             path = f"{above}/{system.get('name', '')}"
             for meta in (one for one in system if one.tag in ("TelemetryMetaData", "CommandMetaData")):
                 for group in meta:

@@ -220,7 +220,7 @@ def repeated(piece: Piece, count: int, where: str) -> Piece:
 
 def _array(piece: Piece, count: int, where: str) -> Piece:
     if piece.members or "count" in piece.item or not piece.bits:
-        raise NotHeld(f"{where} is an array of what has no fixed size")
+        raise NotHeld(f"{where} is an array of elements of variable size")
     if not 1 <= count <= MOST_ELEMENTS:
         raise NotHeld(f"{where} is an array of {count} elements")
     piece.item |= {"bits": piece.bits, "count": count}
@@ -231,7 +231,7 @@ def _counted(piece: Piece, dynamic: Element, where: str) -> Piece:
     """An array whose last index a parameter or argument says."""
     name, slope, intercept = _adjusted(dynamic)
     if piece.members or "count" in piece.item or not piece.bits or piece.bits % 8:
-        raise NotHeld(f"{where} is an array of what has no fixed size in bytes")
+        raise NotHeld(f"{where} is an array of elements without a fixed size in bytes")
     if not name or slope != 1 or intercept is None:
         raise NotHeld(f"{where} is an array of a number of elements that no parameter counts")
     most = min(MOST_ELEMENTS, MOST_BYTES * 8 // piece.bits)
@@ -307,7 +307,7 @@ def _bytes(encoding: Element, type_: str) -> Piece:
         variable = encoding.find("Variable")
         return _open(type_, encoding if variable is None else variable)
     if size.find("LeadingSize") is not None:
-        raise NotHeld("its size stands in front of it")
+        raise NotHeld("it has a length prefix")
     if (end := size.find("TerminationChar")) is not None and (end.text or "00").strip("0"):
         raise NotHeld(f"it ends at the byte `{line(end.text, 20)}`")
     bits = fixed(size.find("Fixed")) if size.find("Fixed") is not None else fixed(size)

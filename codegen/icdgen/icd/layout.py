@@ -27,7 +27,7 @@ from icdgen.icd.units import Unit
 from icdgen.once import cached_property
 
 _KEPT_FRAMES = 64
-"""Frames of different sizes of one layout whose scalars are kept: a log has the same sizes again and again."""
+"""Number of frame sizes per layout whose scalars are cached: a log repeats few sizes."""
 
 Sizes: TypeAlias = Mapping[str, int]
 """Number of elements, or of bytes, of each variable-length node of one frame, by the name of the node."""
@@ -439,7 +439,7 @@ def name_of_steps(steps: tuple[PathStep, ...]) -> str:
 
 
 Role: TypeAlias = Literal["field", "overlay", "derived", "count"]
-"""What a scalar is in a frame: `count` is a number of elements that only the length of the frame gives; it has no bits."""
+"""Role of a scalar in a frame: `count` is a number of elements that follows from the length of the frame, without bits."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -35,8 +35,8 @@ def listed(node: NodeParts, troubles: list[Trouble]) -> None:
             node.missing.append(row)
             which = f"table {table_name(row.table_number)}" if row.table_number else "no table"
             troubles.append(
-                Trouble("IMP061", f"`{row.name}` is listed, and {which} is named for it, but no table describes it", row.spot,
-                        "held under `missing:`; was its table not understood?", sure=DOUBTFUL)
+                Trouble("IMP061", f"`{row.name}` is listed, and {which} refers to it, but no table describes it", row.spot,
+                        "it is listed under `missing:`; check whether its table was read", sure=DOUBTFUL)
             )  # fmt: skip
 
 
@@ -72,7 +72,7 @@ def _compare(message: ReadMessage, row: Listed, troubles: list[Trouble]) -> None
         message.listed[key] = value
         troubles.append(
             Trouble("IMP060", f"{message.table.title}: its {what} is `{own}`, the list (table {table_name(row.spot.table)}) "
-                    f"says `{value}`", message.table.spot, "the detail table is held, `listed:` keeps the other")
+                    f"says `{value}`", message.table.spot, "the ICD has the value of the detail table; `listed:` has the other")
         )  # fmt: skip
 
 
@@ -117,9 +117,9 @@ def _meant(
         elif said.enum_title:
             what = f"there is no enumeration `{said.enum_title}`"
         else:
-            what = "it does not say where its values stand"
+            what = "it does not say in which table its values are"
         troubles.append(Trouble("IMP050", f"{where}: {what}", field.spot,
-                                "held as uint; give it an enumeration by an erratum", "error"))  # fmt: skip
+                                "it is imported as uint; name its enumeration in an erratum", "error"))  # fmt: skip
     return chosen
 
 
@@ -217,7 +217,7 @@ def _is_held(message: ReadMessage, most: int, troubles: list[Trouble]) -> bool:
     if not message.name:
         number = message.table.number
         message.name = f"Table {table_name(number)}" if number else f"Message {message.id}"
-        say("IMP025", "nothing names the message", "name it in the ICD", "error")
+        say("IMP025", "the message has no name", "name it in the ICD", "error")
     needed = max(((end + 7) // 8 for _, end in message.extents()), default=0)
     if message.length is None:
         message.length = needed
@@ -226,7 +226,7 @@ def _is_held(message: ReadMessage, most: int, troubles: list[Trouble]) -> bool:
         say("IMP032", what, "look at the page", severity)
     elif needed > message.length:
         what = f"its fields need {needed} bytes, its length is {message.length}"
-        say("IMP033", what, "look at the page; `icdgen check` tells the fields")
+        say("IMP033", what, "look at the page; `icdgen check` names the fields")
     if message.length and not message.fields:
         severity = "error" if message.is_by_rule else "warning"
         say("IMP034", f"it has {message.length} bytes and no field", "look at the page", severity, DOUBTFUL)

@@ -95,7 +95,7 @@ def _nothing_by_rules(words: profile.Profile) -> Trouble:
 def _nothing(document: Document, found: Survey) -> Trouble:
     """That nothing was found, with the headings that were seen, or that nothing of what was found can be held."""
     if any(one.thing is not None for one in found.found):
-        return Trouble(NOTHING, "no message and no enumeration can be held, though tables of them were found",
+        return Trouble(NOTHING, "tables were found, but no message and no enumeration can be represented in an ICD",
                        help="the other errors say why", severity="error", sure=DOUBTFUL)  # fmt: skip
     message = "no message and no enumeration was found"
     seen = Counter(" | ".join(cells) for table in document.tables if len(cells := _first_cells(table)) > 1)

@@ -48,7 +48,7 @@ _GROWING = re.compile(
 
 
 BY_HAND = "write it by hand, with `count:` and `up_to:`, and a struct for what is repeated"
-"""What to do with what a message counts: see 'Variable length' in ``docs/guides/variable-length.md``."""
+"""Help for a variable part of a message: see 'Variable length' in ``docs/guides/variable-length.md``."""
 
 
 def grows(text: str) -> bool:

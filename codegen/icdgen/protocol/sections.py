@@ -55,14 +55,14 @@ class Framing:
     escape: int = octet("escape", "the escape byte")
     start: int = octet("start_of_message", "follows the escape byte at the beginning of a message")
     end: int = octet("end_of_message", "follows the escape byte at the end of a message")
-    escaped: int = octet("escaped_data", "follows the escape byte where the escape byte itself is meant as data")
+    escaped: int = octet("escaped_data", "follows the escape byte if the escape byte itself is data")
     escapes_id: bool = flag(
         "escaped_in", "whether the id is escaped like the data", True, ("data", "id"), "id",
         "the parts of a message in which the escape byte is doubled",
     )  # fmt: skip
     ignores_other: bool = flag(
         "other", "whether an escape byte before any other byte is skipped with it, or an error", False,
-        ("error", "ignore"), key_about="what any other byte after the escape byte is",
+        ("error", "ignore"), key_about="handling of any other byte after the escape byte",
     )  # fmt: skip
 
 
@@ -92,11 +92,11 @@ class Crc:
 
     width: int = number("width", "bits of the checksum", 1, 32, holds=U32)
     polynomial: int = code("polynomial", "generator polynomial, most significant bit first, without the leading term")
-    init: int = code("init", "value of the register at the beginning")
+    init: int = code("init", "initial value of the register")
     reflect_in: bool = flag("reflect_in", "whether each byte enters least significant bit first")
     reflect_out: bool = flag("reflect_out", "whether the bits of the register are reversed at the end")
-    xor_out: int = code("xor_out", "what the register is combined with at the end")
-    empty: int | None = code("empty", "checksum of no bytes at all, where it is not what the algorithm gives", None)
+    xor_out: int = code("xor_out", "value that is XORed with the register at the end")
+    empty: int | None = code("empty", "checksum of no bytes, if it is not the result of the algorithm", None)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -132,15 +132,15 @@ class Extended:
     """CAN messages of several packets."""
 
     data_bytes: int = octets("data_bytes", "data bytes of a packet", 1, 8)
-    left_at: int = octets("packets_left_byte", "index of the byte that counts the packets still to come", 0, 7)
+    left_at: int = octets("packets_left_byte", "index of the byte that counts the packets that follow", 0, 7)
     left_in_last: int = number(
-        "packets_left_in_last", "what that byte counts in the last packet", 0, default=0, holds=BYTE
+        "packets_left_in_last", "value of that byte in the last packet", 0, default=0, holds=BYTE
     )
     packets: int = number("max_packets", "most packets of a message", 1, default=CAN_PACKETS)
     bytes: int = octets(
         "max_bytes", "most bytes of a message", 1, U32, lambda known: known["data_bytes"] * known["packets"]
     )
-    fill: int = octet("fill", "value of the bytes of the last packet that hold no data", 0)
+    fill: int = octet("fill", "value of unused bytes of the last packet", 0)
     packet_timeout: int = time("packet_timeout_ms", "longest time between two packets of a message", 1000)
 
 
@@ -151,7 +151,7 @@ class Can:
     node_address: int = octet("node_address", "address of the node")
     data_bytes: int = octets(
         "max_data_bytes",
-        "most data bytes of one packet, of which CAN 2.0 has up to 8",
+        "most data bytes of one packet; CAN 2.0 allows 8",
         1,
         CAN_DATA_BYTES,
         CAN_DATA_BYTES,
@@ -246,7 +246,7 @@ class HoleMap:
         "bytes of the map in each message",
         default=lambda known: known["bytes"] // len(known["messages"]),
     )
-    msb0: bool = flag("bit_order", _MSB0, False, _BITS, key_about="which bit of byte 0 stands for packet 0")
+    msb0: bool = flag("bit_order", _MSB0, False, _BITS, key_about="bit of byte 0 that represents packet 0")
     received: bool = flag("received", "value of the bit of a received packet", True, (0, 1))
     beyond_end: bool = flag(
         "beyond_end",
@@ -279,10 +279,10 @@ class Listing:
     advance: Step = telecommand("advance", "goes on to the next file")
     information: Step = telemetry("information", "describes a file")
     poll_interval: int = time("poll_interval_ms", f"{_POLL}the busy flag")
-    timeout: int = time("timeout_ms", "how long the busy flag may stay set")
+    timeout: int = time("timeout_ms", "longest time that the busy flag stays set")
 
 
-_COVERS_FILL = "whether the checksum of a block covers the fill of its last packet"
+_COVERS_FILL = "whether the checksum of a block covers the padding of its last packet"
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -292,12 +292,12 @@ class Download:
     load: Step = telecommand("load", "loads a block")
     ready: Step = telemetry("ready", "tells whether the block is loaded")
     burst: Step = telecommand("burst", "starts the transfer of the block")
-    message_length: int = number("message_length", "what the burst telecommand gives as length", 0, U32)
+    message_length: int = number("message_length", "value of the length in the burst telecommand", 0, U32)
     checksum_covers_fill: bool = flag("checksum_covers_fill", _COVERS_FILL, False)
     index_counter: int = number("index_counter", "counter that goes with the type of the index file", 0, BYTE, 0)
     poll_interval: int = time("poll_interval_ms", f"{_POLL}the ready flag")
-    ready_timeout: int = time("ready_timeout_ms", "how long a block may take to load")
-    silence: int = time("silence_ms", "a burst is over if no packet came for this long")
+    ready_timeout: int = time("ready_timeout_ms", "longest time to load a block")
+    silence: int = time("silence_ms", "time without a packet after which a burst is over")
     rounds: int = number("rounds", "most bursts for one block", 1, U32)
 
 
@@ -312,14 +312,14 @@ class Upload:
     checksum: Step = telemetry("checksum", "tells the checksum of the block received")
     finalize: Step = telecommand("finalize", "commits a block")
     finalized: Step = telemetry("finalized", "tells whether the block is committed")
-    block_size: int = number("block_size", "what `initiate` gives as block size", 0, U32)
+    block_size: int = number("block_size", "value of the block size in `initiate`", 0, U32)
     checksum_covers_fill: bool = flag("checksum_covers_fill", _COVERS_FILL, False)
     poll_interval: int = time("poll_interval_ms", f"{_POLL}a busy flag")
-    erase_timeout: int = time("erase_timeout_s", "how long the destination may take to be erased")
-    finalize_timeout: int = time("finalize_timeout_ms", "how long committing a block may take")
+    erase_timeout: int = time("erase_timeout_s", "longest time to erase the destination")
+    finalize_timeout: int = time("finalize_timeout_ms", "longest time to commit a block")
     rounds: int = number("rounds", "most rounds of packets for one block", 1, U32)
     destination_bytes: int | None = octets(
-        "destination_bytes", "bytes that a destination holds: no file may be larger", 1, U32, None
+        "destination_bytes", "size of a destination in bytes: no file may be larger", 1, U32, None
     )
     destinations: tuple[int, ...] = allowed(
         "destinations", "the destinations that are supported; none: all", "the destinations that are supported"
@@ -333,7 +333,7 @@ class Erasure:
     request: Step = telecommand("request", "begins it")
     progress: Step = telemetry("progress", "tells whether it is done")
     poll_interval: int = time("poll_interval_ms", f"{_POLL}the busy flag")
-    timeout: int = time("timeout_ms", "how long it may take")
+    timeout: int = time("timeout_ms", "longest duration")
 
 
 PROCEDURES: dict[str, type[Any]] = {
@@ -381,11 +381,11 @@ class Operation:
     request: Step = telecommand("request", "starts it")
     progress: Step = telemetry("progress", "tells when it is done")
     poll_interval: int = time("poll_interval_ms", f"{_POLL}that frame")
-    timeout: int = time("timeout_s", "how long it may take")
+    timeout: int = time("timeout_s", "longest duration")
     programs: tuple[int, ...] = allowed(
         "programs",
-        "the programs that it may be asked for; none: all",
-        "the programs that it can be asked for, if not all",
+        "the programs for which this is supported; none: all",
+        "the programs for which this is supported, if not all",
     )
 
 
@@ -393,7 +393,7 @@ class Operation:
 class Settings:
     """How a client waits and tries again, unless it is told otherwise."""
 
-    reply_timeout: int = time("reply_timeout_ms", "how long a reply may take", 1000)
-    retries: int = number("retries", "how often a request is sent again", 0, BYTE, 3)
+    reply_timeout: int = time("reply_timeout_ms", "time-out of a reply", 1000)
+    retries: int = number("retries", "number of retries of a request", 0, BYTE, 3)
     poll_interval: int = time("poll_interval_ms", "time between two polls for an acknowledge", 20)
-    poll_timeout: int = time("poll_timeout_ms", "how long a telecommand may take to be processed", 5000)
+    poll_timeout: int = time("poll_timeout_ms", "longest processing time of a telecommand", 5000)

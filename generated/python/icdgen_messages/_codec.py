@@ -16,7 +16,7 @@ REFUSED = (
     TypeError,
     ValueError,
 )
-"""What a value that does not fit makes the encoders raise."""
+"""Exceptions of the encoders for a value that does not fit."""
 
 
 def is_there(info: _lazy.FieldInfo, message: _lazy.Any) -> bool:

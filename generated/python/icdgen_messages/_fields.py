@@ -86,7 +86,7 @@ class FieldInfo:
         self.minimum, self.maximum = minimum, maximum
         """The smallest and the largest value, or None."""
         self.above, self.below = above, below
-        """What the value is above and below, or None."""
+        """Exclusive limits of the value, or None."""
         self.byte_order = byte_order
         """``little`` or ``big``; empty where it is the message's."""
         self.bit_order = bit_order
@@ -112,12 +112,12 @@ class FieldInfo:
         self.leads_back = leads_back
         """Whether the physical value can be set."""
         self.when = when
-        """It is there only if each of these attributes has one of these values.
+        """The field is present only if each of these attributes has one of these values.
 
-        If not, its own is None, and is not looked at when the message is encoded.
+        Otherwise its value is None after decoding, and is ignored when the message is encoded.
         """
         self.derived = derived
-        """Of a view that has no bits: attributes, numbers, and steps on the row of their values."""
+        """For a derived value: attributes, numbers, and steps on the row of their values."""
 
     @property
     def signed(self) -> bool:

@@ -29,7 +29,7 @@ typedef struct {
     uint8_t start;
     /** Follows the escape byte at the end of a message. */
     uint8_t end;
-    /** Follows the escape byte where the escape byte itself is meant as data. */
+    /** Follows the escape byte if the escape byte itself is data. */
     uint8_t escaped;
     /** Whether the id is escaped like the data. */
     bool escapes_id;
@@ -88,17 +88,17 @@ typedef struct {
     uint32_t width;
     /** Generator polynomial, most significant bit first, without the leading term. */
     uint32_t polynomial;
-    /** Value of the register at the beginning. */
+    /** Initial value of the register. */
     uint32_t init;
     /** Whether each byte enters least significant bit first. */
     bool reflect_in;
     /** Whether the bits of the register are reversed at the end. */
     bool reflect_out;
-    /** What the register is combined with at the end. */
+    /** Value that is XORed with the register at the end. */
     uint32_t xor_out;
     /** Whether `empty` is known. */
     bool has_empty;
-    /** Checksum of no bytes at all, where it is not what the algorithm gives. */
+    /** Checksum of no bytes, if it is not the result of the algorithm. */
     uint32_t empty;
     const uint8_t *table8;   /**< Of a width of up to 8 bits. */
     const uint16_t *table16; /**< Of a greater one; both NULL: it is computed without. */
@@ -143,15 +143,15 @@ typedef enum {
 typedef struct {
     /** Data bytes of a packet. */
     uint8_t data_bytes;
-    /** Index of the byte that counts the packets still to come. */
+    /** Index of the byte that counts the packets that follow. */
     uint8_t left_at;
-    /** What that byte counts in the last packet. */
+    /** Value of that byte in the last packet. */
     uint8_t left_in_last;
     /** Most packets of a message. */
     uint32_t packets;
     /** Most bytes of a message. */
     uint32_t bytes;
-    /** Value of the bytes of the last packet that hold no data. */
+    /** Value of unused bytes of the last packet. */
     uint8_t fill;
     /** Longest time between two packets of a message, in milliseconds. */
     uint32_t packet_timeout;
@@ -161,7 +161,7 @@ typedef struct {
 typedef struct {
     /** Address of the node. */
     uint8_t node_address;
-    /** Most data bytes of one packet, of which CAN 2.0 has up to 8. */
+    /** Most data bytes of one packet; CAN 2.0 allows 8. */
     uint8_t data_bytes;
     icd_can_part_t type;
     icd_can_part_t channel;

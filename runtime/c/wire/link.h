@@ -9,13 +9,13 @@
 
 /** How a client waits and tries again, in milliseconds. */
 typedef struct {
-    /** How long a reply may take, in milliseconds. */
+    /** Time-out of a reply, in milliseconds. */
     uint32_t reply_timeout;
-    /** How often a request is sent again. */
+    /** Number of retries of a request. */
     uint8_t retries;
     /** Time between two polls for an acknowledge, in milliseconds. */
     uint32_t poll_interval;
-    /** How long a telecommand may take to be processed, in milliseconds. */
+    /** Longest processing time of a telecommand, in milliseconds. */
     uint32_t poll_timeout;
 } icd_client_settings_t;
 

@@ -14,7 +14,7 @@ typedef struct {
     icd_step_t information;
     /** Time between two polls of the busy flag, in milliseconds. */
     uint32_t poll_interval;
-    /** How long the busy flag may stay set, in milliseconds. */
+    /** Longest time that the busy flag stays set, in milliseconds. */
     uint32_t timeout;
 } icd_list_form_t;
 
@@ -26,17 +26,17 @@ typedef struct {
     icd_step_t ready;
     /** Starts the transfer of the block. */
     icd_step_t burst;
-    /** What the burst telecommand gives as length. */
+    /** Value of the length in the burst telecommand. */
     uint32_t message_length;
-    /** Whether the checksum of a block covers the fill of its last packet. */
+    /** Whether the checksum of a block covers the padding of its last packet. */
     bool checksum_covers_fill;
     /** Counter that goes with the type of the index file. */
     uint8_t index_counter;
     /** Time between two polls of the ready flag, in milliseconds. */
     uint32_t poll_interval;
-    /** How long a block may take to load, in milliseconds. */
+    /** Longest time to load a block, in milliseconds. */
     uint32_t ready_timeout;
-    /** A burst is over if no packet came for this long, in milliseconds. */
+    /** Time without a packet after which a burst is over, in milliseconds. */
     uint32_t silence;
     /** Most bursts for one block. */
     uint32_t rounds;
@@ -58,19 +58,19 @@ typedef struct {
     icd_step_t finalize;
     /** Tells whether the block is committed. */
     icd_step_t finalized;
-    /** What `initiate` gives as block size. */
+    /** Value of the block size in `initiate`. */
     uint32_t block_size;
-    /** Whether the checksum of a block covers the fill of its last packet. */
+    /** Whether the checksum of a block covers the padding of its last packet. */
     bool checksum_covers_fill;
     /** Time between two polls of a busy flag, in milliseconds. */
     uint32_t poll_interval;
-    /** How long the destination may take to be erased, in milliseconds. */
+    /** Longest time to erase the destination, in milliseconds. */
     uint32_t erase_timeout;
-    /** How long committing a block may take, in milliseconds. */
+    /** Longest time to commit a block, in milliseconds. */
     uint32_t finalize_timeout;
     /** Most rounds of packets for one block. */
     uint32_t rounds;
-    /** Bytes that a destination holds: no file may be larger; 0 if the ICD does not say. */
+    /** Size of a destination in bytes: no file may be larger; 0 if the ICD does not say. */
     uint32_t destination_bytes;
     /** The destinations that are supported; NULL: all. */
     const uint8_t *destinations;
@@ -86,7 +86,7 @@ typedef struct {
     icd_step_t progress;
     /** Time between two polls of the busy flag, in milliseconds. */
     uint32_t poll_interval;
-    /** How long it may take, in milliseconds. */
+    /** Longest duration, in milliseconds. */
     uint32_t timeout;
 } icd_erase_form_t;
 
@@ -98,9 +98,9 @@ typedef struct {
     icd_step_t progress;
     /** Time between two polls of that frame, in milliseconds. */
     uint32_t poll_interval;
-    /** How long it may take, in milliseconds. */
+    /** Longest duration, in milliseconds. */
     uint32_t timeout;
-    /** The programs that it may be asked for; NULL: all. */
+    /** The programs for which this is supported; NULL: all. */
     const uint8_t *programs;
     /** How many they are. */
     uint16_t programs_count;

@@ -145,11 +145,11 @@ class Struct(metaclass=MessageType):
         NAME: ClassVar[str]
         """The manual's name, verbatim."""
         LENGTH: ClassVar[int]
-        """Bytes: of a message those of a frame, without the id; of the longest, where frames differ."""
+        """Length of a frame in bytes, without the id; of the longest frame, if they differ."""
         FIELDS: ClassVar[tuple[FieldInfo, ...]]
         """The fields in the order of the manual."""
         VIEWS: ClassVar[tuple[FieldInfo, ...]]
-        """What reads bits of the fields in another way, or is derived of them, and is not set."""
+        """Overlay fields and derived values, which are computed from the fields and not set."""
         CONDITIONAL: ClassVar[bool]
         """Whether a field is not always there: see `FieldInfo.when`."""
     else:
@@ -283,7 +283,7 @@ class Message(Spoken[N_contra], Struct):
         INNER: ClassVar[
             tuple[tuple[Tail, int, tuple[tuple[int, int, int, int], ...]], ...]
         ]
-        """What is open in front of it: in the longest frame it begins at a byte; and the bits that count it."""
+        """Variable-length fields in front of `TAIL`: where each begins in the longest frame, and the bits that count it."""
         ENDS_EARLY: ClassVar[bool]
         """Whether frames may lack the zeros that they end with."""
         BYTE_ORDER: ClassVar[Literal["little", "big"]]

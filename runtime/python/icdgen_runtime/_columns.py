@@ -128,7 +128,7 @@ def decode_table(message: type[Message], frames: Frames, physical: bool) -> Any:
 
 
 _Line = tuple[FieldInfo, tuple[FieldInfo, ...]]
-"""What has a column, and what of it each frame has."""
+"""An item with a column, and the fields of it in each frame."""
 
 
 def _lines(message: type[Message]) -> list[_Line]:

@@ -91,7 +91,7 @@ class _Item:
     ) -> None:
         self.byte, self.size, self.code = byte, size, code
         self.target = target
-        """What unpacking assigns it to."""
+        """Target of the assignment in the unpacking code."""
         self.value = value
         """What is packed."""
 

@@ -15,7 +15,7 @@ else:
     N = TypeVar("N")
 
 Buffer = Union[bytes, bytearray, memoryview]
-"""What a frame may be given as."""
+"""Types of a frame."""
 
 Frames = Union[Buffer, Iterable[Buffer]]
 """Many frames: one after the other, or a list of them."""
@@ -67,4 +67,4 @@ Candidate = tuple[str, range, tuple[tuple[int, int, int], ...]]
 """A message of an id that several have: its name, its lengths, and byte, mask and value of its constants."""
 
 Known = Union[str, tuple[Candidate, ...]]
-"""What is known of an id: the message, or the messages that it may be."""
+"""The message of an id, or its candidates if several share it."""

@@ -13,7 +13,7 @@ class Shared(Message):
     FRAMES: tuple[
         tuple[type[Message], range, tuple[tuple[int, int, int], ...]], ...
     ] = ()
-    """Each with its lengths, and byte, mask and value where it has a constant; those of more constants first."""
+    """Each message with its lengths, and byte, mask and value of its constants; most constants first."""
 
     def __init__(self, **values: object) -> None:
         raise TypeError(f"{self.NAME} are several messages: make one of them")

@@ -80,7 +80,7 @@ def test_explain_says_which_rule_read_a_table_and_why_others_did_not(folder):
     result = icdgen("import", "state.txt", "--profile", "rules.yaml", "--explain", "2", cwd=folder)
     assert result.returncode == 2 and "tables are numbered from 1 to 1" in result.stderr
     result = icdgen("import", "state.txt", "--explain", "1", cwd=folder)
-    assert result.returncode == 0 and "no rule applies: the table gives nothing" in result.stdout
+    assert result.returncode == 0 and "no rule applies: the table is not imported" in result.stdout
     result = icdgen("import", "state.txt", "--profile", WORDS, "--explain", "1", cwd=folder)
     assert result.returncode == 2 and "--explain needs a profile with rules" in result.stderr
 

@@ -13,7 +13,7 @@ from icdgen.describe.comments import Comment
 WIDTH = 120
 
 _MARKUP = re.compile(
-    r"""[\\@<&#%*_~[]  # all that can be: where none of these stands, nothing else is tried
+    r"""[\\@<&#%*_~[]  # characters that markup contains: without one of them, the alternatives are not tried
         (?: (?<=[\\@])
           | (?<=<)(?=[A-Za-z/!?])
           | (?<=[&#%])(?=[\w#:])

@@ -73,7 +73,7 @@ def _facts(relations: Relations, node: Node, message: Message) -> list[tuple[str
         ("Length", length_text(message), ""),
         ("Fields", str(sum(not field.implied for _, field in relations.shown_fields(message))), ""),
         *_open_parts(message),
-        ("End", "may be omitted as far as it is zeros" if message.may_end_early else "", ""),
+        ("End", "trailing zeros may be omitted" if message.may_end_early else "", ""),
         ("Reserved", f"last {count(message.reserved, 'byte')}" if message.reserved else "", ""),
         ("Id", sharing(describe(relations.icd).node(node).known_ids, message), ""),
         ("Group", message.group, ""),

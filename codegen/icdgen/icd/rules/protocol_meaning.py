@@ -123,10 +123,8 @@ def progress_comes_to_an_end(ctx: Context) -> Iterator[Fault]:
         for section in sections(node):
             fields = at_path(section, ("progress", "fields"))
             if isinstance(fields, Map) and not {"busy", "ready"} & fields.keys():
-                message = "no field tells when it is done"
-                help = (
-                    "name the field that is set during the operation, `busy`, or the one that is set after it, `ready`"
-                )
+                message = "no field reports when the operation is done"
+                help = "name the field that is set during the operation (`busy`) or after it (`ready`)"
                 yield Fault.at(section["progress"], "fields", message, help)
 
 

@@ -53,7 +53,7 @@ def read(
         return readers[kind](path, profile)
     if b"\0" in start or start[:4] in (b"PK\x03\x04", b"\xd0\xcf\x11\xe0"):
         raise _refused(
-            name, "this is no kind of document that icdgen reads", "export it as PDF, .docx, .xlsx, CSV or HTML first"
+            name, "icdgen does not read this kind of document", "export it as PDF, .docx, .xlsx, CSV or HTML first"
         )
     from icdgen.importer.reading import text
 

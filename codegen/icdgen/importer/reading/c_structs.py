@@ -122,7 +122,7 @@ def read_structs(text: str) -> tuple[list[Block], list[Trouble]]:
         line, reason = (
             (int(match[1]), match[2]) if match else (_wrong_line(source, c_parser), str(error).partition(": ")[2])
         )
-        message = f"line {line}: this is no C that can be read: {reason}"
+        message = f"line {line}: this C cannot be parsed: {reason}"
         raise Unreadable(message, "declare its types in the same file, and take out macros") from None
     reader = _Reader(source, c_ast)
     for declaration in tree.ext:
@@ -362,4 +362,4 @@ class _Reader:
         if isinstance(node, self.ast.BinaryOp) and node.op in ("+", "-", "*", "<<"):
             left, right = self.number(node.left), self.number(node.right)
             return {"+": left + right, "-": left - right, "*": left * right, "<<": left << min(right, 64)}[node.op]
-        raise Unreadable("a size or value is no constant that can be computed", "write it as a number")
+        raise Unreadable("a size or value is not a constant that can be computed", "write it as a number")

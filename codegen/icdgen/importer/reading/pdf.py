@@ -72,10 +72,10 @@ def _open(path: Path, name: str) -> tuple[int, str]:
             raise _refused(name, "the PDF is encrypted", help) from None
         raise _refused(
             name, f"the PDF is damaged ({type(cause).__name__}: {cause})" if str(cause) else "the PDF is damaged",
-            "fetch it anew, or mend it, for instance with `qpdf` or `mutool clean`",
+            "download it again, or repair it, for instance with `qpdf` or `mutool clean`",
         ) from None  # fmt: skip
     if count == 0:
-        raise _refused(name, "the PDF has no pages", "it may be truncated: fetch it anew")
+        raise _refused(name, "the PDF has no pages", "it may be truncated: download it again")
     if count > MOST_PAGES:
         raise _refused(name, f"the PDF has {count:,} pages, more than the {MOST_PAGES:,} allowed", "cut it into parts")
     return count, title if isinstance(title, str) else ""
@@ -156,7 +156,7 @@ def _look_over(pages: list[Page], document: Document, name: str) -> None:
         failed = [page for page in pages if page.failed]
         if failed:
             text = f"none of the {len(pages)} pages can be read ({failed[0].failed})"
-            raise _refused(name, text, "the file is damaged: fetch it anew")
+            raise _refused(name, text, "the file is damaged: download it again")
         what = "pictures of pages" if images else "pages without text"
         help = "run it through a text recognition first, for instance `ocrmypdf`, and check its figures twice"
         raise _refused(name, f"the PDF holds only {what}: there is no text layer", help)
@@ -167,7 +167,7 @@ def _look_over(pages: list[Page], document: Document, name: str) -> None:
 def _of_page(page: Page) -> Iterator[Trouble]:
     """What of a page cannot be read; where it stands is added."""
     if page.failed:
-        help = "what stands on it is missing from the ICD"
+        help = "its content is missing from the ICD"
         yield Trouble("IMP010", f"the page cannot be read ({page.failed})", help=help, severity="error")
     elif not page.words and page.images:
         help = "look whether it shows a table: it is missing from the ICD"
@@ -176,11 +176,11 @@ def _of_page(page: Page) -> Iterator[Trouble]:
         what = f"{page.unseen} words stand outside the visible page; they were left out"
         yield Trouble("IMP013", what, help="look whether the page is cut off", severity="note")
     if page.turned:
-        what = f"{page.turned} words stand on their side; they were left out"
-        help = "look whether a table has turned labels, or stands on its side as a whole"
+        what = f"{page.turned} words are rotated; they were left out"
+        help = "check whether a table or its labels are rotated"
         yield Trouble("IMP014", what, help=help, severity="note")
     if page.unmapped:
-        what = f"{page.unmapped} characters of the page have no meaning: the PDF does not say which they are"
+        what = f"{page.unmapped} characters of the page cannot be read: the PDF does not map their glyphs to characters"
         yield Trouble("IMP012", what, help="compare what was read with the page")
 
 

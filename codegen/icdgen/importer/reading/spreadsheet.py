@@ -36,7 +36,7 @@ def read_csv(path: Path) -> Document:
             rows.append((start, [Cell(cell.strip().replace("\r\n", "\n")) for cell in row]))
             start = reader.line_num + 1
     except csv.Error as error:
-        message = f"this is no CSV: {error}"
+        message = f"this CSV cannot be parsed: {error}"
         raise Findings(
             [Finding(CODE, message, Place(name, reader.line_num), "check the quotes in this line")]
         ) from None

@@ -94,7 +94,7 @@ class Builder:
             if text and value is None:
                 self.notes.error(
                     "IMP023",
-                    f"{part.where}: its {role} is `{text[:40]}`, which is no number",
+                    f"{part.where}: its {role} is `{text[:40]}`, which is not a number",
                     part.table.spot,
                     "correct the pattern, or state `base: 16`",
                     part.rule.place,
@@ -126,7 +126,7 @@ class Builder:
         """Report names that look like a mistake of a rule."""
         key = squeezed(draft.name)
         if not any(c.isalpha() for c in draft.name) or key in seen:
-            what = "two fields have this name" if key in seen else "this is no name"
+            what = "two fields have this name" if key in seen else "this cannot be a name"
             self.notes.error(
                 "IMP107",
                 f"{part.where}, field `{draft.name[:60]}`: {what}",
@@ -161,7 +161,7 @@ class Builder:
         elif draft.kind == "enum" and (draft.described.enum_table is None and not draft.described.enum_title):
             self.notes.error(
                 "IMP050",
-                f"{part.where}, field `{draft.name}`: nothing gives its values",
+                f"{part.where}, field `{draft.name}`: its values are not given",
                 draft.spot,
                 "give them with the role `members`, or with a rule `what: enumeration`",
                 part.rule.place,
@@ -202,7 +202,7 @@ class Builder:
         if not counted or (not bound and not counted.isdigit()):
             self.notes.error(
                 "IMP105",
-                f"{part.where}: nothing says how often the group `{name}` is repeated",
+                f"{part.where}: the number of repetitions of the group `{name}` is not given",
                 part.table.spot,
                 "give `count`, or `counter` or `rest` and `up_to`, for instance under `each:`",
                 part.rule.place,

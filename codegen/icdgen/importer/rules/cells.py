@@ -173,7 +173,7 @@ def _melted(
     if row.is_short:
         notes.error(
             "IMP103",
-            f"{table.title}: the row `{row.text[:80]}` has fewer cells than there are columns, and nothing says "
+            f"{table.title}: the row `{row.text[:80]}` has fewer cells than there are columns, and the file does not state "
             "which columns they cover",
             table.spot_of(row.source),
             "give the cells their spans in the table file (--tables)",

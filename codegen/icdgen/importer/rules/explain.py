@@ -31,7 +31,7 @@ def explain(interpretation: Interpretation, number: int) -> str:
             parts = [part for part in interpretation.parts if part.table is table and part.rule is rule]
             lines += _columns(rule, table) + [line for part in parts for line in _part(part)]
     if not choice.rules:
-        lines.append("  no rule applies: the table gives nothing")
+        lines.append("  no rule applies: the table is not imported")
     about = [t for t in interpretation.survey.troubles if t.spot.order == number - 1]
     lines += [_finding(trouble) for trouble in about]
     return "\n".join(line.rstrip() for line in lines)

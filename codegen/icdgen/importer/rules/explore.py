@@ -21,7 +21,7 @@ def report(tables: list[SourceTable], document: str) -> str:
     """Return a profile to be completed: a block for each kind with its tables, sample cells, and a rule."""
     groups = kinds(tables)
     lines = [
-        f"# {document}: {len(tables)} tables of {len(groups)} kinds, a rule for each. A table without a rule gives nothing.",
+        f"# {document}: {len(tables)} tables of {len(groups)} kinds, a rule for each. A table without a rule is not imported.",
         "# Give each column a role or a pattern (docs/reference/import-rules.md), or put its heading under `ignore`.",
         "profile: 1",
         "node: {byte_order: little, bit_order: lsb0}  # state both: little or big, lsb0 or msb0",

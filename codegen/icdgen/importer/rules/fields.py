@@ -107,7 +107,7 @@ class FieldReader:
         if bits == 0:
             self.error(
                 "IMP105",
-                f"{where}: nothing gives its size",
+                f"{where}: its size is not given",
                 spot,
                 "give a role for `bits`, `bytes`, `last_byte` or `last_bit`, "
                 "or a type with a width; `width: unit` makes a single position one bit or byte",
@@ -117,7 +117,7 @@ class FieldReader:
         if kind in ("uint", "int") and bits in (40, 48, 56) and range_size and not printed.bits and not count:
             self.notes.warn(
                 "IMP105",
-                f"{where}: a number of {bits // 8} bytes is unusual, and only its range of bytes says so",
+                f"{where}: a number of {bits // 8} bytes is unusual, and only its range of bytes gives this size",
                 spot,
                 "is it an array? `set: [{where: {name: ...}, bits: 8, count: N}]`",
                 self.rule.place,
@@ -149,7 +149,7 @@ class FieldReader:
             if value is None or value < 0:
                 self.error(
                     "IMP023",
-                    f"{where}: `{role}` is `{text[:40]}`, which is no number",
+                    f"{where}: `{role}` is `{text[:40]}`, which is not a number",
                     spot,
                     "correct the pattern or the table file",
                 )
@@ -165,7 +165,7 @@ class FieldReader:
         if not name:
             self.error(
                 "IMP026",
-                f"{where}: nothing states its type",
+                f"{where}: its type is not stated",
                 spot,
                 "give a column the role `type`, or state one for all: `each: {type: uint}`",
             )
@@ -262,7 +262,7 @@ class FieldReader:
             if value is None:
                 self.error(
                     "IMP023",
-                    f"{where}: `{role}` is `{given[:40]}`, which is no number",
+                    f"{where}: `{role}` is `{given[:40]}`, which is not a number",
                     spot,
                     "correct the pattern or the table file",
                 )
@@ -289,7 +289,7 @@ class FieldReader:
             else:
                 self.error(
                     "IMP105",
-                    f"{where}: nothing bounds its length",
+                    f"{where}: its greatest length is not stated",
                     spot,
                     "state it: `each: {up_to: 255}`, or under `set:`",
                 )
@@ -392,7 +392,7 @@ def joined_parts(
         if run is None:
             notes.error(
                 "IMP105",
-                f"the bits of `{draft.name}` are no run of bits in any order",
+                f"the bits of `{draft.name}` are not consecutive in any order",
                 draft.spot,
                 "state the byte order of the node, or read the parts as fields of their own",
                 rule.place,

@@ -206,7 +206,7 @@ class _Interpreter:
                 "IMP101",
                 f"rule `{rule.name}` applies to no table{why}",
                 Spot(),
-                "`--explain TABLE` says which condition fails, `--explore` shows the kinds of tables",
+                "`--explain TABLE` shows which condition fails, `--explore` lists the kinds of tables",
                 rule.place,
             )
         for rule in self.profile.rules:

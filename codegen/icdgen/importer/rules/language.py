@@ -137,7 +137,7 @@ def compile_pattern(text: str, place: Place) -> Pattern:
             if "redefinition" in str(error)
             else "check brackets and backslashes"
         )
-        raise PatternError(f"the pattern `{text}` is no regular expression: {error}", help) from None
+        raise PatternError(f"the pattern `{text}` is not a regular expression: {error}", help) from None
     if not regex.groupindex:
         from icdgen.suggest import close_to
 

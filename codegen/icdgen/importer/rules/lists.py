@@ -80,7 +80,7 @@ def _number(rule: Rule, table: SourceTable, roles: Roles, role: str, notes: Note
     if text and value is None:
         notes.error(
             "IMP023",
-            f"{table.title}: `{role}` is `{text[:40]}`, which is no number",
+            f"{table.title}: `{role}` is `{text[:40]}`, which is not a number",
             table.spot_of(roles.row.source),
             "correct the pattern or the table file",
             rule.place,

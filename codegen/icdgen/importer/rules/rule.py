@@ -213,7 +213,7 @@ class _Reader:
             made.literals["message" if key == "name" else key] = str(value)
         kind = made.literals.get("kind")
         if kind is not None and kind not in KINDS:
-            self.add(f"`{kind}` is no kind of message", tree.at("kind"), f"write {', '.join(KINDS)}")
+            self.add(f"`{kind}` is not a kind of message", tree.at("kind"), f"write {', '.join(KINDS)}")
 
     def belongs(self, made: Rule) -> None:
         """Check that a table of values or bits says to which field it belongs."""
@@ -221,7 +221,7 @@ class _Reader:
             role in ("of", "enumeration") for role in roles_of_message(made)
         ):
             self.add(
-                f"nothing says to which field the {made.what} belongs",
+                f"the rule does not say to which field the {made.what} belongs",
                 made.place,
                 "add `message: {of: FIELD}`, or a pattern with `{of}`",
             )
@@ -241,7 +241,7 @@ class _Reader:
         try:
             return re.compile(str(text), re.I)
         except re.error as error:
-            self.add(f"`{text}` is no regular expression: {error}", place, "check brackets and backslashes")
+            self.add(f"`{text}` is not a regular expression: {error}", place, "check brackets and backslashes")
             return re.compile("")
 
     def roles(self, tree: Map | None, leave_out: str = "") -> dict[str, str]:
@@ -279,7 +279,9 @@ class _Reader:
         if made.melt is not None and not any(column.key == "*" for column in made.columns):
             self.add("`melt` needs the pattern of the cells", tree.key_at("melt"), 'add `"*": name` to `columns`')
         if made.melt is None and (star := next((c for c in made.columns if c.key == "*"), None)):
-            self.add("`*` are the cells of melted columns, and nothing is melted", star.place, "add `melt:`")
+            self.add(
+                "`*` stands for the cells of melted columns, but the rule has no `melt`", star.place, "add `melt:`"
+            )
         if made.melt is not None and made.lines:
             self.add("`melt` and `lines` exclude each other", tree.key_at("lines"), "remove one of them")
 

@@ -18,15 +18,15 @@ class CrcForm(NamedTuple):
     polynomial: int
     """Generator polynomial, most significant bit first, without the leading term."""
     init: int
-    """Value of the register at the beginning."""
+    """Initial value of the register."""
     reflect_in: bool
     """Whether each byte enters least significant bit first."""
     reflect_out: bool
     """Whether the bits of the register are reversed at the end."""
     xor_out: int
-    """What the register is combined with at the end."""
+    """Value that is XORed with the register at the end."""
     empty: Optional[int] = None
-    """Checksum of no bytes at all, where it is not what the algorithm gives."""
+    """Checksum of no bytes, if it is not the result of the algorithm."""
 
 
 class EnvelopeField(NamedTuple):
@@ -40,7 +40,7 @@ class EnvelopeField(NamedTuple):
     bits: int
     little: bool
     values: tuple[int, int]
-    """Of a constant, or unless another is chosen: in telecommands, in telemetry."""
+    """Constant or default value: in telecommands, in telemetry."""
 
 
 class CheckForm(NamedTuple):
@@ -66,7 +66,7 @@ class StreamRow(NamedTuple):
     """Whether zeros at the end of the data are not sent, but for one byte."""
     seed: int
     reply: Optional[int] = None
-    """Of a telecommand: the id of the telemetry that it is answered with."""
+    """For a telecommand: the id of the telemetry that responds to it."""
 
 
 class Stream(NamedTuple):
@@ -76,7 +76,7 @@ class Stream(NamedTuple):
     header_bytes: int
     trailer_bytes: int
     length_plus: int
-    """What the field of the length has more than the data have bytes."""
+    """Number that the length field adds to the bytes of the data."""
     per_id: bool
     """Whether each id counts its own sequence."""
     fields: tuple[EnvelopeField, ...]

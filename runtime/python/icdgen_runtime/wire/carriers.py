@@ -30,7 +30,7 @@ _NOT_ANSWERED = tuple(
     getattr(errno, name, 0)
     for name in ("ENXIO", "EIO", "EREMOTEIO", "ETIMEDOUT", "EAGAIN")
 )
-"""What a driver of I2C says of a transaction that the node did not take."""
+"""Error numbers of an I2C driver for a transaction that the node did not acknowledge."""
 
 
 class Carrier(Protocol):

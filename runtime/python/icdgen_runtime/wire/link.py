@@ -35,13 +35,13 @@ class Settings(NamedTuple):
     """How a client waits and tries again, in milliseconds."""
 
     reply_timeout: Number
-    """How long a reply may take, in milliseconds."""
+    """Time-out of a reply, in milliseconds."""
     retries: int
-    """How often a request is sent again."""
+    """Number of retries of a request."""
     poll_interval: Number
     """Time between two polls for an acknowledge, in milliseconds."""
     poll_timeout: Number
-    """How long a telecommand may take to be processed, in milliseconds."""
+    """Longest processing time of a telecommand, in milliseconds."""
 
 
 class Sent(NamedTuple):
@@ -62,7 +62,7 @@ class Framing(NamedTuple):
     end: int
     """Follows the escape byte at the end of a message."""
     escaped: int
-    """Follows the escape byte where the escape byte itself is meant as data."""
+    """Follows the escape byte if the escape byte itself is data."""
     escapes_id: bool
     """Whether the id is escaped like the data."""
     ignores_other: bool
@@ -121,15 +121,15 @@ class Extended(NamedTuple):
     data_bytes: int
     """Data bytes of a packet."""
     left_at: int
-    """Index of the byte that counts the packets still to come."""
+    """Index of the byte that counts the packets that follow."""
     left_in_last: int
-    """What that byte counts in the last packet."""
+    """Value of that byte in the last packet."""
     packets: int
     """Most packets of a message."""
     bytes: int
     """Most bytes of a message."""
     fill: int
-    """Value of the bytes of the last packet that hold no data."""
+    """Value of unused bytes of the last packet."""
     packet_timeout: int
     """Longest time between two packets of a message, in milliseconds."""
 
@@ -140,7 +140,7 @@ class Can(NamedTuple):
     node_address: int
     """Address of the node."""
     data_bytes: int
-    """Most data bytes of one packet, of which CAN 2.0 has up to 8."""
+    """Most data bytes of one packet; CAN 2.0 allows 8."""
     parts: dict[str, CanPart]
     types: dict[CanKind, int]
     extended_types: dict[CanKind, int]
@@ -264,7 +264,7 @@ class ListForm(NamedTuple):
     poll_interval: int
     """Time between two polls of the busy flag, in milliseconds."""
     timeout: int
-    """How long the busy flag may stay set, in milliseconds."""
+    """Longest time that the busy flag stays set, in milliseconds."""
 
 
 class DownloadForm(NamedTuple):
@@ -277,17 +277,17 @@ class DownloadForm(NamedTuple):
     burst: Step
     """Starts the transfer of the block."""
     message_length: int
-    """What the burst telecommand gives as length."""
+    """Value of the length in the burst telecommand."""
     checksum_covers_fill: bool
-    """Whether the checksum of a block covers the fill of its last packet."""
+    """Whether the checksum of a block covers the padding of its last packet."""
     index_counter: int
     """Counter that goes with the type of the index file."""
     poll_interval: int
     """Time between two polls of the ready flag, in milliseconds."""
     ready_timeout: int
-    """How long a block may take to load, in milliseconds."""
+    """Longest time to load a block, in milliseconds."""
     silence: int
-    """A burst is over if no packet came for this long, in milliseconds."""
+    """Time without a packet after which a burst is over, in milliseconds."""
     rounds: int
     """Most bursts for one block."""
 
@@ -310,19 +310,19 @@ class UploadForm(NamedTuple):
     finalized: Step
     """Tells whether the block is committed."""
     block_size: int
-    """What `initiate` gives as block size."""
+    """Value of the block size in `initiate`."""
     checksum_covers_fill: bool
-    """Whether the checksum of a block covers the fill of its last packet."""
+    """Whether the checksum of a block covers the padding of its last packet."""
     poll_interval: int
     """Time between two polls of a busy flag, in milliseconds."""
     erase_timeout: int
-    """How long the destination may take to be erased, in milliseconds."""
+    """Longest time to erase the destination, in milliseconds."""
     finalize_timeout: int
-    """How long committing a block may take, in milliseconds."""
+    """Longest time to commit a block, in milliseconds."""
     rounds: int
     """Most rounds of packets for one block."""
     destination_bytes: Optional[int] = None
-    """Bytes that a destination holds: no file may be larger."""
+    """Size of a destination in bytes: no file may be larger."""
     destinations: tuple[int, ...] = ()
     """The destinations that are supported; none: all."""
 
@@ -337,7 +337,7 @@ class ErasureForm(NamedTuple):
     poll_interval: int
     """Time between two polls of the busy flag, in milliseconds."""
     timeout: int
-    """How long it may take, in milliseconds."""
+    """Longest duration, in milliseconds."""
 
 
 class Files(NamedTuple):
@@ -377,9 +377,9 @@ class Operation(NamedTuple):
     poll_interval: int
     """Time between two polls of that frame, in milliseconds."""
     timeout: int
-    """How long it may take, in milliseconds."""
+    """Longest duration, in milliseconds."""
     programs: tuple[int, ...] = ()
-    """The programs that it may be asked for; none: all."""
+    """The programs for which this is supported; none: all."""
 
 
 class Facts(NamedTuple):
@@ -427,7 +427,7 @@ class Facts(NamedTuple):
     boot_time: Optional[int] = None
     stream: Optional[Stream] = None
     assumptions: tuple[Assumption, ...] = ()
-    """What the manual leaves open, and what is held of it."""
+    """Facts that the manual does not state, and what the ICD assumes."""
 
 
 class Link(Facts, Generic[N]):

@@ -43,7 +43,7 @@ class I2cBus(Protocol):
 
 
 Port = Union[SerialPort, socket.socket, CanBus, I2cBus]
-"""A port that a `Session` can be given as it is."""
+"""Types of ports that a `Session` accepts."""
 
 
 def serial_port(port: SerialPort) -> tuple[Write, Read]:

@@ -38,10 +38,10 @@ class StreamEvent(NamedTuple):
     id: Optional[int] = None
     data: bytes = b""
     values: Mapping[str, int] = {}
-    """Of a message: the fields of the envelope that its sender chose, by role."""
+    """For a message: the frame fields that its sender chose, by role."""
     missing: int = 0
     kind: Optional[MessageClass] = None
-    """What the message is, of a message; None if it is none of those that share its id."""
+    """For a message: its class; None if no message of its id matches."""
 
     def of(self, message: MessageClassOf[M]) -> Optional[M]:
         """The message, if it is one of these."""

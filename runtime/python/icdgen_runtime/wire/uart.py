@@ -93,7 +93,7 @@ class UartDecoder:
         self.discarded = 0
         """Bytes of the stream that became part of no message."""
         self.pending = 0
-        """Bytes of the stream about which nothing is decided yet."""
+        """Bytes of the stream that may still become part of a message."""
         escape = bytes((framing.escape,))
         self._escape = escape
         self._opening = escape + bytes((framing.start,))

@@ -5,7 +5,7 @@
 pub struct Can {
     /// Address of the node.
     pub node_address: u8,
-    /// Most data bytes of one packet, of which CAN 2.0 has up to 8.
+    /// Most data bytes of one packet; CAN 2.0 allows 8.
     pub data_bytes: usize,
     /// Where the message type stands.
     pub kind: CanPart,
@@ -52,15 +52,15 @@ pub struct CanTypes {
 pub struct Extended {
     /// Data bytes of a packet.
     pub data_bytes: usize,
-    /// Index of the byte that counts the packets still to come.
+    /// Index of the byte that counts the packets that follow.
     pub left_at: usize,
-    /// What that byte counts in the last packet.
+    /// Value of that byte in the last packet.
     pub left_in_last: u8,
     /// Most packets of a message.
     pub packets: u32,
     /// Most bytes of a message.
     pub bytes: usize,
-    /// Value of the bytes of the last packet that hold no data.
+    /// Value of unused bytes of the last packet.
     pub fill: u8,
     /// Longest time between two packets of a message.
     pub packet_timeout_ms: u32,

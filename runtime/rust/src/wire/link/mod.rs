@@ -179,13 +179,13 @@ pub struct Form {
 /// How a client waits and tries again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
-    /// How long a reply may take.
+    /// Time-out of a reply.
     pub reply_timeout_ms: u32,
-    /// How often a request is sent again.
+    /// Number of retries of a request.
     pub retries: u8,
     /// Time between two polls for an acknowledge.
     pub poll_interval_ms: u32,
-    /// How long a telecommand may take to be processed.
+    /// Longest processing time of a telecommand.
     pub poll_timeout_ms: u32,
 }
 
@@ -214,7 +214,7 @@ pub struct Framing {
     pub start: u8,
     /// Follows the escape byte at the end of a message.
     pub end: u8,
-    /// Follows the escape byte where the escape byte itself is meant as data.
+    /// Follows the escape byte if the escape byte itself is data.
     pub escaped: u8,
     /// Whether the id is escaped like the data.
     pub escapes_id: bool,
@@ -255,15 +255,15 @@ pub struct CrcForm {
     pub width: u32,
     /// Generator polynomial, most significant bit first, without the leading term.
     pub polynomial: u32,
-    /// Value of the register at the beginning.
+    /// Initial value of the register.
     pub init: u32,
     /// Whether each byte enters least significant bit first.
     pub reflect_in: bool,
     /// Whether the bits of the register are reversed at the end.
     pub reflect_out: bool,
-    /// What the register is combined with at the end.
+    /// Value that is XORed with the register at the end.
     pub xor_out: u32,
-    /// Checksum of no bytes at all, where it is not what the algorithm gives.
+    /// Checksum of no bytes, if it is not the result of the algorithm.
     pub empty: Option<u32>,
 }
 

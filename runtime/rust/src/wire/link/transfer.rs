@@ -74,7 +74,7 @@ pub struct ListForm {
     pub information: Step,
     /// Time between two polls of the busy flag.
     pub poll_interval_ms: u32,
-    /// How long the busy flag may stay set.
+    /// Longest time that the busy flag stays set.
     pub timeout_ms: u32,
 }
 
@@ -87,17 +87,17 @@ pub struct DownloadForm {
     pub ready: Step,
     /// Starts the transfer of the block.
     pub burst: Step,
-    /// What the burst telecommand gives as length.
+    /// Value of the length in the burst telecommand.
     pub message_length: u32,
-    /// Whether the checksum of a block covers the fill of its last packet.
+    /// Whether the checksum of a block covers the padding of its last packet.
     pub checksum_covers_fill: bool,
     /// Counter that goes with the type of the index file.
     pub index_counter: u8,
     /// Time between two polls of the ready flag.
     pub poll_interval_ms: u32,
-    /// How long a block may take to load.
+    /// Longest time to load a block.
     pub ready_timeout_ms: u32,
-    /// A burst is over if no packet came for this long.
+    /// Time without a packet after which a burst is over.
     pub silence_ms: u32,
     /// Most bursts for one block.
     pub rounds: u32,
@@ -120,19 +120,19 @@ pub struct UploadForm {
     pub finalize: Step,
     /// Tells whether the block is committed.
     pub finalized: Step,
-    /// What `initiate` gives as block size.
+    /// Value of the block size in `initiate`.
     pub block_size: u32,
-    /// Whether the checksum of a block covers the fill of its last packet.
+    /// Whether the checksum of a block covers the padding of its last packet.
     pub checksum_covers_fill: bool,
     /// Time between two polls of a busy flag.
     pub poll_interval_ms: u32,
-    /// How long the destination may take to be erased.
+    /// Longest time to erase the destination.
     pub erase_timeout_ms: u32,
-    /// How long committing a block may take.
+    /// Longest time to commit a block.
     pub finalize_timeout_ms: u32,
     /// Most rounds of packets for one block.
     pub rounds: u32,
-    /// Bytes that a destination holds: no file may be larger.
+    /// Size of a destination in bytes: no file may be larger.
     pub destination_bytes: Option<usize>,
     /// The destinations that are supported; none: all.
     pub destinations: &'static [u8],
@@ -147,9 +147,9 @@ pub struct OperationForm {
     pub progress: Step,
     /// Time between two polls of that frame.
     pub poll_interval_ms: u32,
-    /// How long it may take.
+    /// Longest duration.
     pub timeout_ms: u32,
-    /// The programs that it may be asked for; none: all.
+    /// The programs for which this is supported; none: all.
     pub programs: &'static [u8],
 }
 
@@ -162,6 +162,6 @@ pub struct ErasureForm {
     pub progress: Step,
     /// Time between two polls of the busy flag.
     pub poll_interval_ms: u32,
-    /// How long it may take.
+    /// Longest duration.
     pub timeout_ms: u32,
 }
