@@ -137,7 +137,7 @@ class FieldDescription(Named[NodePlace]):
     @cached_property
     def needs(self) -> tuple[Need, ...]:
         """Of a field that is not always there, all that it needs."""
-        known = {one.model.name: one for one in self.message.fields} if self.model.when else {}
+        known = {one.model.name: one for one in self.message.members} if self.model.when else {}
         return tuple(Need(known[one.field], tuple(sorted(one.values))) for one in self.model.when if one.field in known)
 
     @cached_property
@@ -377,7 +377,7 @@ class Composite(Named[Fielded]):
     @cached_property
     def views(self) -> tuple[FieldDescription, ...]:
         """What reads bits of others, or is derived: it is asked of a message, and never set."""
-        return tuple(field for field in self.all_fields if field.model.view)
+        return tuple(member for member in self.all_members if member.model.view)
 
     @cached_property
     def seen(self) -> tuple[FieldDescription, ...]:
@@ -392,12 +392,12 @@ class Composite(Named[Fielded]):
     @cached_property
     def members(self) -> tuple[FieldDescription, ...]:
         """What it is made of, in the order of the ICD, an array as one, and a struct."""
-        return self._owners(self.all_members)
+        return tuple(member for member in self.all_members if not member.model.view) if self.views else self.all_members
 
     @cached_property
     def fields(self) -> tuple[FieldDescription, ...]:
         """What has bits of its own, in the order of the ICD, each element of an array, each field of a struct."""
-        return self._owners(self.all_fields)
+        return tuple(scalar for member in self.members for scalar in member.scalars)
 
     @property
     def tail(self) -> TailDescription | None:
@@ -417,7 +417,8 @@ class Composite(Named[Fielded]):
     @cached_property
     def sent_fields(self) -> tuple[FieldDescription, ...]:
         """The fields that have bits in the frame, each element of an array, but those in arrays of structs."""
-        return tuple(one for one in self.fields if not (one.model.implied or one.is_repeated))
+        blocks = (block for block in self.blocks if not block.model.implied and block.element is None)
+        return tuple(scalar for block in blocks for scalar in block.scalars)
 
     @cached_property
     def leaves(self) -> tuple[FieldDescription, ...]:
@@ -446,9 +447,6 @@ class Composite(Named[Fielded]):
     def structs(self) -> tuple[StructDescription, ...]:
         """The structs that stand in it, each once."""
         return tuple(dict.fromkeys(one.struct for one in self.all_members if one.struct is not None))
-
-    def _owners(self, fields: tuple[FieldDescription, ...]) -> tuple[FieldDescription, ...]:
-        return tuple(field for field in fields if not field.model.view) if self.views else fields
 
     @property
     def is_narrow(self) -> bool:

@@ -47,6 +47,6 @@ def parts_of(composite: MessageDescription) -> tuple[PartDescription, ...]:
     """Each message that it repeats, but for those that hold nothing."""
     begins: dict[MessageDescription, list[int]] = {}
     for part, begin in composite.contained:
-        if part.fields:
+        if part.members:
             begins.setdefault(part, []).append(begin)
     return tuple(PartDescription(part, tuple(bits)) for part, bits in begins.items())

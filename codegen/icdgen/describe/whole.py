@@ -44,7 +44,7 @@ class MessageDescription(Composite[Message]):
     @cached_property
     def conditional(self) -> tuple[FieldDescription, ...]:
         """The members that are not always there."""
-        return tuple(field for field in self.fields if field.model.when)
+        return tuple(member for member in self.members if member.model.when)
 
     @cached_property
     def steady(self) -> tuple[FieldDescription, ...]:

@@ -22,7 +22,7 @@ EMPTY = "empty"
 
 def statements(message: Composite[Any], groups: Groups) -> list[str]:
     """One statement a field or a group, in the order of the groups."""
-    if not message.fields:
+    if not message.members:
         return ["(void)buffer;", f"message->{EMPTY} = 0u;"]
     found = [_one(one) if isinstance(one, FieldDescription) else _group(one, message) for one in groups]
     if message.tail is not None and message.tail.counter.model.implied:

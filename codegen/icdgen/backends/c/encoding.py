@@ -44,8 +44,8 @@ def statements(message: Composite[Any], groups: Groups) -> list[str]:
     if message.tail is not None and message.tail.element is not None:
         return _Frame(message, groups, message.tail.begin).in_order()
     frame = _Frame(message, groups, message.model.length)
-    unused = [] if message.fields else ["(void)message;"]
-    if not message.fields and not message.model.length:
+    unused = [] if message.members else ["(void)message;"]
+    if not message.members and not message.model.length:
         unused.append("(void)buffer;")
     return unused + frame.in_order()
 
