@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from icdgen.backends.packages import of_project
+from icdgen.commands import progress
 from icdgen.commands.common import PATH, chosen, icd_arguments, print_findings, say
 
 
@@ -33,7 +34,8 @@ def docs(icds: tuple[Path, ...], out: Path, previous: str | None, serve: bool, p
             raise click.UsageError("--serve writes nothing: leave --out and --check out")
         site.serve(paths, previous, config.templates, packages, port, say)
         return
-    made = site.make(paths, previous, config.templates, packages)
+    with progress.items("documentation", "files") as watch:
+        made = site.make(paths, previous, config.templates, packages, watch)
     if made.findings:
         print_findings(made.findings, made.texts, "text", err=True)
     if not made.ok:

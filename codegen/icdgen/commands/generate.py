@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from icdgen.backends.packages import of_project
+from icdgen.commands import progress
 from icdgen.commands.common import PATH, chosen, icd_arguments, known_languages, print_findings, say
 from icdgen.errors import UserError
 from icdgen.generation.generate import Job, Outcome, remember, run
@@ -51,8 +52,20 @@ def generate(
     if out is None:
         base = config.out or Path("generated")
         out = base / asked[0] if len(set(asked)) == 1 else base
-    job = Job(asked, out, paths, templates or config.templates, depfile, check, measured, packages, config.looked_at)
-    outcome = run(job)
+    with progress.items(", ".join(dict.fromkeys(asked)), "files") as watch:
+        job = Job(
+            asked,
+            out,
+            paths,
+            templates or config.templates,
+            depfile,
+            check,
+            measured,
+            packages,
+            config.looked_at,
+            watch,
+        )
+        outcome = run(job)
     if outcome.loaded.findings:
         print_findings(outcome.loaded.findings, outcome.loaded.texts, "text", err=True)
     if not outcome.loaded.ok:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+from icdgen.commands import progress
 from icdgen.commands.common import PATH, format_option, in_colour, print_findings, say, write_file
 from icdgen.diagnostics import Finding, Findings, has_errors
 from icdgen.errors import UserError
@@ -127,8 +127,8 @@ def import_(
     try:
         vocabulary = profile.load(profile.find(words))
         vocabulary.has_rules |= words is None  # nothing becomes a message that no profile asks for
-        with _progress() as progress:
-            result, trees = run.run(manual, vocabulary, progress, jobs, descriptions, pages)
+        with progress.pages("reading") as show:
+            result, trees = run.run(manual, vocabulary, show, jobs, descriptions, pages)
         if folder is not None:
             paths = table_files.write(result.tables, folder, result.document)
             say(
@@ -196,7 +196,8 @@ def _define(files: list[tuple[Path, Reader]], out: Path, update: bool, dry_run: 
     from icdgen.import_results import targets
 
     try:
-        reads = [run.read(*files[0])] if len(files) == 1 else run.read_set(files)
+        with progress.working(f"reading {files[0][0] if len(files) == 1 else f'{len(files)} definitions'}"):
+            reads = [run.read(*files[0])] if len(files) == 1 else run.read_set(files)
         trees = {name: tree for read in reads for name, tree in read.trees.items()}
         aimed = targets.aim(trees, out, update, dry_run, run.TOLD)
     except Findings as error:
@@ -230,8 +231,8 @@ def _workbench(
         if path.exists() and not vocabulary.has_rules:
             raise UserError(f"the profile {path} has no rules", "add `rules: []`, or name a new file with --profile")
         vocabulary.has_rules = True
-        with _progress() as progress:
-            document, tables = sources.read(manual, vocabulary, progress, jobs, pages)
+        with progress.pages("reading") as show:
+            document, tables = sources.read(manual, vocabulary, show, jobs, pages)
     except Findings as error:
         _refuse(error, manual, form)
         sys.exit(1)
@@ -309,23 +310,3 @@ def _next_step(targets: list[Target], checked: list[Finding], dry_run: bool) -> 
     if dry_run:
         return f"{command} would have {shown or 'no findings'}"
     return f"next: {command} has {shown}" if shown else f"{command}: no findings"
-
-
-@contextmanager
-def _progress() -> Iterator[Callable[[int, int, int], None] | None]:
-    """A bar on a terminal, nothing in a pipe."""
-    if sys.stderr is None or not sys.stderr.isatty():
-        yield None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    columns = (TextColumn("reading"), BarColumn(), MofNCompleteColumn(), TextColumn("pages, {task.fields[tables]} tables"),
-               TimeRemainingColumn())  # fmt: skip
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("reading", total=None, tables=0)
-
-        def show(done: int, total: int, tables: int) -> None:
-            bar.update(task, completed=done, total=total, tables=tables)
-
-        yield show

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
+from icdgen.commands import progress
 from icdgen.commands.common import PATH, icd_option, load_or_exit
 from icdgen.errors import UserError
 
@@ -64,11 +65,11 @@ def log(
 
         if head is not None:
             raise click.UsageError("--head needs --format or --out")
-        with _progress(file.name, found.steps(None)) as done:
+        with progress.bytes_of(file.name, found.steps(None)) as done:
             text = found.listing(tables.width_of(sys.stdout), done)
         click.echo(text, nl=False)
         sys.exit(found.is_damaged(None))
-    with _progress(file.name, found.steps(head)) as done:
+    with progress.bytes_of(file.name, found.steps(head)) as done:
         for note in found.prepare(head, done):
             click.echo(f"icdgen: {file}: {note}", err=True)
         _convert(found, form, out, head, done)
@@ -127,18 +128,3 @@ def _whole(out: Path) -> Iterator[Path]:
     finally:
         with suppress(OSError):
             partial.unlink(missing_ok=True)
-
-
-@contextmanager
-def _progress(name: str, total: int) -> Iterator[Callable[[int], None]]:
-    """A bar on a terminal, if it takes long enough to be seen."""
-    if sys.stderr is None or not sys.stderr.isatty() or total < 10_000_000:
-        yield lambda size: None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn, TimeRemainingColumn, TransferSpeedColumn
-
-    columns = (TextColumn("{task.description}", markup=False), BarColumn(), DownloadColumn(), TransferSpeedColumn())
-    with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(name, total=total)
-        yield lambda size: bar.advance(task, size)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 from icdgen import backends, cache
 from icdgen.backends.packages import Packages
@@ -13,6 +14,8 @@ from icdgen.generation import manifest, write
 from icdgen.icd.loaded import Loaded
 from icdgen.model_cache import load_checked
 from icdgen.render import Renderer
+
+Files = Iterable[tuple[PurePosixPath, str]]  # path below the folder of a language, and text
 
 
 @dataclass(eq=False, repr=False)
@@ -28,6 +31,7 @@ class Job:
     measured: Path | None = None  # folder of measurements, for the papers that have them
     packages: Packages = field(default_factory=Packages)
     configs: dict[Path, str] = field(default_factory=dict)  # configuration files that were read or looked for
+    watch: Callable[[Files], Files] = iter  # passes generated files on, and can count them
 
 
 @dataclass(eq=False, repr=False)
@@ -67,7 +71,7 @@ def run(job: Job) -> Outcome:
         if hasattr(backend, "packages"):
             backend.packages = job.packages
         out = job.out / backend.name if len(chosen) > 1 else job.out
-        outcome.plans.append(write.plan(out, backend.name, backend.files(outcome.loaded.icd, render)))
+        outcome.plans.append(write.plan(out, backend.name, job.watch(backend.files(outcome.loaded.icd, render))))
         outcome.inputs |= render.looked_at
     if not job.check:
         for plan in outcome.plans:

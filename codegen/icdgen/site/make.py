@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING
 from icdgen.backends.html import HtmlBackend
 from icdgen.backends.packages import Packages
 from icdgen.diagnostics import Finding
+from icdgen.generation.generate import Files
 from icdgen.generation.write import Plan, apply, plan
 from icdgen.model_cache import load_checked
 from icdgen.render import Renderer
@@ -29,9 +31,15 @@ class Site:
 
 
 def make(
-    icds: list[Path], previous: str | None = None, templates: Path | None = None, packages: Packages | None = None
+    icds: list[Path],
+    previous: str | None = None,
+    templates: Path | None = None,
+    packages: Packages | None = None,
+    watch: Callable[[Files], Files] = iter,
 ) -> Site:
     """Loads, checks and renders. ``previous`` is an older release, as `icdgen.diff.inputs` takes it.
+
+    ``watch`` passes the files on, and can count them.
 
     Raises `UserError` where a file can't be read or a template is bad.
     """
@@ -42,7 +50,7 @@ def make(
         render = Renderer(HtmlBackend.name, templates)
         backend = HtmlBackend(older)
         backend.packages = packages or Packages()
-        made.files = {str(path): text for path, text in backend.files(loaded.icd, render)}
+        made.files = {str(path): text for path, text in watch(backend.files(loaded.icd, render))}
         made.inputs |= render.looked_at
     return made
 

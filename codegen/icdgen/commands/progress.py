@@ -1,0 +1,110 @@
+"""Progress of long commands, on standard error if that is a terminal. In a pipe and in CI nothing is printed."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from threading import Timer
+from typing import TYPE_CHECKING, Any, TypeVar
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
+
+DELAY = 1.0  # seconds before progress is shown: most commands end earlier, and need not import rich
+LEAST_BYTES = 10_000_000  # of a log whose conversion takes longer than that
+
+T = TypeVar("T")
+
+
+@contextmanager
+def items(name: str, noun: str) -> Iterator[Callable[[Iterable[T]], Iterable[T]]]:
+    """Count items, such as generated files. Yields a function that passes items on."""
+    with _bar(name, "spinner", "{task.completed:,} " + noun, "elapsed") as bar:
+
+        def counted(values: Iterable[T]) -> Iterable[T]:
+            for number, value in enumerate(values, 1):
+                bar.update(completed=number)
+                yield value
+
+        yield counted
+
+
+@contextmanager
+def working(name: str) -> Iterator[None]:
+    """Show that a command works on something that has no parts to count."""
+    with _bar(name, "spinner", "elapsed"):
+        yield
+
+
+@contextmanager
+def pages(name: str) -> Iterator[Callable[[int, int, int], None]]:
+    """Count the pages of a document and the tables on them. Yields a function of pages, all pages, and tables."""
+    with _bar(name, "bar", "count", "pages, {task.fields[tables]} tables", "remaining") as bar:
+        bar.update(tables=0)
+        yield lambda done, total, tables: bar.update(completed=done, total=total, tables=tables)
+
+
+@contextmanager
+def bytes_of(name: str, total: int) -> Iterator[Callable[[int], None]]:
+    """Count the bytes of a log. Yields a function of the number of further bytes."""
+    with _bar(name, "bar", "download", "speed", "remaining", is_shown=total >= LEAST_BYTES) as bar:
+        bar.update(total=total)
+        yield lambda size: bar.update(completed=bar.values.get("completed", 0) + size)
+
+
+class _Bar:
+    """A bar that is shown after `DELAY`; until then only its values are stored."""
+
+    def __init__(self, name: str, columns: tuple[str, ...]) -> None:
+        self.values: dict[str, Any] = {}
+        self._name = name
+        self._columns = columns
+        self._progress: Progress | None = None
+
+    def update(self, **values: Any) -> None:
+        """Change values of the task: ``completed``, ``total``, or those that a column shows."""
+        self.values |= values
+        if self._progress is not None:
+            self._progress.update(self._progress.task_ids[0], **self.values)
+
+    def start(self) -> None:
+        from rich import progress
+        from rich.console import Console
+
+        kinds = {
+            "spinner": progress.SpinnerColumn,
+            "bar": progress.BarColumn,
+            "count": progress.MofNCompleteColumn,
+            "download": progress.DownloadColumn,
+            "speed": progress.TransferSpeedColumn,
+            "elapsed": progress.TimeElapsedColumn,
+            "remaining": progress.TimeRemainingColumn,
+        }
+        columns = [kinds[one]() if one in kinds else progress.TextColumn(one) for one in self._columns]
+        name = progress.TextColumn("{task.description}", markup=False)
+        shown = progress.Progress(name, *columns, console=Console(stderr=True), transient=True)
+        shown.add_task(self._name, **{"total": None} | self.values)
+        shown.start()
+        self._progress = shown
+
+    def stop(self) -> None:
+        if self._progress is not None:
+            self._progress.stop()
+
+
+@contextmanager
+def _bar(name: str, *columns: str, is_shown: bool = True) -> Iterator[_Bar]:
+    bar = _Bar(name, columns)
+    if not is_shown or sys.stderr is None or not sys.stderr.isatty():
+        yield bar
+        return
+    timer = Timer(DELAY, bar.start)
+    timer.daemon = True
+    timer.start()
+    try:
+        yield bar
+    finally:
+        timer.cancel()
+        timer.join()
+        bar.stop()
