@@ -4,31 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from copy import copy
-from typing import Any, NamedTuple, Protocol, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from icdgen import layout
 from icdgen.describe import steps
 from icdgen.describe.bounds import Bound, bounds
 from icdgen.describe.comments import Comment, field_comment, struct_comment, takes_text, words
 from icdgen.describe.constants import Constant, constants
-from icdgen.describe.enums import EnumDescription
+from icdgen.describe.enums import EnumDescription, enum_widths
 from icdgen.describe.errata import Thing, tellers, told_elsewhere
 from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, storage_of
 from icdgen.describe.wholes import Whole, part_of_unit
 from icdgen.icd.curve import Curve
 from icdgen.icd.layout import UNDECLARED, Layout, NodePlace, Orders, places_of
-from icdgen.icd.model import Enum, Message, Node, Struct
+from icdgen.icd.model import Enum, Icd, Message, Node, Struct
 from icdgen.once import cached_property
-
-
-class Known(Protocol):
-    """What describes the structs and enumerations that fields are of: `icdgen.describe.whole.Description`."""
-
-    def struct_of(self, layout: Layout) -> StructDescription: ...
-
-    def enum(self, enum: Enum) -> EnumDescription: ...
-
 
 _OF_PLACE = ("needs", "places", "elements", "leaves", "instances", "blocks", "element", "comment")
 """Attributes that are worked out for one place of a field."""
@@ -339,9 +330,11 @@ Fielded = TypeVar("Fielded", bound=Message | Struct)
 class Composite(Named[Fielded]):
     """What has fields: a message, or a struct, that ``node`` declares."""
 
-    def __init__(self, description: Known, model: Fielded, node: Node, what: str, outer: Orders = UNDECLARED) -> None:
+    def __init__(
+        self, declared: Declarations, model: Fielded, node: Node, what: str, outer: Orders = UNDECLARED
+    ) -> None:
         super().__init__(model, node.vocabulary, f"{what} `{model.name}`")
-        self._description, self.node = description, node
+        self._declared, self.node = declared, node
         self.outer_orders = outer
         """Those of the array of which it is an element."""
         self.seen_from = node
@@ -363,11 +356,11 @@ class Composite(Named[Fielded]):
         return tuple(map(self._member, places_of(self.model.layout, self.outer_orders)))
 
     def _member(self, place: NodePlace) -> FieldDescription:
-        return FieldDescription(place, self, self._description.enum(place.enum) if place.enum else None)
+        return FieldDescription(place, self, self._declared.enum(place.enum) if place.enum else None)
 
     def struct_of(self, layout: Layout) -> StructDescription:
-        """The struct that a layout is of."""
-        return self._description.struct_of(layout)
+        """The struct that has a layout."""
+        return self._declared.struct_of(layout)
 
     @cached_property
     def member_for(self) -> dict[int, FieldDescription]:
@@ -433,7 +426,7 @@ class Composite(Named[Fielded]):
     def element(self, part: FieldDescription, struct: StructDescription) -> StructDescription:
         """What an array of structs in it has as an element."""
         found = StructDescription(
-            self._description, struct.model, struct.node, part.model.orders_in_effect(self.node.orders)
+            self._declared, struct.model, struct.node, part.model.orders_in_effect(self.node.orders)
         )
         found.seen_from = self.seen_from
         return found
@@ -473,9 +466,32 @@ class Composite(Named[Fielded]):
 class StructDescription(Composite[Struct]):
     """A struct."""
 
-    def __init__(self, description: Known, struct: Struct, node: Node, outer: Orders = UNDECLARED) -> None:
-        super().__init__(description, struct, node, "struct", outer)
+    def __init__(self, declared: Declarations, struct: Struct, node: Node, outer: Orders = UNDECLARED) -> None:
+        super().__init__(declared, struct, node, "struct", outer)
 
     @cached_property
     def comment(self) -> Comment:
         return struct_comment(self.model)
+
+
+class Declarations:
+    """The structs and enumerations of a set of ICDs: each is described once, whoever uses it."""
+
+    def __init__(self, icd: Icd) -> None:
+        self._icd = icd
+        self._enum_bits = enum_widths(icd)
+        self._enums: dict[tuple[str, str], EnumDescription] = {}
+        self._structs = {
+            id(struct.layout): StructDescription(self, struct, node) for node in icd.nodes for struct in node.structs
+        }
+
+    def struct_of(self, layout: Layout) -> StructDescription:
+        """The description of the struct that has a layout."""
+        return self._structs[id(layout)]
+
+    def enum(self, enum: Enum) -> EnumDescription:
+        """The description of an enumeration."""
+        key = enum.node, enum.name
+        if key not in self._enums:
+            self._enums[key] = EnumDescription(enum, self._icd.node(enum.node), self._enum_bits[key], self._icd)
+        return self._enums[key]

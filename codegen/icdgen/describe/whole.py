@@ -10,12 +10,17 @@ from typing import Any, NamedTuple
 
 from icdgen import layout
 from icdgen.describe.comments import Comment, message_comment
-from icdgen.describe.description import Composite, FieldDescription, StructDescription, TailDescription
-from icdgen.describe.enums import EnumDescription, enum_widths
+from icdgen.describe.description import (
+    Composite,
+    Declarations,
+    FieldDescription,
+    StructDescription,
+    TailDescription,
+)
+from icdgen.describe.enums import EnumDescription
 from icdgen.describe.shared_ids import sharing
 from icdgen.describe.storage import holding
 from icdgen.icd.identifiers import Identifier
-from icdgen.icd.layout import Layout
 from icdgen.icd.model import Enum, Icd, Message, Node, Struct
 from icdgen.icd.variants import Ids, Variant, common_length, ids_of
 from icdgen.once import cached_property
@@ -33,7 +38,7 @@ class MessageDescription(Composite[Message]):
     """A message."""
 
     def __init__(self, description: Description, message: Message, node: Node) -> None:
-        super().__init__(description, message, node, "message")
+        super().__init__(description.declared, message, node, "message")
         self._whole = description
 
     @property
@@ -275,10 +280,8 @@ class Description:
 
     def __init__(self, icd: Icd) -> None:
         self.icd = icd
-        self._enum_bits = enum_widths(icd)
+        self.declared = Declarations(icd)
         self._messages: dict[tuple[str, str], MessageDescription] = {}
-        self._enums: dict[tuple[str, str], EnumDescription] = {}
-        self._structs: dict[tuple[str, str], StructDescription] = {}
         self._nodes = {node.name: NodeDescription(self, node) for node in icd.nodes}
         self.nodes = tuple(self._nodes.values())
 
@@ -302,27 +305,11 @@ class Description:
 
     def struct(self, struct: Struct) -> StructDescription:
         """The description of a struct, whoever uses it."""
-        key = struct.node, struct.name
-        found = self._structs.get(key)
-        if found is None or found.model is not struct:
-            found = self._structs[key] = StructDescription(self, struct, self.icd.node(struct.node))
-        return found
-
-    def struct_of(self, layout: Layout) -> StructDescription:
-        """The description of the struct that has a layout."""
-        return self.struct(self._structs_by_layout[id(layout)])
-
-    @cached_property
-    def _structs_by_layout(self) -> dict[int, Struct]:
-        return {id(struct.layout): struct for node in self.icd.nodes for struct in node.structs}
+        return self.declared.struct_of(struct.layout)
 
     def enum(self, enum: Enum) -> EnumDescription:
         """The description of an enumeration, whoever uses it."""
-        key = enum.node, enum.name
-        found = self._enums.get(key)
-        if found is None or found.model is not enum:
-            found = self._enums[key] = EnumDescription(enum, self.icd.node(enum.node), self._enum_bits[key], self.icd)
-        return found
+        return self.declared.enum(enum)
 
 
 _kept: list[Description] = []
