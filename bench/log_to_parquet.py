@@ -49,7 +49,7 @@ def used() -> float:
 
 def write(path: Path, size: int) -> int:
     """Writes a log of about that size; fields of an entry."""
-    icd = load_checked([ROOT / "icd"]).icd
+    icd = load_checked([ROOT / "icd"], ()).icd
     known = next(k for k in (facts.of(icd, node) for node in icd.nodes) if k.log_file and k.mask and k.mask.bits)
     mask = bytearray(known.mask.size)
     for bit in known.mask.bits:
