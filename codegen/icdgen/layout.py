@@ -9,6 +9,7 @@ import re
 from functools import lru_cache
 from typing import NamedTuple
 
+from icdgen.icd.layout import FrameField
 from icdgen.icd.model import Field, Message, Node, Struct
 from icdgen.icd.places import AnyField
 from icdgen.icd.variants import Variant
@@ -46,7 +47,7 @@ def pieces_at(at: int, bits: int, byte_order: str, bit_order: str) -> tuple[Piec
     return tuple(pieces if byte_order == "little" else reversed(pieces))
 
 
-def pieces(field: AnyField, node: Node) -> tuple[Piece, ...]:
+def pieces(field: AnyField | FrameField, node: Node) -> tuple[Piece, ...]:
     """Return the pieces of a number, none of a derived one. Bytes are whole bytes in order: see `byte_range`.
 
     `node` is the ICD node whose orders a field has that declares none.
@@ -56,7 +57,7 @@ def pieces(field: AnyField, node: Node) -> tuple[Piece, ...]:
     return pieces_at(field.at, field.bits, field.byte_order or node.byte_order, field.bit_order or node.bit_order)
 
 
-def mask(field: AnyField, node: Node) -> int:
+def mask(field: AnyField | FrameField, node: Node) -> int:
     """The bits of the frame that the field has; bit w of byte b is bit 8 * b + w."""
     if field.is_bytes:
         return ((1 << field.bits) - 1) << field.at
@@ -82,7 +83,7 @@ def signs(variant: Variant) -> tuple[Sign, ...]:
     return tuple(Sign(byte, *found) for byte, found in sorted(masks.items()))
 
 
-def byte_range(field: Field) -> range:
+def byte_range(field: FrameField | Field) -> range:
     """The bytes that the field touches."""
     return range(field.at // 8, (field.at + field.bits + 7) // 8)
 
@@ -97,8 +98,10 @@ class Gap(NamedTuple):
 def gaps(message: Message | Struct, node: Node) -> tuple[Gap, ...]:
     """Bits of the frame that no field covers, in order."""
     free = bytearray(b"\1" * (message.length * 8))  # a byte for each bit, in the order in which the node counts them
-    for field in message.owners:
-        if field.bit_order in ("", node.bit_order):
+    for field in message.layout.frame(node.orders):
+        if not field.has_bits:
+            continue
+        if field.bit_order == node.bit_order:
             free[field.at : field.at + field.bits] = bytes(field.bits)
             continue
         for piece in pieces(field, node):

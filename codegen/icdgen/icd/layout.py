@@ -9,7 +9,7 @@ Read `icdgen.layout` next, which turns the position of a scalar into runs of bit
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field
 from fractions import Fraction
 from math import gcd
@@ -28,6 +28,8 @@ from icdgen.once import cached_property
 
 _KEPT_FRAMES = 64
 """Number of frame sizes per layout whose scalars are cached: a log repeats few sizes."""
+_KEPT_SCALARS = 100_000
+"""Number of scalars per layout in all these frames, about 50 MB: arrays can have thousands of elements."""
 
 Sizes: TypeAlias = Mapping[str, int]
 """Number of elements, or of bytes, of each variable-length node of one frame, by the name of the node."""
@@ -262,11 +264,12 @@ class Layout:
 
     def frame(self, orders: Orders, sizes: Sizes | None = None) -> tuple[FrameField, ...]:
         """Return the scalars of a frame, as `flatten` lists them; the last `_KEPT_FRAMES` results are kept."""
-        key = orders, None if sizes is None else tuple(sizes[node.name] for node in self.sequence)
+        key = orders, None if sizes is None or not self.sequence else tuple(sizes[node.name] for node in self.sequence)
         fields = self._frames.get(key)
         if fields is None:
-            if len(self._frames) >= _KEPT_FRAMES:
-                del self._frames[next(iter(self._frames))]
+            kept = sum(map(len, self._frames.values()))
+            while self._frames and (len(self._frames) >= _KEPT_FRAMES or kept > _KEPT_SCALARS):
+                kept -= len(self._frames.pop(next(iter(self._frames))))
             fields = self._frames[key] = tuple(flatten(self, orders, sizes))
         return fields
 
@@ -431,19 +434,125 @@ class PathStep:
     node: LayoutNode
     element: int | None = None
 
+    def text(self, name: str) -> str:
+        """Return a name of the node with the element behind it: ``Satellites[2]``."""
+        return name if self.element is None else f"{name}[{self.element}]"
 
-def name_of_steps(steps: tuple[PathStep, ...]) -> str:
-    """Return the name of what stands at the end of the steps: ``Satellites[2].GNSS``."""
-    texts = (step.node.name if step.element is None else f"{step.node.name}[{step.element}]" for step in steps)
-    return ".".join(texts)
+
+def name_of_steps(steps: Sequence[PathStep]) -> str:
+    """Return the name of what stands at the end of a path: ``Satellites[2].GNSS``."""
+    return ".".join(step.text(step.node.name) for step in steps)
+
+
+def alias_of_steps(steps: Sequence[PathStep]) -> str | None:
+    """Return the name with identifiers in place of names; None if no node on the path has an identifier."""
+    if not any(step.node.identifier for step in steps):
+        return None
+    return ".".join(step.text(step.node.identifier or step.node.name) for step in steps)
 
 
 Role: TypeAlias = Literal["field", "overlay", "derived", "count"]
 """Role of a scalar in a frame: `count` is a number of elements that follows from the length of the frame, without bits."""
 
 
+class OfScalar:
+    """Something with a scalar. It has the attributes of the scalar that give a raw value its meaning."""
+
+    scalar: Scalar
+
+    @property
+    def type(self) -> str:
+        """See `Scalar.type`."""
+        return self.scalar.type
+
+    @property
+    def enum(self) -> Enum | None:
+        """See `Scalar.enum`."""
+        return self.scalar.enum
+
+    @property
+    def unit(self) -> Unit | None:
+        """See `Scalar.unit`."""
+        return self.scalar.unit
+
+    @property
+    def unit_symbol(self) -> str:
+        """See `Scalar.unit_symbol`."""
+        return self.scalar.unit_symbol
+
+    @property
+    def formula(self) -> str:
+        """See `Scalar.formula`."""
+        return self.scalar.formula
+
+    @property
+    def scale(self) -> Scale | None:
+        """See `Scalar.scale`."""
+        return self.scalar.scale
+
+    @property
+    def curve(self) -> Curve | None:
+        """See `Scalar.curve`."""
+        return self.scalar.curve
+
+    @property
+    def const(self) -> int | None:
+        """See `Scalar.const`."""
+        return self.scalar.const
+
+    @property
+    def special(self) -> tuple[Special, ...]:
+        """See `Scalar.special`."""
+        return self.scalar.special
+
+    @property
+    def limits(self) -> Limits | None:
+        """See `Scalar.limits`."""
+        return self.scalar.limits
+
+    @property
+    def display(self) -> Display | None:
+        """See `Scalar.display`."""
+        return self.scalar.display
+
+    @property
+    def is_bytes(self) -> bool:
+        """See `Scalar.is_bytes`."""
+        return self.scalar.is_bytes
+
+    @property
+    def is_signed(self) -> bool:
+        """See `Scalar.is_signed`."""
+        return self.scalar.is_signed
+
+    @property
+    def has_formula(self) -> bool:
+        """See `Scalar.has_formula`."""
+        return self.scalar.has_formula
+
+    @property
+    def is_invertible(self) -> bool:
+        """See `Scalar.is_invertible`."""
+        return self.scalar.is_invertible
+
+    @property
+    def raw_min(self) -> int:
+        """See `Scalar.raw_min`."""
+        return self.scalar.raw_min
+
+    @property
+    def raw_max(self) -> int:
+        """See `Scalar.raw_max`."""
+        return self.scalar.raw_max
+
+    @property
+    def settable_raws(self) -> tuple[int, int]:
+        """See `Scalar.settable_raws`."""
+        return self.scalar.settable_raws
+
+
 @dataclass(frozen=True, eq=False)
-class FrameField:
+class FrameField(OfScalar):
     """A scalar where it stands in one frame. Compared by identity: `Layout.frame` makes each once."""
 
     steps: tuple[PathStep, ...]  # from the node of the message's own layout to the scalar
@@ -460,6 +569,11 @@ class FrameField:
         return name_of_steps(self.steps)
 
     @property
+    def alias(self) -> str | None:
+        """Return the name with identifiers in place of names; None if no node on the way has an identifier."""
+        return alias_of_steps(self.steps)
+
+    @property
     def conditions(self) -> tuple[Condition, ...]:
         """It is in the frame only if all of them hold."""
         return self.scalar.present_if
@@ -468,6 +582,17 @@ class FrameField:
     def has_bits(self) -> bool:
         """Whether it owns bits of the frame."""
         return self.role == "field"
+
+    @property
+    def is_raw(self) -> bool:
+        """Return whether a raw value has to be given for it: it owns bits, or is the number of elements."""
+        return self.role in ("field", "count")
+
+    @property
+    def derived(self) -> Derivation | None:
+        """Return how a derived value is computed; None for any other role."""
+        node = self.steps[-1].node
+        return node.derivation if isinstance(node, Derived) else None
 
 
 def flatten(layout: Layout, orders: Orders, sizes: Sizes | None = None) -> list[FrameField]:
@@ -520,7 +645,7 @@ _NO_SCALAR = Scalar(name="", type="struct", bits=0)
 
 
 @dataclass(frozen=True, eq=False)
-class NodePlace:
+class NodePlace(OfScalar):
     """A node, or an element of an array, at its bit of the longest frame or of a struct."""
 
     steps: tuple[PathStep, ...]  # from the node of the message's own layout on
@@ -612,81 +737,6 @@ class NodePlace:
     def counts_from(self) -> int:
         """The smallest raw value, of a field that counts elements."""
         return self.smallest_raw
-
-    @property
-    def type(self) -> str:
-        """See `Scalar.type`."""
-        return self.scalar.type
-
-    @property
-    def enum(self) -> Enum | None:
-        """See `Scalar.enum`."""
-        return self.scalar.enum
-
-    @property
-    def unit(self) -> Unit | None:
-        """See `Scalar.unit`."""
-        return self.scalar.unit
-
-    @property
-    def unit_symbol(self) -> str:
-        """See `Scalar.unit_symbol`."""
-        return self.scalar.unit_symbol
-
-    @property
-    def formula(self) -> str:
-        """See `Scalar.formula`."""
-        return self.scalar.formula
-
-    @property
-    def scale(self) -> Scale | None:
-        """See `Scalar.scale`."""
-        return self.scalar.scale
-
-    @property
-    def curve(self) -> Curve | None:
-        """See `Scalar.curve`."""
-        return self.scalar.curve
-
-    @property
-    def const(self) -> int | None:
-        """See `Scalar.const`."""
-        return self.scalar.const
-
-    @property
-    def special(self) -> tuple[Special, ...]:
-        """See `Scalar.special`."""
-        return self.scalar.special
-
-    @property
-    def limits(self) -> Limits | None:
-        """See `Scalar.limits`."""
-        return self.scalar.limits
-
-    @property
-    def display(self) -> Display | None:
-        """See `Scalar.display`."""
-        return self.scalar.display
-
-    @property
-    def is_bytes(self) -> bool:
-        """See `Scalar.is_bytes`."""
-        return self.scalar.is_bytes
-
-    @property
-    def has_formula(self) -> bool:
-        """See `Scalar.has_formula`."""
-        return self.scalar.has_formula
-
-    @property
-    def raw_min(self) -> int:
-        """See `Scalar.raw_min`."""
-        return self.scalar.raw_min
-
-    @property
-    def raw_max(self) -> int:
-        """See `Scalar.raw_max`."""
-        return self.scalar.raw_max
 
     @property
     def signed(self) -> bool:

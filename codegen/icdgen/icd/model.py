@@ -21,7 +21,7 @@ from icdgen.icd.enumeration import Member as Member
 from icdgen.icd.erratum import Erratum as Erratum
 from icdgen.icd.formula import Scale
 from icdgen.icd.layout import Condition as Condition
-from icdgen.icd.layout import Layout, Orders
+from icdgen.icd.layout import FrameField, Layout, Orders
 from icdgen.icd.layout import Limits as Limits
 from icdgen.icd.layout import Special as Special
 from icdgen.icd.located import Map, unread
@@ -155,6 +155,8 @@ class Field:
     def signed(self) -> bool:
         """Whether it is in two's complement."""
         return self.type == "int" or (self.enum is not None and self.enum.signed)
+
+    is_signed, is_invertible, settable_raws = signed, leads_back, ends  # as `Scalar` calls them
 
     @property
     def fresh(self) -> int | bytes:
@@ -404,6 +406,10 @@ class Icd:
     def messages_of(self, node: Node) -> tuple[Message, ...]:
         """All messages that the node speaks: those of included nodes first, then its own."""
         return tuple(m for n in (*self.included(node), node) for m in n.messages)
+
+    def longest_frame(self, message: Message) -> tuple[FrameField, ...]:
+        """The scalars of the longest frame of a message. Outputs number fields by their index in it."""
+        return message.layout.frame(self.node(message.node).orders)
 
     def protocol_of(self, node: Node) -> dict[str, Any]:
         """The protocol facts that hold for the node: its own over those of what it includes."""
