@@ -8,7 +8,9 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
-from icdgen.icd import annex, conditions, curve, derived, division, flat, floats, formula, model, tails, wire_ids
+from icdgen.icd import annex, conditions, curve, division, flat, floats, formula, model, tails, wire_ids
+from icdgen.icd.derived import Derivation
+from icdgen.icd.derived_values import derivation_of
 from icdgen.icd.display import display_of
 from icdgen.icd.errata import Applied
 from icdgen.icd.layout import (
@@ -31,7 +33,6 @@ from icdgen.icd.layout import (
     stride,
 )
 from icdgen.icd.located import Map, plain, unread
-from icdgen.icd.paths import members_of
 from icdgen.icd.trees import mappings
 from icdgen.icd.units import STANDARD, Unit
 
@@ -194,8 +195,7 @@ class Builder:
         )
         for row in self.items("derived", item):
             with suppress(formula.FormulaError):
-                members = members_of(flat.fields_of(layout, self.scope.layouts))
-                derivation = derived.of_fields(row["formula"], members)
+                derivation = derivation_of(row["formula"], layout.nodes)
                 node = derived_node(row, derivation, self.scope.units.get(row.get("unit", "")))
                 layout = replace(layout, derived=(*layout.derived, node))
         return layout
@@ -325,7 +325,7 @@ def _printed(item: Map) -> Map:
     return item.get("source") or unread()
 
 
-def derived_node(row: Map, derivation: derived.Derivation, unit: Unit | None) -> Derived:
+def derived_node(row: Map, derivation: Derivation, unit: Unit | None) -> Derived:
     """Return the node of a derived value."""
     scalar = Scalar(
         name=row["name"],

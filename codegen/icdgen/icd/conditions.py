@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from icdgen.icd.enumeration import Enum
 from icdgen.icd.fault import Fault
+from icdgen.icd.layout import Condition, LayoutNode
 from icdgen.icd.located import Map, unread
-from icdgen.icd.model import Condition, Enum, Field
 from icdgen.icd.suggestions import suggestion
 from icdgen.icd.trees import mappings
 
@@ -38,9 +39,9 @@ def of(message: Map, item: Map, enums: Mapping[str, Enum]) -> tuple[Condition, .
     return tuple(found)
 
 
-def are_understood(field: Field) -> bool:
-    """Whether a field has all the conditions that it is given: what is wrong with one is a finding, and no more follows."""
-    return len(_given(field.source)) == len(field.when)
+def are_understood(node: LayoutNode) -> bool:
+    """Return whether a node has all conditions of its line. Each that is wrong has a finding, and no other follows from it."""
+    return len(_given(node.source)) == len(node.present_if)
 
 
 def faults_of_names(message: Map, item: Map) -> Iterator[Fault]:

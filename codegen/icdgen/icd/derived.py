@@ -11,15 +11,10 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple
 
 from icdgen.icd.formula import MAX_DEGREE, MAX_DEPTH, MAX_DIGITS, MAX_EXPONENT, MAX_POWER_BITS, FormulaError, Tokens
 from icdgen.suggest import close_to
-
-Field: TypeAlias = Any  # those of the model, which imports this
-
-EXPONENT_BITS = 16
-"""The widest field that may stand behind `^`."""
 
 _NUMBER = re.compile(r"[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]{1,2})?")
 _WORDS = re.compile(r"[^\W\d](?:[\w .\[\]]*[\w\]])?")  # what looks like a name
@@ -249,40 +244,3 @@ def _double(number: Fraction) -> float:
     if math.isinf(found) or (number and not found):
         raise FormulaError("a number is too large or too small for a double")
     return found
-
-
-def of_fields(text: str, members: Collection[Field]) -> Derivation:
-    """The derivation of a formula over members of a message, those that are derived before among them.
-
-    Raises `icdgen.icd.formula.FormulaError`.
-    """
-    found = parse(text, {one.name for one in members if not one.implied})
-    check(found, members)
-    return found
-
-
-def check(found: Derivation, members: Collection[Field]) -> None:
-    """Raises `icdgen.icd.formula.FormulaError` for what is not derived from these members."""
-    known = {one.name: one for one in members}
-    for name in found.fields:
-        if name not in known:
-            raise FormulaError(f"`{name}` is not derived before it")
-        if odd := _odd(known[name]):
-            raise FormulaError(f"`{name}` {odd}")
-    for step in found.steps:
-        if step.operator == "^" and step.right < len(found.fields):
-            field = known[found.fields[step.right]]
-            if field.type == "float" or field.has_formula or field.bits > EXPONENT_BITS:
-                what = f"only a `uint` or `int` of up to {EXPONENT_BITS} bits without a formula does"
-                raise FormulaError(f"`{field.name}` stands behind `^`, and {what}")
-
-
-def _odd(field: Field) -> str:
-    """Why nothing is derived from a member, as the end of a sentence; empty if something can be."""
-    if field.when:
-        return "is not always there"
-    if field.struct is not None:
-        return "is a struct"
-    if field.count:
-        return "is an array"
-    return "" if field.type in ("uint", "int", "float") else f"is `{field.type}`, and no number"

@@ -109,9 +109,7 @@ def _member(node: FixedNode, orders: Orders, structs: Structs) -> Field:
     match node:
         case Array(item=item, size=size):
             assert isinstance(size, int), "a fixed array has a fixed number of elements"
-            # The tree has no arrays of overlays: they are an error, which the rules see by `view` of the flat field.
-            is_view = bool(node.source.get("view", False))
-            return replace(_member(item, orders, structs), at=node.at, count=size, view=is_view)
+            return replace(_member(item, orders, structs), at=node.at, count=size)
         case StructRef(layout=layout):
             return Field(
                 name=node.name,

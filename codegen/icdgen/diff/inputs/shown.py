@@ -13,8 +13,9 @@ from typing import Any, TypeVar
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.diff.inputs.side import Side
 from icdgen.errors import UserError, unreadable
-from icdgen.icd import annex, curve, derived, flat, model, schema, source
+from icdgen.icd import annex, curve, flat, model, schema, source
 from icdgen.icd.build import derived_node
+from icdgen.icd.derived_values import derivation_of
 from icdgen.icd.display import display_of
 from icdgen.icd.formula import FormulaError, Scale
 from icdgen.icd.layout import (
@@ -32,7 +33,6 @@ from icdgen.icd.layout import (
     overlay_of,
 )
 from icdgen.icd.located import Map, Seq, plain
-from icdgen.icd.paths import members_of
 from icdgen.icd.units import STANDARD, Unit
 from icdgen.show import machine
 
@@ -201,8 +201,7 @@ class _Reader:
         )
         for row in item.get("derived", ()):
             try:
-                members = members_of(flat.fields_of(layout, self.layouts))
-                derivation = derived.of_fields(row["formula"], members)
+                derivation = derivation_of(row["formula"], layout.nodes)
             except FormulaError as error:
                 text = f"`formula` cannot be used: {error}"
                 raise Findings([Finding("ICD010", text, row.at("formula"), _HELP)]) from None

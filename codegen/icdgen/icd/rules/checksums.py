@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from icdgen.icd.fault import Fault
 from icdgen.icd.model import Message, Node
-from icdgen.icd.rules.context import Context, said, section_of
+from icdgen.icd.rules.context import Context, own_fact, section_of
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, quote
 
@@ -55,7 +55,7 @@ def checksums_are_heeded(ctx: Context) -> Iterator[Fault]:
         telemetry = section_of(node, "crc8", "telemetry")
         if telemetry is None:
             continue
-        size, other = telemetry.get("extra_bytes"), said(node, "crc8", "telecommand", "extra_bytes")
+        size, other = telemetry.get("extra_bytes"), own_fact(node, "crc8", "telecommand", "extra_bytes")
         if size is not None and other is not None and size != other:
             message = f"the checksum adds {count(size, 'byte')} to telemetry and {other} to telecommands"
             yield Fault.at(telemetry, "extra_bytes", message, "a checksum has one size: correct one of the two")

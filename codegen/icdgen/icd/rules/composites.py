@@ -6,8 +6,9 @@ from collections.abc import Iterator
 
 from icdgen.diagnostics import Place
 from icdgen.icd.fault import Fault
+from icdgen.icd.layout import NodePlace
 from icdgen.icd.located import Map
-from icdgen.icd.model import Field, Message, Node, Part
+from icdgen.icd.model import Message, Node, Part
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import VERBATIM, line_of, listing, quote
@@ -44,7 +45,7 @@ def part_exists(ctx: Context) -> Iterator[Fault]:
             if frame is not message:
                 text = f"{text}, in {quote(frame.name)}"
             yield Fault(message.source, row.at("message"), text, "name another frame")
-        elif frame.tail is None and part.at + frame.length * 8 > message.length * 8:
+        elif not frame.layout.sequence and part.at + frame.length * 8 > message.length * 8:
             end = part.at + frame.length * 8
             text = f"{quote(frame.name)} ends at bit {end:,}, but {quote(message.name)} has {message.length * 8:,} bits"
             yield Fault(message.source, row.at("at"), text, "correct `at`, or the `length` of either")
@@ -64,34 +65,46 @@ def _repeated(frame: Message, frames: dict[str, Message]) -> set[str]:
 
 @rule("ICD047", whole=True)
 def part_matches(ctx: Context) -> Iterator[Fault]:
+    composite: Message | None = None
+    fields: list[NodePlace] = []  # of the composite frame
     for message, node, part, row in _parts(ctx):
+        if message is not composite:
+            composite, fields = message, _fields_with_bits(message)
         frame = next((m for m in ctx.messages_of(node) if m.name == part.message), None)
-        if frame is None or frame is message or frame.tail is not None:
+        if frame is None or frame is message or frame.layout.sequence:
             continue  # a finding already
         start, end = part.at, part.at + frame.length * 8
         if end > message.length * 8:
             continue  # likewise
-        wanted = {part.at + f.at: f for f in frame.owners}
-        told = set()
-        for field in [one for one in message.owners if one.at < end and one.at + one.bits > start]:
+        wanted = {part.at + field.at: field for field in _fields_with_bits(frame)}
+        reported = set()
+        for field in fields:
+            if field.at >= end or field.at + field.bits <= start:
+                continue
+            source = field.scalar.source
             twin = wanted.pop(field.at, None)
-            if id(field.source) in told:
+            if id(source) in reported:
                 continue  # another element of the same array
             if twin is None:
-                told.add(id(field.source))
+                reported.add(id(source))
                 text = f"{quote(frame.name)} has no field at bit {field.at - start:,}, where {quote(field.name)} begins"
                 if field.at < start:
                     text = f"{quote(field.name)} lies across bit {start:,}, where {quote(frame.name)} begins"
-                yield Fault.at(field.source, "at", text, _compare(frame, field.source.at("at")))
+                yield Fault.at(source, "at", text, _compare(frame, source.at("at")))
             else:
                 differences = list(_differences(field, twin, frame))
-                told |= {id(one.owner) for one in differences}
+                reported |= {id(fault.owner) for fault in differences}
                 yield from differences
         if wanted:
             names = [f"{quote(f.name)} at bit {at:,}" for at, f in list(wanted.items())[:3]]
             more = [f"{len(wanted) - 3} more"] if len(wanted) > 3 else []
             text = f"{quote(message.name)} lacks fields of {quote(frame.name)}: {listing(names + more)}"
             yield Fault(message.source, row.at("at"), text, _compare(frame, row.at("at")))
+
+
+def _fields_with_bits(message: Message) -> list[NodePlace]:
+    """Return the fields of the longest frame that have bits of their own."""
+    return [field for field in message.layout.scalars if not (field.is_count or field.view)]
 
 
 def _compare(frame: Message, here: Place) -> str:
@@ -102,18 +115,20 @@ def _quoted_value(source: Map, key: str) -> str:
     return quote(source[key]) if key in source else "absent"
 
 
-def _differences(field: Field, twin: Field, frame: Message) -> Iterator[Fault]:
-    mine, other = field.source, twin.source
+def _differences(field: NodePlace, twin: NodePlace, frame: Message) -> Iterator[Fault]:
+    """Yield a fault for the attributes in which a field differs from that of the repeated frame."""
+    mine, other = field.scalar.source, twin.scalar.source
     keys = [key for key in _KEYS if mine.get(key) != other.get(key)]
     keys += (key for key in ("byte_order", "bit_order") if getattr(field, key) != getattr(twin, key))
-    if field.scale is not None and field.scale == twin.scale and "formula" in keys:
+    scale = field.scalar.scale
+    if scale is not None and scale == twin.scalar.scale and "formula" in keys:
         keys.remove("formula")  # written differently, and the same
     if keys:
         key = keys[0]
         place = mine.at(key) if key in mine else mine.place
-        said = "; ".join(f"{k} {_quoted_value(mine, k)} here, {_quoted_value(other, k)} there" for k in keys)
+        values = "; ".join(f"{k} {_quoted_value(mine, k)} here, {_quoted_value(other, k)} there" for k in keys)
         there = f"{quote(twin.name)} in {quote(frame.name)} ({line_of(other.place, place)})"
-        yield Fault(mine, place, f"{quote(field.name)} differs from {there}: {said}", "one of the two is wrong")
+        yield Fault(mine, place, f"{quote(field.name)} differs from {there}: {values}", "one of the two is wrong")
 
 
 @rule("ICD048")

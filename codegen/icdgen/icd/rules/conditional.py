@@ -22,27 +22,27 @@ _NEVER = (
 
 @rule("ICD160")
 def depends_on_a_field(ctx: Context) -> Iterator[Fault]:
-    for field, message, _ in ctx.having["when"]:
+    for field, (_, message, _) in ctx.fields_with["when"]:
         yield from conditions.faults_of_names(message.source, field.source)
 
 
 @rule("ICD161")
 def may_hold(ctx: Context) -> Iterator[Fault]:
-    for field, message, node in ctx.having["when"]:
+    for field, (_, message, node) in ctx.fields_with["when"]:
         enums = {one.name: one for known in ctx.scope(node) for one in known.enums}
         yield from conditions.faults_of_values(message.source, field.source, enums)
 
 
 @rule("ICD162")
 def can_be_absent(ctx: Context) -> Iterator[Fault]:
-    for field, message, _ in ctx.having["when"]:
+    for field, (_, message, _) in ctx.fields_with["when"]:
         source = field.source
-        odd = next((words for key, words in _NEVER if source.get(key)), f"`{field.type}`" if field.is_bytes else "")
+        reason = next((words for key, words in _NEVER if source.get(key)), f"`{field.type}`" if field.is_bytes else "")
         if isinstance(message, Struct):
             text = f"{quote(field.name)} is a field of a struct, and optional fields in structs are not supported"
             yield Fault.at(source, "when", text, "write the fields of the struct into the message, or remove `when`")
-        elif odd:
-            text = f"{quote(field.name)} is {odd}, but only a number, a flag or an enumeration value can be optional"
+        elif reason:
+            text = f"{quote(field.name)} is {reason}, but only a number, a flag or an enumeration value can be optional"
             yield Fault.at(source, "when", text, "remove `when`")
         elif tails.open_parts(message.source):
             text = f"{quote(message.name)} has a variable-length field, so its other fields cannot be optional"
@@ -52,18 +52,18 @@ def can_be_absent(ctx: Context) -> Iterator[Fault]:
 @rule("ICD163")
 def carried(ctx: Context) -> Iterator[Fault]:
     """Links, logs and composites take every field for one that is there."""
-    told = {id(message.source) for _, message, _ in ctx.having["when"]}
+    optional = {id(line.owner.source) for _, line in ctx.fields_with["when"]}  # messages with optional fields
     for node in filter(ctx.is_linked, ctx.icd.nodes):
         for message in ctx.messages_of(node):
-            if id(message.source) in told:
+            if id(message.source) in optional:
                 absent = f"fields of {quote(message.name)} are not always there"
                 help = "leave `when` or `protocol` out of this ICD, or describe the link as a `stream`"
                 yield Fault.at(message.source, "name", f"{absent}, which the links of `protocol` do not carry", help)
-    for message, node in ctx.messages if told else ():
-        names = {one.name for one in ctx.messages_of(node) if id(one.source) in told}
+    for message, node in ctx.messages if optional else ():
+        names = {other.name for other in ctx.messages_of(node) if id(other.source) in optional}
         for part in mappings(message.source.get("contains")):
             name = part.get("message")
-            if isinstance(name, str) and (name in names or id(message.source) in told):
+            if isinstance(name, str) and (name in names or id(message.source) in optional):
                 absent = f"fields of {quote(name if name in names else message.name)} are not always there"
                 text = f"{absent}, so {quote(message.name)} cannot repeat {quote(name)}"
                 yield Fault(message.source, part.at("message"), text, "remove it from `contains`")

@@ -1,42 +1,62 @@
-"""What rules look at: the model, flattened once so that sixty rules need not each walk it."""
+"""Model and findings that rules look at; the lines of all layouts are listed once for all rules."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from icdgen.diagnostics import Lines
+from icdgen.icd import tails
 from icdgen.icd.errata import Applied
 from icdgen.icd.fault import Fault
+from icdgen.icd.layout import Derived, LayoutNode, Orders, Scalar, scalar_of
 from icdgen.icd.located import Map
-from icdgen.icd.model import Enum, Field, Icd, Message, Node, Struct
+from icdgen.icd.model import Enum, Icd, Message, Node, Struct
 from icdgen.icd.trees import at_path, mappings
+from icdgen.once import cached_property
 
 if TYPE_CHECKING:
     from icdgen.icd.identifiers import Language
 
-# Keys of a field that only few fields have.
-RARE = ("enum", "unit", "formula", "formula_for", "points", "outside", "const", "special", "bitfields", "byte_order",
-    "bit_order", "view", "when", "display",
-)  # fmt: skip
+RARE_KEYS = frozenset({"enum", "unit", "formula", "formula_for", "points", "outside", "const", "special", "bitfields",
+    "byte_order", "bit_order", "view", "when", "display",
+})  # fmt: skip
+"""Keys of a field that only few fields have."""
 
 Owner = Message | Struct
-Row = tuple[Field, Owner, Node]
 
 
-def said(node: Node, *path: str) -> Any:
-    """What the node's own protocol says at a path; None if nothing."""
+class Line(NamedTuple):
+    """A node of the layout of a message or struct, and what declares it."""
+
+    node: LayoutNode
+    owner: Owner
+    icd_node: Node
+
+    @property
+    def orders(self) -> Orders:
+        """Byte order and bit order in effect."""
+        return self.node.orders.within(self.owner.layout.orders.within(self.icd_node.orders))
+
+
+def is_overlay(node: LayoutNode) -> bool:
+    """Return whether a field or an array of fields has `view: true`. An array cannot be an overlay, but an ICD can say so."""
+    return bool(node.source.get("view", False)) and scalar_of(node) is not None
+
+
+def own_fact(node: Node, *path: str) -> Any:
+    """Return what the node's own protocol section has at a path; None if it has nothing there."""
     return at_path(node.source.get("protocol"), path)
 
 
 def section_of(node: Node, *path: str) -> Map | None:
-    """A section of the node's own protocol."""
-    found = said(node, *path)
-    return found if isinstance(found, Map) else None
+    """Return a section of the node's own protocol section."""
+    section = own_fact(node, *path)
+    return section if isinstance(section, Map) else None
 
 
 class Context:
-    """The model and what was found so far. The model must have been read from files: rules look at ``source``."""
+    """The model and the findings so far. The model must have been read from files: rules look at `source`."""
 
     def __init__(
         self,
@@ -50,37 +70,54 @@ class Context:
         self._lines = {file: Lines(text) for file, text in (texts or {}).items()}
         self.languages = languages  # that names must do for
         self.applied = tuple(applied)
-        self._accepted = {(code, id(owner)) for one in self.applied for code, _, owner in one.accepts}
+        self._accepted = {(code, id(owner)) for overlay in self.applied for code, _, owner in overlay.accepts}
         self.complete = complete
         self.raised: list[tuple[str, Fault]] = []  # code and fault, of the rules that ran already
-        self.messages: list[tuple[Message, Node]] = [(m, n) for n in icd.nodes for m in n.messages]
-        self.structs: list[tuple[Struct, Node]] = [(one, n) for n in icd.nodes for one in n.structs]
-        self.enums: list[Enum] = [one for n in icd.nodes for one in n.enums]
-        self.owners: list[tuple[Owner, Node]] = [*self.messages, *self.structs]  # of fields
-        self.members: list[Row] = [
-            (f, m, n) for m, n in self.owners for f in m.members if not f.implied and f.derived is None
-        ]  # an array once
-        self.fields: list[Row] = [row for row in self.members if row[0].struct is None]
-        self.having: dict[str, list[Row]] = {key: [] for key in RARE}  # fields that have the key
-        having = self.having
-        for row in self.fields:
-            for key in row[0].source:
-                if key in having:
-                    having[key].append(row)
-        derived = [(f, m, n) for m, n in self.messages for f in m.views if f.derived is not None]
+        self.messages: list[tuple[Message, Node]] = [(message, node) for node in icd.nodes for message in node.messages]
+        self.structs: list[tuple[Struct, Node]] = [(struct, node) for node in icd.nodes for struct in node.structs]
+        self.enums: list[Enum] = [enum for node in icd.nodes for enum in node.enums]
+        self.owners: list[tuple[Owner, Node]] = [*self.messages, *self.structs]  # of lines
+        self.lines: list[Line] = []
+        """The nodes of all messages and structs that have bits of a frame; nodes of a struct once, with the struct."""
+        self.fields: list[tuple[Scalar, Line]] = []
+        """The lines that are no struct; of an array its element."""
+        self.fields_with: dict[str, list[tuple[Scalar, Line]]] = {key: [] for key in RARE_KEYS}
+        """The fields that have a key; those with a unit or display format include derived values."""
+        derived: list[tuple[Scalar, Line]] = []
+        for owner, icd_node in self.owners:
+            for node in owner.layout.nodes:
+                line, scalar = Line(node, owner, icd_node), node if type(node) is Scalar else scalar_of(node)
+                if isinstance(node, Derived):
+                    derived.append((node.scalar, line))
+                    continue
+                self.lines.append(line)
+                if scalar is None:
+                    continue
+                self.fields.append((scalar, line))
+                for key in RARE_KEYS.intersection(scalar.source):
+                    self.fields_with[key].append((scalar, line))
         for key in ("unit", "display"):
-            having[key] += (row for row in derived if key in row[0].source)
+            self.fields_with[key] += (row for row in derived if key in row[0].source)
+        self.struct_of: dict[int, tuple[Struct, Node]] = {
+            id(struct.layout): (struct, node) for struct, node in self.structs
+        }
+        """The struct of a layout, by the identity of the layout, and the node that declares it."""
         self.declared: list[Any] | None = None  # what backends declare; see `declarations`
         self._scopes: dict[int, tuple[Node, ...]] = {}
 
+    @cached_property
+    def behind_variable_fields(self) -> frozenset[int]:
+        """Fields of fixed size, by the identity of their mappings, that are placed behind a variable-length field: ICD121."""
+        return frozenset(id(item) for message, _ in self.messages for item in tails.fixed_behind(message.source))
+
     def scope(self, node: Node) -> tuple[Node, ...]:
-        """What the node includes, then the node itself; each name once."""
-        found = self._scopes.get(id(node))
-        if found is None:
+        """Return the nodes that a node includes, then the node itself; each name once."""
+        scope = self._scopes.get(id(node))
+        if scope is None:
             by_name = {n.name: n for n in reversed(self.icd.included(node)) if n.name != node.name}
-            found = (*(n for n in self.icd.nodes if by_name.get(n.name) is n), node)
-            self._scopes[id(node)] = found
-        return found
+            scope = (*(n for n in self.icd.nodes if by_name.get(n.name) is n), node)
+            self._scopes[id(node)] = scope
+        return scope
 
     def written(self, owner: Map, key: str) -> str:
         """Return a number as its file writes it, such as ``0x82``, and a list of bytes as ``0x01 0x05``."""
@@ -91,36 +128,40 @@ class Context:
         return lines.marked(place) if lines is not None else str(value)
 
     def accepts(self, code: str, fault: Fault) -> bool:
-        """Whether an erratum says that the fault is to be."""
+        """Return whether an erratum accepts the fault."""
         return (code, id(fault.owner)) in self._accepted
 
     def sections(self, *path: str) -> Iterator[Map]:
-        """The sections of that path, of each node that has one of its own."""
-        found = (section_of(node, *path) for node in self.icd.nodes)
-        return (section for section in found if section is not None)
+        """Yield the protocol sections at a path, of each node that has one of its own."""
+        sections = (section_of(node, *path) for node in self.icd.nodes)
+        return (section for section in sections if section is not None)
 
     def messages_of(self, node: Node) -> list[Message]:
-        """All messages that the node speaks."""
+        """Return the messages of a node and of all nodes that it includes."""
         return [m for n in self.scope(node) for m in n.messages]
 
+    def home_of(self, message: Message, node: Node) -> Node:
+        """Return the node that declares a message of `messages_of(node)`."""
+        return next(n for n in self.scope(node) if n.name == message.node)
+
     def broken_messages(self, node: Node) -> set[str]:
-        """The names of those that stand in the files of what the node speaks, and could not be read. Findings tell of them."""
-        entries = (item for one in self.scope(node) for item in mappings(one.source.get("messages")))
+        """Return the names of messages that cannot be read, of a node and what it includes. Each has a finding."""
+        entries = (item for n in self.scope(node) for item in mappings(n.source.get("messages")))
         written = {name for item in entries if isinstance(name := item.get("name"), str)}
         return written - {message.name for message in self.messages_of(node)}
 
     def protocol_of(self, node: Node) -> dict[str, Any]:
-        """The protocol facts that hold for the node: its own over those of what it includes."""
+        """Return the protocol facts in effect for a node: its own, and else those of what it includes."""
         merged: dict[str, Any] = {}
-        for one in self.scope(node):
-            merged.update(one.protocol)
+        for n in self.scope(node):
+            merged.update(n.protocol)
         return merged
 
     def fact(self, node: Node, *path: str) -> Any:
-        """The protocol fact at a path that holds for the node; None if there is none."""
+        """Return the protocol fact at a path that is in effect for a node; None if there is none."""
         return at_path(self.protocol_of(node), path)
 
     def is_linked(self, node: Node) -> bool:
-        """Whether its protocol describes links that know a message by its id, and in one length: an envelope does without."""
+        """Return whether the protocol describes links whose messages have an id and one length; a `stream` needs neither."""
         protocol = self.protocol_of(node)
         return bool(protocol) and "stream" not in protocol

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.icd import derived
+from icdgen.icd.derived_values import check_operands
 from icdgen.icd.fault import Fault
 from icdgen.icd.formula import FormulaError
+from icdgen.icd.layout import LayoutNode
 from icdgen.icd.located import Map
 from icdgen.icd.model import Message
 from icdgen.icd.rules.context import Context
@@ -26,24 +28,26 @@ def derived_computes(ctx: Context) -> Iterator[Fault]:
 
 
 def _faults(message: Message) -> Iterator[Fault]:
-    known = [one for one in message.members if one.derived is None and not one.implied]
-    made = {id(one.source): one for one in message.views}
-    items = [one for one in mappings(message.source["derived"]) if _is_whole(one)]
-    failed: set[str] = set()  # the names of what has a finding already
-    for place, item in enumerate(items):
-        if id(item) in made:
-            known.append(made[id(item)])
+    """Yield a fault for each derived value that is not in the layout."""
+    nodes: list[LayoutNode] = [*message.layout.fixed, *message.layout.sequence]  # and the values in front of an item
+    derived_nodes = {id(node.source): node for node in message.layout.derived}
+    items = [item for item in mappings(message.source["derived"]) if _has_formula(item)]
+    failed: set[str] = set()  # names of values that have a finding
+    for index, item in enumerate(items):
+        if id(item) in derived_nodes:
+            nodes.append(derived_nodes[id(item)])
             continue
-        text, later = item["formula"], {one["name"] for one in items[place:]}
+        text, later = item["formula"], {other["name"] for other in items[index:]}
         try:
-            found = derived.parse(text, {*(one.name for one in known), *later, *failed})
-            if failed.isdisjoint(found.fields):
-                derived.check(found, known)
+            derivation = derived.parse(text, {*(node.name for node in nodes), *later, *failed})
+            if failed.isdisjoint(derivation.fields):
+                check_operands(derivation, nodes)
         except FormulaError as error:
             what = f"{quote(item['name'])} cannot be derived by {quote(text)}: {error}"
             yield Fault.at(item, "formula", what, _HELP)
         failed.add(item["name"])
 
 
-def _is_whole(item: Map) -> bool:
+def _has_formula(item: Map) -> bool:
+    """Return whether a derived value has a name and a formula; the schema reports others."""
     return isinstance(item.get("name"), str) and isinstance(item.get("formula"), str)

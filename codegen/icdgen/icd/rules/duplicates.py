@@ -8,8 +8,9 @@ from typing import TypeAlias, TypeVar
 from icdgen import naming
 from icdgen.diagnostics import Related
 from icdgen.icd.fault import Fault
+from icdgen.icd.layout import LayoutNode
 from icdgen.icd.located import Map
-from icdgen.icd.model import Enum, Field, Member, Message, Node, Struct
+from icdgen.icd.model import Enum, Member, Message, Node, Struct
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, quote
@@ -17,7 +18,7 @@ from icdgen.icd.trees import mappings
 from icdgen.icd.units import STANDARD
 
 T = TypeVar("T")
-Aliased: TypeAlias = Message | Field | Enum | Member | Struct
+Aliased: TypeAlias = Message | LayoutNode | Enum | Member | Struct
 PRINTED_TWICE = "rename one; if the manual prints both under this name, rename one in the errata file, or remove a copy"
 
 
@@ -66,20 +67,25 @@ def message_names(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD051")
 def field_names(ctx: Context) -> Iterator[Fault]:
-    for message, _ in ctx.owners:
-        fields = message.fields
-        if len({f.name for f in fields}) == len(fields):
+    for owner, _ in ctx.owners:
+        nodes = owner.layout.nodes
+        names = {node.name for node in nodes}
+        # A name can also be equal to that of an element, such as `Satellites[0].GNSS`, or of a counter.
+        is_path = any("[" in name or "." in name for name in names)
+        if len(names) == len(nodes) and not owner.layout.sequence and not is_path:
             continue
-        # What is twice as a whole is not told for each of its fields.
-        places = tuple(place for one in message.members for place in one.places)
-        fields = fields if len({f.name for f in places}) == len(places) else places
-        told = set()
-        for first, second in _twice(fields, lambda f: f.name):
-            if id(second.source) in told:
+        places = owner.layout.places
+        fields = [element for place in places for element in place.elements()]
+        # If two structs or arrays have one name, all their fields have equal names, too: report only the former.
+        if len({field.name for field in fields}) == len(fields):
+            fields = list(owner.layout.scalars)
+        reported = set()
+        for first, second in _twice(fields, lambda field: field.name):
+            if id(second.source) in reported:
                 continue  # another element of the same array
-            told.add(id(second.source))
+            reported.add(id(second.source))
             there = line_of(first.source.at("name"), second.source.at("name"))
-            text = f"{quote(message.name)} already has a field {quote(second.name)}, in {there}"
+            text = f"{quote(owner.name)} already has a field {quote(second.name)}, in {there}"
             related = Related(first.source.at("name"), "the first of this name")
             yield Fault.at(second.source, "name", text, PRINTED_TWICE, related=related)
 
@@ -139,7 +145,8 @@ def aliases(ctx: Context) -> Iterator[Fault]:
                     reported.add(key)
                     yield fault
     for owner, node in ctx.owners:
-        yield from _ambiguous_aliases(owner.members, node.vocabulary)
+        if any(line.aliases for line in owner.layout.nodes):
+            yield from _ambiguous_aliases([place.node for place in owner.layout.places], node.vocabulary)
     for node in ctx.icd.nodes:
         for enum in node.enums:
             yield from _ambiguous_aliases(enum.members, node.vocabulary)

@@ -173,14 +173,14 @@ def _contents(ctx: Context, link: Link) -> Iterator[Fault]:
         -(-max((row["at"] + row["bits"] for where, row in link.rows if where == part), default=0) // 8)
         for part in PARTS
     )
-    empty = next((one for _, one in messages if one.least == 0 and around == 0), None)
+    empty = next((one for _, one in messages if one.layout.shortest == 0 and around == 0), None)
     if empty is not None:
         message = f"no byte is sent for {quote(empty.name)}, which can have no data"
         yield Fault.at(link.section, "delimited_by", message, "add a field to `header`, such as an id")
     for row in link.of("length"):
         plus = row.get("plus", 0) + (around if row.get("counts") == "message" else 0)
         for _, one in messages:
-            least, most = one.least + plus, one.length + plus
+            least, most = one.layout.shortest + plus, one.length + plus
             if most >= 1 << row["bits"]:
                 message = f"a length of {count(row['bits'], 'bit')} does not hold {most}, that of {quote(one.name)}"
                 yield Fault.at(row, "bits", message, "make the field wider, or the message shorter")

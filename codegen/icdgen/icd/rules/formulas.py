@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 from icdgen.icd import curve, exact, formula
 from icdgen.icd.fault import Fault
+from icdgen.icd.layout import Scalar, struct_layout_of, walk
 from icdgen.icd.located import Map
-from icdgen.icd.model import Field, Node
-from icdgen.icd.paths import has_struct
-from icdgen.icd.rules.context import Context
+from icdgen.icd.model import Message, Node
+from icdgen.icd.rules.context import Context, is_overlay
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, quote
 
@@ -23,7 +23,7 @@ _BEYOND = (
 
 @rule("ICD060")
 def formula_reads(ctx: Context) -> Iterator[Fault]:
-    for field, _, _ in ctx.having["formula"]:
+    for field, _ in ctx.fields_with["formula"]:
         if not field.has_formula and field.type in SCALED and "points" not in field.source:
             text = field.source["formula"]
             try:
@@ -37,7 +37,7 @@ def formula_reads(ctx: Context) -> Iterator[Fault]:
 @rule("ICD061")
 def formula_has_number(ctx: Context) -> Iterator[Fault]:
     for key, what in (("formula", "formula"), ("points", "table of points")):
-        for field, _, _ in ctx.having[key]:
+        for field, _ in ctx.fields_with[key]:
             if field.type not in SCALED:
                 message = f"{quote(field.name)} is `{field.type}`, which takes no {what}"
                 yield Fault.at(field.source, key, message, "only numbers have one: uint, int and float")
@@ -45,7 +45,7 @@ def formula_has_number(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD067")
 def points_read(ctx: Context) -> Iterator[Fault]:
-    for field, _, _ in ctx.having["points"]:
+    for field, _ in ctx.fields_with["points"]:
         source = field.source
         if "formula" in source:
             message = f"{quote(field.name)} has a formula and a table of points"
@@ -60,16 +60,16 @@ def points_read(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD068")
 def outside_is_said(ctx: Context) -> Iterator[Fault]:
-    for field, _, _ in ctx.having["points"]:
+    for field, _ in ctx.fields_with["points"]:
         line, source = field.curve, field.source
         if line is None or not line.points or "outside" in source:
             continue
         if field.type == "float" or not line.holds(field.raw_min, field.raw_max):
             ends = "any number" if field.type == "float" else f"{field.raw_min:,} to {field.raw_max:,}"
-            said = " to ".join(f"{raw:g}" for raw in (line.points[0][0], line.points[-1][0]))
-            message = f"raw values of {quote(field.name)} are {ends}, its points go from {said}: what is outside?"
+            extent = " to ".join(f"{raw:g}" for raw in (line.points[0][0], line.points[-1][0]))
+            message = f"raw values of {quote(field.name)} are {ends}, its points go from {extent}: what is outside?"
             yield Fault.at(source, "points", message, _BEYOND)
-    for field, _, _ in ctx.having["outside"]:
+    for field, _ in ctx.fields_with["outside"]:
         if "points" not in field.source:
             message = f"{quote(field.name)} has `outside` and no points"
             yield Fault.at(field.source, "outside", message, "add `points`, or remove it")
@@ -77,7 +77,7 @@ def outside_is_said(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD069", severity="warning")
 def points_are_in_reach(ctx: Context) -> Iterator[Fault]:
-    for field, _, _ in ctx.having["points"]:
+    for field, _ in ctx.fields_with["points"]:
         line, source = field.curve, field.source
         if line is None or line.outside not in (curve.CLAMP, curve.REFUSE) or field.type == "float":
             continue
@@ -93,48 +93,59 @@ def points_are_in_reach(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD062")
 def formula_direction(ctx: Context) -> Iterator[Fault]:
-    for field, _, _ in ctx.having["formula_for"]:
-        source, said = field.source, field.source["formula_for"]
+    for field, _ in ctx.fields_with["formula_for"]:
+        source, stated = field.source, field.source["formula_for"]
         if "formula" not in source or "points" in source:
             message = f"{quote(field.name)} has `formula_for` and no formula"
             help = "add `formula` or remove it"
-        elif said != (gives := _gives(field)):
-            message = f"the formula of {quote(field.name)} is announced for the {said} value and gives the {gives} one"
+        elif stated != (gives := _gives(field)):
+            message = (
+                f"the formula of {quote(field.name)} is announced for the {stated} value and gives the {gives} one"
+            )
             help = "decide in the errata: hold `formula_for: null` if the formula is right, or hold the other formula"
         else:
-            message = f"the formula of {quote(field.name)} does give the {said} value: nothing contradicts it"
+            message = f"the formula of {quote(field.name)} does give the {stated} value: nothing contradicts it"
             help = "remove `formula_for`"
         yield Fault.at(source, "formula_for", message, help)
     for node in ctx.icd.nodes:
-        stated = node.source.get("formula_for")
-        if isinstance(stated, Map):
-            yield from _stated(stated, node)
+        for_kinds = node.source.get("formula_for")
+        if isinstance(for_kinds, Map):
+            yield from _stated(for_kinds, node)
 
 
 def _stated(stated: Map, node: Node) -> Iterator[Fault]:
-    """What is said once for all messages of a kind."""
-    for kind, said in stated.items():
-        fields = [f for m in node.messages if m.kind == kind for f in m.fields if "formula_for" not in f.source]
-        against = [f for f in fields if "formula" in f.source and _gives(f) != said]
+    """Yield the faults of what the ICD states once for all messages of a kind."""
+    for kind, stated_for in stated.items():
+        against = [
+            field
+            for message in node.messages
+            if message.kind == kind
+            for field in message.layout.scalars
+            if "formula" in field.scalar.source
+            and "formula_for" not in field.scalar.source
+            and _gives(field.scalar) != stated_for
+        ]
         if against:
             other = (
                 f"that of {quote(against[0].name)} gives the other one, as in {count(len(against), 'field')} altogether"
             )
-            message = f"the formulas of {kind} messages are announced for the {said} value, and {other}"
+            message = f"the formulas of {kind} messages are announced for the {stated_for} value, and {other}"
             help = f"decide in the errata: hold `{kind}: null` if the formulas are right"
         else:
-            message = f"no formula of a {kind} message gives anything but the {said} value: nothing contradicts it"
+            message = (
+                f"no formula of a {kind} message gives anything but the {stated_for} value: nothing contradicts it"
+            )
             help = f"remove `{kind}`"
         yield Fault.at(stated, kind, message, help)
 
 
-def _gives(field: Field) -> str:
+def _gives(field: Scalar) -> str:
     return "raw" if formula.is_inverse(field.source["formula"]) else "physical"
 
 
 @rule("ICD063")
 def unit_has_number(ctx: Context) -> Iterator[Fault]:
-    for field, _, _ in ctx.having["unit"]:
+    for field, _ in ctx.fields_with["unit"]:
         if field.type in ("bool", "enum") or field.is_bytes:
             message = f"{quote(field.name)} is `{field.type}`, which has no unit"
             yield Fault.at(field.source, "unit", message, "remove `unit`, or correct `type`")
@@ -143,7 +154,7 @@ def unit_has_number(ctx: Context) -> Iterator[Fault]:
 @rule("ICD064")
 def formula_computable(ctx: Context) -> Iterator[Fault]:
     checked: dict[str, bool] = {}
-    for field, _, _ in (*ctx.having["formula"], *ctx.having["points"]):
+    for field, _ in (*ctx.fields_with["formula"], *ctx.fields_with["points"]):
         scale = field.scale
         line = field.curve
         if line is not None and field.type != "float" and not curve.is_finite(line, field.raw_min, field.raw_max):
@@ -163,28 +174,44 @@ def formula_computable(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD066", severity="warning")
 def formula_leads_back(ctx: Context) -> Iterator[Fault]:
-    sent = [message for message, _ in ctx.messages if message.telecommand_id is not None]
-    for field, owner, _ in (*ctx.having["formula"], *ctx.having["points"]):
-        if field.view or not field.has_formula or field.leads_back:
-            continue
-        message = next((one for one in sent if one is owner or has_struct(one.fields, owner)), None)
-        if message is None:
+    fields = [
+        (field, line)
+        for field, line in (*ctx.fields_with["formula"], *ctx.fields_with["points"])
+        if field.has_formula and not field.is_invertible and not is_overlay(line.node)
+    ]
+    senders = _senders(ctx) if fields else {}
+    for field, line in fields:
+        telecommand = senders.get(id(line.owner.layout))
+        if telecommand is None:
             continue
         if field.type == "float":
             why = "of a float only a formula that is a line leads back"
         elif field.bits > curve.MOST_BITS:
             what = "table" if field.curve is not None and field.curve.points else "polynomial"
             why = f"of a {what} this is only known for fields of up to {curve.MOST_BITS} bits"
-        elif field.ends[0] >= field.ends[1]:
+        elif field.settable_raws[0] >= field.settable_raws[1]:
             why = "no two raw values lie between its points"
         else:
             why = "its values do not rise, or fall, from each raw value to the next"
         key, what = _calibration(field)
-        text = f"the {what} of {quote(field.name)} does not lead back, and {quote(message.name)} is sent: {why}"
+        text = f"the {what} of {quote(field.name)} does not lead back, and {quote(telecommand.name)} is sent: {why}"
         yield Fault.at(field.source, key, text, "its raw value can be set all the same")
 
 
-def _calibration(field: Field) -> tuple[str, str]:
+def _senders(ctx: Context) -> dict[int, Message]:
+    """Return the first message that is sent with a layout in it, by the identity of the layout."""
+    senders: dict[int, Message] = {}
+    for message, node in ctx.messages:
+        if message.telecommand_id is not None:
+            senders.setdefault(id(message.layout), message)
+            for visit in walk(message.layout, node.orders):
+                struct = struct_layout_of(visit.node)
+                if struct is not None:
+                    senders.setdefault(id(struct), message)
+    return senders
+
+
+def _calibration(field: Scalar) -> tuple[str, str]:
     """The key that says how its physical value is computed, and what it is called."""
     return ("points", "table") if field.curve is not None and field.curve.points else ("formula", "formula")
 

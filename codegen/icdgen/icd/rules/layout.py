@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from itertools import chain
+from operator import attrgetter
+from typing import NamedTuple
 
 from icdgen.diagnostics import Related
 from icdgen.icd import tails
 from icdgen.icd.conditions import are_understood, exclude
 from icdgen.icd.division import obstacles
 from icdgen.icd.fault import Fault
-from icdgen.icd.model import Field, Message, Node
-from icdgen.icd.paths import placed
-from icdgen.icd.rules.context import Context, Owner
+from icdgen.icd.layout import Array, Derived, Layout, LayoutNode, NodePlace, stride, struct_layout_of
+from icdgen.icd.model import Message, Node
+from icdgen.icd.rules.context import Context, Owner, is_overlay
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, line_of, quote
 
@@ -24,93 +26,110 @@ WIDTHS = {
     "bool": (frozenset({1}), "1 bit"),
     "float": (frozenset({32, 64}), "32 or 64 bits"),
 }
-Overlap = tuple[Fault, tuple[int, int]]  # and the two fields as they were read
 _OVERLAPPING = "correct `at` or `bits`"
 _VIEW = "; if it reads the same bits in another way: `view: true`"
 _ALTERNATIVES = "let them depend on different values of the same field, or correct `at` or `bits`"
 _ORDERLY = {"bytes": "bytes", "text": "characters"}
 
 
+class Overlap(NamedTuple):
+    """Two places that have bits in common, in the order of the ICD."""
+
+    first: NodePlace
+    second: NodePlace
+    bits: str = ""  # in words; empty for those between the later begin and the earlier end
+
+
 @rule("ICD020")
 def past_the_end(ctx: Context) -> Iterator[Fault]:
-    behind = _behind(ctx)
-    for field, message, _ in ctx.members:
-        end, room = field.at + field.width, message.length * 8
-        if end > room and id(field.source) not in behind:
-            source = field.source
-            whole = "struct" if field.struct else "bits"
-            key = "at" if field.at >= room else "count" if field.count else whole
-            has = f"{quote(message.name)} has {count(room, 'bit')} ({count(message.length, 'byte')})"
-            length = line_of(message.source.at("length"), source.at(key))
-            help = f"correct `at`{', `count`' if field.count else ''} or `{whole}`, or the `length` in {length}"
-            yield Fault.at(source, key, f"{quote(field.name)} ends at bit {end:,}, but {has}", help)
-
-
-def _behind(ctx: Context) -> set[int]:
-    """Fields that ICD121 reports: they are placed behind a variable-length field."""
-    return {id(item) for message, _ in ctx.messages for item in tails.fixed_behind(message.source)}
+    for node, owner, _ in ctx.lines:
+        source, room = node.source, owner.length * 8
+        end = node.at + _fixed_bits(node)
+        if end > room and id(source) not in ctx.behind_variable_fields:
+            is_array, size_key = isinstance(node, Array), "struct" if struct_layout_of(node) else "bits"
+            key = "at" if node.at >= room else "count" if is_array else size_key
+            has = f"{quote(owner.name)} has {count(room, 'bit')} ({count(owner.length, 'byte')})"
+            length = line_of(owner.source.at("length"), source.at(key))
+            help = f"correct `at`{', `count`' if is_array else ''} or `{size_key}`, or the `length` in {length}"
+            yield Fault.at(source, key, f"{quote(node.name)} ends at bit {end:,}, but {has}", help)
 
 
 @rule("ICD021")
 def overlap(ctx: Context) -> Iterator[Fault]:
-    behind = _behind(ctx)
     reported = set()
-    for fault, pair in chain(_overlaps(ctx), _overlaps_within(ctx)):
-        if pair not in reported and behind.isdisjoint(pair):  # each element of an array may overlap
+    for overlap in chain(_overlaps(ctx), _overlaps_within_structs(ctx)):
+        pair = id(overlap.first.source), id(overlap.second.source)
+        if pair not in reported and ctx.behind_variable_fields.isdisjoint(pair):  # each element of an array may overlap
             reported.add(pair)
-            yield fault
+            yield _fault(overlap)
 
 
 def _overlaps(ctx: Context) -> Iterator[Overlap]:
-    for message, node in ctx.owners:
-        fields = _standing(message)
-        if any("when" in field.source or field.bit_order not in ("", node.bit_order) for field in fields):
-            yield from _overlaps_among(message, node, filter(are_understood, fields))
+    """Yield the overlaps within each message and struct; structs count as a whole."""
+    for owner, icd_node in ctx.owners:
+        if _are_apart(owner.layout):
             continue
-        reached, widest = -1, -1
-        for index in sorted(range(len(fields)), key=lambda i: fields[i].at):
-            field = fields[index]
-            if field.at < reached:
-                yield _overlap(fields[min(index, widest)], fields[max(index, widest)])
-            if field.at + field.bits > reached:
-                reached, widest = field.at + field.bits, index
-
-
-def _overlaps_within(ctx: Context) -> Iterator[Overlap]:
-    """Those within structs that stand where bits are counted in another way than where they are declared."""
-    homes = {id(struct): node for struct, node in ctx.structs}
-    for member, owner, node in ctx.members:
-        if member.struct is None or id(member.struct) not in homes:
+        own = [place for place in owner.layout.places if _has_own_bits(place)]
+        elements = [element for place in own for element in (place.elements() if place.count else (place,))]
+        if any("when" in place.source or place.bit_order not in ("", icd_node.bit_order) for place in own):
+            yield from _overlaps_among(owner, icd_node, (one for one in elements if are_understood(one.node)))
             continue
-        if member.orders(node)[1] != homes[id(member.struct)].bit_order:
-            yield from _overlaps_among(owner, node, placed(member, member.places[0], member.struct.fields))
+        end, widest = -1, -1  # end of the place that reaches farthest, and its index
+        for index in sorted(range(len(elements)), key=lambda i: elements[i].at):
+            element = elements[index]
+            if element.at < end:
+                yield Overlap(elements[min(index, widest)], elements[max(index, widest)])
+            if element.at + element.bits > end:
+                end, widest = element.at + element.bits, index
 
 
-def _standing(owner: Owner) -> tuple[Field, ...]:
-    """What has bits: fields, elements of arrays, structs as wholes."""
-    members = owner.members
-    if members is owner.fields:
-        return owner.owners
-    return tuple(place for member in members if not member.view for place in member.places)
+def _are_apart(layout: Layout) -> bool:
+    """Return whether it is plain that no two nodes have bits in common: true of most layouts, and quickly decided."""
+    end = 0
+    for node in sorted(layout.fixed, key=attrgetter("at")):
+        if node.at < end or node.orders.bit:
+            return False
+        end = node.at + _fixed_bits(node)
+    return not layout.sequence or end <= 8 * layout.length
 
 
-def _overlaps_among(message: Owner, node: Node, fields: Iterable[Field]) -> Iterator[Overlap]:
-    """`_overlaps` where fields count bits in different ways, or are not always there.
+def _fixed_bits(node: LayoutNode) -> int:
+    """Return the bits of a node of fixed size; of a variable-length one those of an element."""
+    return stride(node) * (node.size if isinstance(node, Array) and isinstance(node.size, int) else 1)
 
-    Those that are never there together may have the same bits.
+
+def _has_own_bits(place: NodePlace) -> bool:
+    """Return whether a place has bits that are no other field's."""
+    return not (place.is_count or isinstance(place.node, Derived) or is_overlay(place.node))
+
+
+def _overlaps_within_structs(ctx: Context) -> Iterator[Overlap]:
+    """Yield the overlaps in structs that stand where bits are counted in another way than where they are declared."""
+    for owner, icd_node in ctx.owners:
+        if not any(map(struct_layout_of, owner.layout.nodes)):
+            continue
+        for place in owner.layout.places:
+            _, home = ctx.struct_of.get(id(place.struct), (None, None))
+            if home is not None and place.orders_in_effect(icd_node.orders).bit != home.bit_order:
+                yield from _overlaps_among(owner, icd_node, place.elements()[0].scalars())  # all elements are alike
+
+
+def _overlaps_among(owner: Owner, icd_node: Node, fields: Iterable[NodePlace]) -> Iterator[Overlap]:
+    """Yield the overlaps where fields count bits in different ways, or where fields are optional.
+
+    Fields that are never in the same frame may have the same bits.
     """
-    seen: list[tuple[Field, int]] = []
+    before: list[tuple[NodePlace, int]] = []
     for field in fields:
-        if field.at + field.bits > message.length * 8:
-            continue  # a finding already
-        mask = _mask(field, node)
-        clashes = (
-            (one, shared) for one, other in seen if (shared := mask & other) and not exclude(one.when, field.when)
-        )
-        clash = next(clashes, None)
-        if clash is not None:
-            yield _overlap(clash[0], field, _bits_of(clash[1]))
-        seen.append((field, mask))
+        if field.at + field.bits > owner.length * 8:
+            continue  # ICD020 reports it
+        mask = _mask(field.at, field.bits, field.orders_in_effect(icd_node.orders).bit)
+        for other, other_mask in before:
+            shared = mask & other_mask
+            if shared and not exclude(other.when, field.when):
+                yield Overlap(other, field, _bits_of(shared))
+                break
+        before.append((field, mask))
 
 
 def _bits_of(mask: int) -> str:
@@ -120,37 +139,40 @@ def _bits_of(mask: int) -> str:
     return f"{size} of byte {low // 8}" if mask >> low // 8 * 8 < 256 else size
 
 
-def _mask(field: Field, node: Node) -> int:
-    """The bits of the frame that the field has; bit w of byte b is bit 8 * b + w."""
-    if field.orders(node)[1] == "lsb0" or field.at % 8 == 0 == field.bits % 8:
-        return ((1 << field.bits) - 1) << field.at
-    return sum(1 << (at // 8 * 8 + 7 - at % 8) for at in range(field.at, field.at + field.bits))
+def _mask(begin: int, bits: int, bit_order: str) -> int:
+    """Return which bits of the frame a field has; bit w of byte b is bit 8 * b + w."""
+    if bit_order == "lsb0" or begin % 8 == 0 == bits % 8:
+        return ((1 << bits) - 1) << begin
+    return sum(1 << (at // 8 * 8 + 7 - at % 8) for at in range(begin, begin + bits))
 
 
-def _help(first: Field, second: Field) -> str:
-    if first.when and second.when:
-        return _ALTERNATIVES
-    help = "correct `at`, or the `length` of the struct" if second.struct else _OVERLAPPING
-    for one in (first, second):
-        if one.path and one.path[0].index and type(one.source.get("count")) is int:  # not the first of its elements
-            help += f", or the `count` of {quote(one.source['name'])}"
-    return help if second.struct or second.path else help + _VIEW
-
-
-def _overlap(first: Field, second: Field, bits: str = "") -> Overlap:
+def _fault(overlap: Overlap) -> Fault:
+    """Return the fault of an overlap, at its second field."""
+    first, second, bits = overlap
     start, end = max(first.at, second.at), min(first.at + first.bits, second.at + second.bits)
     bits = bits or (f"bit {start:,}" if end - start == 1 else f"bits {start:,} to {end - 1:,}")
     other = f"{quote(first.name)} ({line_of(first.source.place, second.source.at('at'))})"
     text = f"{quote(second.name)} overlaps {other} in {bits}"
     text += ", and both can be present" if first.when or second.when else ""
     related = Related(first.source.at("at"), f"{quote(first.name)} begins here")
-    fault = Fault.at(second.source, "at", text, _help(first, second), related=related)
-    return fault, (id(first.source), id(second.source))
+    return Fault.at(second.source, "at", text, _help(first, second), related=related)
+
+
+def _help(first: NodePlace, second: NodePlace) -> str:
+    """Return how two places can be kept apart."""
+    if first.when and second.when:
+        return _ALTERNATIVES
+    help = "correct `at`, or the `length` of the struct" if second.struct else _OVERLAPPING
+    for place in (first, second):
+        if place.index and type(place.source.get("count")) is int:  # not the first of its elements
+            help += f", or the `count` of {quote(place.node.name)}"
+    is_field = second.struct is None and second.index is None and len(second.steps) == 1
+    return help + _VIEW if is_field else help
 
 
 @rule("ICD022")
 def width(ctx: Context) -> Iterator[Fault]:
-    for field, _, _ in ctx.fields:
+    for field, _ in ctx.fields:
         if field.is_bytes:
             fits, words = field.bits % 8 == 0, "whole bytes: a multiple of 8 bits"
         else:
@@ -159,24 +181,24 @@ def width(ctx: Context) -> Iterator[Fault]:
         if not fits:
             article = "an" if field.type[0] in "aeio" else "a"
             message = f"{article} `{field.type}` field takes {words}, not {field.bits:,}"
-            yield Fault.at(
-                field.source, "bits", message, "correct `bits` or `type`", "1" if field.type == "bool" else ""
-            )
+            fix = "1" if field.type == "bool" else ""
+            yield Fault.at(field.source, "bits", message, "correct `bits` or `type`", fix)
 
 
 @rule("ICD023")
 def bytes_boundary(ctx: Context) -> Iterator[Fault]:
-    for field, _, _ in ctx.fields:
-        if field.is_bytes and field.at % 8:
-            text = f"{quote(field.name)} is `{field.type}`, but bit {field.at:,} is not the beginning of a byte"
-            help = f"correct `at`: the nearest bytes begin at bits {field.at // 8 * 8:,} and {field.at // 8 * 8 + 8:,}"
+    for field, line in ctx.fields:
+        at = line.node.at
+        if field.is_bytes and at % 8:
+            text = f"{quote(field.name)} is `{field.type}`, but bit {at:,} is not the beginning of a byte"
+            help = f"correct `at`: the nearest bytes begin at bits {at // 8 * 8:,} and {at // 8 * 8 + 8:,}"
             yield Fault.at(field.source, "at", text, help)
 
 
 @rule("ICD026")
 def order_of_nothing(ctx: Context) -> Iterator[Fault]:
     for key in ("byte_order", "bit_order"):
-        for field, _, _ in ctx.having[key]:
+        for field, _ in ctx.fields_with[key]:
             if field.is_bytes or (field.type == "bool" and key == "byte_order"):
                 what = f"{_ORDERLY[field.type]} are sent in order" if field.is_bytes else "it is one bit"
                 message = f"{quote(field.name)} is `{field.type}`: {what}, so `{key}` has no effect"
@@ -185,41 +207,45 @@ def order_of_nothing(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD029")
 def view_of_fields(ctx: Context) -> Iterator[Fault]:
-    for field, message, node in ctx.having["view"]:
+    for field, line in ctx.fields_with["view"]:
+        node, message, icd_node = line
         if not isinstance(message, Message):
-            continue  # a struct has none
-        if not field.view or "bitfields" in field.source or field.at + field.bits > message.length * 8:
-            continue  # no view, or a finding already
+            continue  # ICD143 reports overlay fields of structs
         source, name = field.source, quote(field.name)
-        if field.count:
+        if not is_overlay(node) or "bitfields" in source or node.at + field.bits > message.length * 8:
+            continue  # not an overlay field, or ICD025 or ICD020 reports it
+        if isinstance(node, Array):
             help = "write an overlay field for each element"
             yield Fault.at(source, "view", f"{name} is an array, but an overlay field is one number", help)
             continue
         if field.is_bytes:
-            yield Fault.at(
-                source, "view", f"{name} is `{field.type}`, but an overlay field is a number", "remove `view`"
-            )
+            text = f"{name} is `{field.type}`, but an overlay field is a number"
+            yield Fault.at(source, "view", text, "remove `view`")
             continue
         if field.const is not None:
             text = f"{name} is an overlay field, whose value is never set, so it cannot have `const`"
             yield Fault.at(source, "const", text, "give `const` to the field that has the bits")
-        free = _mask(field, node)
-        for owner in message.owners:
-            free &= ~0 if owner.when else ~_mask(owner, node)
+        free = _mask(node.at, field.bits, line.orders.bit)
+        for owner in message.layout.scalars:
+            if _has_own_bits(owner) and not owner.when:
+                free &= ~_mask(owner.at, owner.bits, owner.orders_in_effect(icd_node.orders).bit)
         if free and is_read(message):
-            text = f"{name} is an overlay of {_bits_of(free)} that no field {'always ' * message.has_conditions}has"
+            always = "always " if any(other.present_if for other in message.layout.nodes) else ""
+            text = f"{name} is an overlay of {_bits_of(free)} that no field {always}has"
             yield Fault.at(source, "at", text, "describe these bits as a field, or correct `at` or `bits`")
 
 
 def is_read(message: Message) -> bool:
-    """Whether no field was left out for a finding of its own; it may have the bits that others seem to lack."""
-    read = {id(field.source) for field in (*message.fields, *message.members)}
+    """Return whether the layout has all fields of the ICD. A field with a finding may have the bits that others lack."""
+    read = {id(node.source) for node in message.layout.nodes}
     return all(id(entry) in read or "bitfields" in entry for entry in message.source.get("fields", ()))
 
 
 def covered_bytes(message: Message) -> int:
-    """Bytes up to the end of the last field."""
-    return max((one.at + one.width + 7 for one in message.members if one.derived is None), default=0) // 8
+    """Return the bytes up to the end of the last field, in the longest frame."""
+    if message.layout.sequence:
+        return message.layout.longest
+    return max((node.at + _fixed_bits(node) + 7 for node in message.layout.fixed), default=0) // 8
 
 
 @rule("ICD027", whole=True)
@@ -237,7 +263,7 @@ def undescribed_end(ctx: Context) -> Iterator[Fault]:
         covered = covered_bytes(message)
         if covered + message.reserved < message.length and is_read(message):
             left = message.length - covered - message.reserved
-            described = f"its fields describe {covered:,}" if message.fields else "no field describes them"
+            described = f"its fields describe {covered:,}" if message.layout.nodes else "no field describes them"
             text = f"{quote(message.name)} has {count(message.length, 'byte')}, but {described}"
             help = f"describe {'' if message.reserved else 'the last '}{count(left, 'byte')} or correct `length`"
             reserve = f"if the manual calls them reserved: `reserved: {left + message.reserved}`"
@@ -246,5 +272,5 @@ def undescribed_end(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD025")
 def bitfields(ctx: Context) -> Iterator[Fault]:
-    for field, _, node in ctx.having["bitfields"]:
-        yield from obstacles(field.source, *field.orders(node))
+    for field, line in ctx.fields_with["bitfields"]:
+        yield from obstacles(field.source, line.orders.byte, line.orders.bit)

@@ -8,7 +8,7 @@ from math import ceil, floor
 from typing import NamedTuple
 
 from icdgen.icd.fault import Fault
-from icdgen.icd.model import Field, Limits
+from icdgen.icd.layout import Limits, Scalar
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.values import NUMBERS
@@ -32,7 +32,7 @@ class Bounds(NamedTuple):
         return self.low > self.high or (self.low == self.high and (self.above or self.below))
 
 
-def bounds(field: Field) -> Bounds:
+def bounds(field: Scalar) -> Bounds:
     """The narrowest interval that the limits of the field describe."""
     limits = field.limits or Limits()
     lows = ((v, is_open) for v, is_open in ((limits.min, False), (limits.above, True)) if v is not None)
@@ -42,16 +42,16 @@ def bounds(field: Field) -> Bounds:
     return Bounds(low, high, above, not inside)
 
 
-def _limited(ctx: Context) -> Iterator[Field]:
+def _limited(ctx: Context) -> Iterator[Scalar]:
     """Fields with limits."""
-    return (field for field, _, _ in ctx.fields if field.limits is not None)
+    return (field for field, _ in ctx.fields if field.limits is not None)
 
 
-def _shown(field: Field, *keys: str) -> str:
+def _shown(field: Scalar, *keys: str) -> str:
     return " and ".join(f"`{key}: {field.source[key]}`" for key in keys if key in field.source)
 
 
-def _first(field: Field, *keys: str) -> str:
+def _first(field: Scalar, *keys: str) -> str:
     return next(key for key in keys if key in field.source)
 
 
@@ -88,11 +88,11 @@ def limits_in_range(ctx: Context) -> Iterator[Fault]:
             yield Fault.at(source, "const", message, help)
 
 
-def _physical(field: Field, raw: int) -> Fraction:
+def _physical(field: Scalar, raw: int) -> Fraction:
     return field.scale.physical(raw) if field.scale else Fraction(raw)
 
 
-def _raw_values(field: Field, within: Bounds) -> range:
+def _raw_values(field: Scalar, within: Bounds) -> range:
     """The raw values of the field that lie within the (physical) bounds."""
     low, high, above, below = within
     if field.scale:

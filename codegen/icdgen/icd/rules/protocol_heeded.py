@@ -6,8 +6,9 @@ from collections.abc import Iterable, Iterator
 from itertools import product
 
 from icdgen.icd.fault import Fault
+from icdgen.icd.layout import NodePlace
 from icdgen.icd.located import Map, Seq, unread
-from icdgen.icd.model import TELECOMMAND, TELEMETRY, Field, Message, Node
+from icdgen.icd.model import TELECOMMAND, TELEMETRY, Node
 from icdgen.icd.rules.context import Context, section_of
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.protocol_limits import roles_stand_once
@@ -80,13 +81,14 @@ def parts_can_be_played(ctx: Context) -> Iterator[Fault]:
             message = named(messages, section.get("message"))
             if message is not None:
                 fields = section.get("fields")
-                yield from _fields(section, FIELDS, message) if fields is None else _fields(fields, fields, message)
+                owner, keys = (section, FIELDS) if fields is None else (fields, fields)
+                yield from _fields(owner, keys, message.layout.scalars)
         yield from _telecommands_once(node)
 
 
-def _fields(owner: Map, keys: Iterable[str], message: Message) -> Iterator[Fault]:
-    """Fields that play two parts, or one that they cannot play."""
-    known = {field.name: field for field in message.owners}
+def _fields(owner: Map, keys: Iterable[str], fields: Iterable[NodePlace]) -> Iterator[Fault]:
+    """Yield the faults of fields that have two roles, or a role that they cannot have."""
+    known = {field.name: field for field in fields if not field.view}
     seen: dict[str, str] = {}
     for key in keys:
         field = named(known, owner.get(key))
@@ -99,7 +101,7 @@ def _fields(owner: Map, keys: Iterable[str], message: Message) -> Iterator[Fault
             yield Fault.at(owner, key, f"{quote(field.name)} cannot be `{key}`: {problem}", "name another field")
 
 
-def _unfit(role: str, field: Field) -> str:
+def _unfit(role: str, field: NodePlace) -> str:
     if role in AS_BYTES:
         return "" if field.is_bytes else "it is taken as bytes, and is a number"
     if field.is_bytes or field.type == "float":

@@ -8,7 +8,7 @@ from math import ceil
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, KEYS_OF_IDS, Message, Node
-from icdgen.icd.rules.context import Context, said, section_of
+from icdgen.icd.rules.context import Context, own_fact, section_of
 from icdgen.icd.rules.protocol_sizes import numbers, of_one_number
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, listing, of_wide_value, quote
@@ -81,7 +81,7 @@ def _on_can(ctx: Context, node: Node) -> Iterator[Fault]:
     can = in_force(ctx, node, "can")
     bits = _widths(can) if can is not None else {}
     if own is not None:
-        for row in mappings(said(node, "can", "message_types", "values")):
+        for row in mappings(own_fact(node, "can", "message_types", "values")):
             yield from _fits(ctx, row, "value", bits.get("type"), "a message type")
         for role in ("source", "destination"):
             yield from _fits(ctx, own, "node_address", bits.get(role), f"a {role} address")

@@ -8,7 +8,7 @@ from icdgen.diagnostics import Related
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 from icdgen.icd.model import CAN_DATA_BYTES, KEYS_OF_IDS, TELECOMMAND, TELEMETRY
-from icdgen.icd.rules.context import Context, said, section_of
+from icdgen.icd.rules.context import Context, own_fact, section_of
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.protocol_limits import in_force, roles_stand_once
 from icdgen.icd.rules.protocol_sizes import numbers
@@ -35,7 +35,7 @@ def directions_differ(ctx: Context) -> Iterator[Fault]:
                 last, first = (ctx.written(section, key) for key in ("last", "first"))
                 message = f"the last id, {last}, comes before the first, {first}"
                 yield Fault.at(section, "last", message, "correct `first` or `last`")
-            yield from _bit(said(node, "message_id", "direction_bit"), section, direction, *found)
+            yield from _bit(own_fact(node, "message_id", "direction_bit"), section, direction, *found)
         if len(ranges) == 2:
             yield from _overlap(ranges[TELECOMMAND], ranges[TELEMETRY])
 
@@ -91,7 +91,7 @@ def named_buses_exist(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         users = [one for one in ctx.icd.nodes if node in ctx.scope(one)]
         for path in (("crc8", TELECOMMAND), ("crc8", TELEMETRY), ("unsolicited_log",)):
-            buses = said(node, *path, "buses")
+            buses = own_fact(node, *path, "buses")
             for bus, place in buses.placed() if buses is not None else ():
                 if not any(bus in ctx.protocol_of(one) for one in users):
                     text, help = f"the protocol has no section `{bus}`", f"add it, or remove `{bus}`"

@@ -82,8 +82,9 @@ def _named_fields(ctx: Context, node: Node) -> Iterator[_Named]:
 def named_fields_exist(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         for owner, key, message in _named_fields(ctx, node):
-            known = {field.name for field in message.owners}
-            if any(field.name == owner[key] for field in message.views):
+            fields = message.layout.scalars
+            known = {field.name for field in fields if not field.view}
+            if any(field.name == owner[key] and field.view for field in fields):
                 text = f"{quote(owner[key])} of {quote(message.name)} is a view, and links read what has bits"
                 yield Fault.at(owner, key, text, "name the field that has the bits")
             elif owner[key] not in known:
@@ -95,13 +96,13 @@ def named_fields_exist(ctx: Context) -> Iterator[Fault]:
 def named_fields_in_the_order_of_the_node(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         for owner, key, message in _named_fields(ctx, node):
-            orders = node.byte_order, node.bit_order
-            home = next(one for one in ctx.scope(node) if one.name == message.node)
-            for field in message.fields:
-                if field.name == owner[key] and not field.is_bytes and field.orders(home) != orders:
-                    text = f"{quote(field.name)} is {' '.join(field.orders(home))}, the links of `{node.name}` read fields as"
+            home = ctx.home_of(message, node)
+            for field in message.layout.scalars:
+                own = field.orders_in_effect(home.orders)
+                if field.name == owner[key] and not field.is_bytes and own != node.orders:
+                    text = f"{quote(field.name)} is {own.byte} {own.bit}, the links of `{node.name}` read fields as"
                     help = f"give it the orders of the node, or leave `{key}` out"
-                    yield Fault.at(owner, key, f"{text} {' '.join(orders)}", help)
+                    yield Fault.at(owner, key, f"{text} {node.byte_order} {node.bit_order}", help)
 
 
 @rule("ICD095")

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Node
-from icdgen.icd.rules.context import Context, said
+from icdgen.icd.rules.context import Context, own_fact
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count as counted
@@ -94,7 +94,7 @@ def _log_mask(ctx: Context, node: Node) -> Iterator[Fault]:
     """Where logs carry their mask it has the mask's size: readers take so many bytes of it."""
     size = ctx.fact(node, "log_mask", "bytes")
     for path in (("telemetry_log", "header"), ("unsolicited_log", "message")):
-        for row in mappings(said(node, *path)) if isinstance(size, int) else ():
+        for row in mappings(own_fact(node, *path)) if isinstance(size, int) else ():
             given = row.get("bytes")
             if row.get("role", row.get("name")) == "mask" and isinstance(given, int) and given != size:
                 message = f"the mask has {counted(given, 'byte')} here, {size} by `log_mask`"

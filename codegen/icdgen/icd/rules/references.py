@@ -18,7 +18,7 @@ from icdgen.suggest import close_to
 
 @rule("ICD040")
 def enum_known(ctx: Context) -> Iterator[Fault]:
-    for field, _, node in ctx.fields:
+    for field, (_, _, node) in ctx.fields:
         source = field.source
         if field.type != "enum":
             if "enum" in source:
@@ -50,9 +50,9 @@ def undeclared(ctx: Context, node: Node, what: str, section: str, name: str) -> 
 
 @rule("ICD041", severity="warning", whole=True)
 def enum_used(ctx: Context) -> Iterator[Fault]:
-    used = {id(field.enum) for field, _, _ in ctx.having["enum"]}
+    used = {id(field.enum) for field, _ in ctx.fields_with["enum"]}
     named = set()
-    for field, _, node in ctx.having["enum"]:
+    for field, (_, _, node) in ctx.fields_with["enum"]:
         if field.enum is None:  # a slip of the pen; the one that is meant is used
             scope = ctx.scope(node)
             close = close_to(field.source["enum"], (e.name for n in scope for e in n.enums))
@@ -78,7 +78,7 @@ def _protocol_enums(node: Node) -> Iterator[tuple[Map, str]]:
 
 @rule("ICD042", whole=True)
 def unit_known(ctx: Context) -> Iterator[Fault]:
-    for field, _, node in ctx.having["unit"]:
+    for field, (_, _, node) in ctx.fields_with["unit"]:
         if field.unit is None:
             unit = field.source["unit"]
             help, fix = "declare it in `units:`; `icdgen units` lists the built-in units", ""

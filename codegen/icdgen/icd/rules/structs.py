@@ -6,9 +6,10 @@ from collections.abc import Iterator
 
 from icdgen.icd import division, tails
 from icdgen.icd.fault import Fault
+from icdgen.icd.layout import struct_layout_of
 from icdgen.icd.located import Map
 from icdgen.icd.model import Node
-from icdgen.icd.rules.context import Context
+from icdgen.icd.rules.context import Context, is_overlay
 from icdgen.icd.rules.duplicates import names_twice
 from icdgen.icd.rules.references import undeclared
 from icdgen.icd.rules.rule import rule
@@ -71,11 +72,12 @@ def _way(first: str, last: str, within: dict[str, list[Map]]) -> list[str] | Non
 
 @rule("ICD142")
 def struct_at_byte(ctx: Context) -> Iterator[Fault]:
-    for field, _, _ in ctx.members:
-        if field.struct is not None and field.at % 8:
-            message = f"{quote(field.name)} is a struct, but bit {field.at:,} is not the beginning of a byte"
-            help = f"structs begin at bits {field.at // 8 * 8:,} and {field.at // 8 * 8 + 8:,}"
-            yield Fault.at(field.source, "at", message, help)
+    for line in ctx.lines:
+        node, at = line.node, line.node.at
+        if struct_layout_of(node) is not None and at % 8:
+            message = f"{quote(node.name)} is a struct, but bit {at:,} is not the beginning of a byte"
+            help = f"structs begin at bits {at // 8 * 8:,} and {at // 8 * 8 + 8:,}"
+            yield Fault.at(node.source, "at", message, help)
 
 
 @rule("ICD143")
@@ -90,8 +92,8 @@ def struct_says(ctx: Context) -> Iterator[Fault]:
             if tails.is_open(row) and isinstance(row.get("name"), str):
                 message = f"{quote(row['name'])} has a variable length, which is not supported in a struct"
                 yield Fault.at(row, tails.key_of(row), message, "move it to the end of the message")
-        for field in struct.lines:
-            if field.view:
+        for field in struct.layout.nodes:
+            if is_overlay(field):
                 message = f"{quote(field.name)} is a view, and a struct has none: there is no frame that it would read"
                 yield Fault.at(field.source, "view", message, "write the view in the message")
 
@@ -124,22 +126,21 @@ def struct_used(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD145")
 def struct_divided(ctx: Context) -> Iterator[Fault]:
-    homes = {id(struct): node for struct, node in ctx.structs}
-    for member, _, node in ctx.members:
-        if member.struct is None or id(member.struct) not in homes:
+    for line in ctx.lines:
+        node = line.node
+        struct, home = ctx.struct_of.get(id(struct_layout_of(node)), (None, None))
+        if struct is None or home is None or line.orders == home.orders:
             continue
-        own = homes[id(member.struct)]
-        if member.orders(node) == (own.byte_order, own.bit_order):
-            continue
-        for whole in _divided(member.struct.source):
-            if "byte_order" not in whole or "bit_order" not in whole:
-                there = line_of(whole.at("bitfields"), member.source.place)
-                bits = f"the bits of {quote(whole['name'])} ({there}), which is divided, would lie elsewhere"
-                message = f"{quote(member.name)} has other orders than `{own.name}`, so {bits}"
-                help = f"give {quote(whole['name'])} a `byte_order` and a `bit_order`, or make its parts fields"
-                yield Fault.at(member.source, "struct", message, help)
+        for split in _split_fields(struct.source):
+            if "byte_order" not in split or "bit_order" not in split:
+                there = line_of(split.at("bitfields"), node.source.place)
+                bits = f"the bits of {quote(split['name'])} ({there}), which is divided, would lie elsewhere"
+                message = f"{quote(node.name)} has other orders than `{home.name}`, so {bits}"
+                help = f"give {quote(split['name'])} a `byte_order` and a `bit_order`, or make its parts fields"
+                yield Fault.at(node.source, "struct", message, help)
 
 
-def _divided(struct: Map) -> Iterator[Map]:
+def _split_fields(struct: Map) -> Iterator[Map]:
+    """Yield the fields of a struct that are split into parts."""
     rows = (row for row in mappings(struct.get("fields")) if isinstance(row.get("name"), str))
     return filter(division.parts_of, rows)

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from icdgen.diagnostics import Related
 from icdgen.icd import tails
 from icdgen.icd.fault import Fault
+from icdgen.icd.layout import Array, Overlay, stride
 from icdgen.icd.model import Message, Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
@@ -19,12 +20,13 @@ def counted(ctx: Context) -> Iterator[Fault]:
     for message, _ in ctx.messages:
         for item in tails.open_parts(message.source):
             yield from tails.faults_of_count(message.source, item)
-    for field, _, _ in ctx.members:
-        if "up_to" in field.source and not tails.is_open(field.source):
-            size = f"`count: {field.count}`" if field.count else "`bits`"
-            text = f"{quote(field.name)} has a fixed size ({size}), so `up_to` has no effect"
+    for line in ctx.lines:
+        node, source = line.node, line.node.source
+        if "up_to" in source and not tails.is_open(source):
+            size = f"`count: {node.size}`" if isinstance(node, Array) else "`bits`"
+            text = f"{quote(node.name)} has a fixed size ({size}), so `up_to` has no effect"
             help = "remove `up_to`; the largest value of a number is `max`"
-            yield Fault.at(field.source, "up_to", text, help)
+            yield Fault.at(source, "up_to", text, help)
 
 
 def _lengths(ctx: Context, node: Node) -> dict[str, int]:
@@ -33,11 +35,12 @@ def _lengths(ctx: Context, node: Node) -> dict[str, int]:
 
 @rule("ICD121")
 def at_the_end(ctx: Context) -> Iterator[Fault]:
-    for field, _, _ in ctx.members:
-        if "after" in field.source and not tails.is_open(field.source):
-            text = f"{quote(field.name)} has a fixed size, so its place is `at` and it cannot have `after`"
+    for line in ctx.lines:
+        source = line.node.source
+        if "after" in source and not tails.is_open(source):
+            text = f"{quote(line.node.name)} has a fixed size, so its place is `at` and it cannot have `after`"
             help = "remove `after`; only a variable-length field can follow another one"
-            yield Fault.at(field.source, "after", text, help)
+            yield Fault.at(source, "after", text, help)
     for message, node in ctx.messages:
         for item in tails.open_parts(message.source):
             yield from tails.faults_of_place(message.source, item, _lengths(ctx, node))
@@ -52,14 +55,15 @@ def at_the_end(ctx: Context) -> Iterator[Fault]:
             )
             related = Related(first.at("name"), "the variable-length field")
             yield Fault.at(item, "at", text, help, related=related)
-        if message.tail is None:
-            continue
-        for field in (one for one in message.views if one.derived is None):
-            end = field.at + field.bits
-            if end > 8 * (message.fixed if message.inner else message.least):
-                part = next(one for one in reversed(message.open_parts) if end > 8 * (one.begin or message.begin))
-                text = f"{quote(field.name)} is an overlay of {quote(part.name)}, which not every frame has"
-                yield Fault.at(field.source, "at", text, "place the overlay on fields that every frame has")
+        layout = message.layout
+        for overlay in layout.fixed if layout.sequence else ():
+            # The place of the second part depends on the size of the first, so only the fixed part is in all frames.
+            always = layout.length if len(layout.sequence) > 1 else layout.shortest
+            end = overlay.at + stride(overlay)
+            if isinstance(overlay, Overlay) and end > 8 * always:
+                parts = [place for place in layout.places if place.node in layout.sequence and place.at < end]
+                text = f"{quote(overlay.name)} is an overlay of {quote(parts[-1].name)}, which not every frame has"
+                yield Fault.at(overlay.source, "at", text, "place the overlay on fields that every frame has")
 
 
 @rule("ICD122")
@@ -67,12 +71,12 @@ def carried(ctx: Context) -> Iterator[Fault]:
     """Links, logs and composites know each message by one length."""
     for node in filter(ctx.is_linked, ctx.icd.nodes):
         for message in ctx.messages_of(node):
-            if message.tail is not None:
-                longest = f"{message.least} to {count(message.length, 'byte')}"
-                text = f"{quote(message.name)} has {longest}, but the links in `protocol` need one length per message"
+            if message.layout.sequence:
+                lengths = f"{message.layout.shortest} to {count(message.length, 'byte')}"
+                text = f"{quote(message.name)} has {lengths}, but the links in `protocol` need one length per message"
                 help = "leave `protocol` out of this ICD, or give the message a fixed `count`"
                 yield Fault.at(message.source, "length", text, help)
-    longer = {message.name: message for message, _ in ctx.messages if message.tail is not None}
+    longer = {message.name: message for message, _ in ctx.messages if message.layout.sequence}
     for message, node in ctx.messages:
         for part in mappings(message.source.get("contains")):
             known = named(longer, part.get("message"))

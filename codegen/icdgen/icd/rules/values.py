@@ -7,8 +7,9 @@ from collections.abc import Iterator
 from icdgen.icd import floats
 from icdgen.icd.build import float_bits
 from icdgen.icd.display import OF_BITS
+from icdgen.icd.enumeration import Member
 from icdgen.icd.fault import Fault
-from icdgen.icd.model import Field, Member
+from icdgen.icd.layout import Derived, LayoutNode, Scalar
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, quote
@@ -20,7 +21,7 @@ NUMBERS = ("uint", "int", "enum")
 @rule("ICD030")
 def member_fits(ctx: Context) -> Iterator[Fault]:
     largest = {id(e): e.widest for e in ctx.enums}
-    for field, _, _ in ctx.having["enum"]:
+    for field, _ in ctx.fields_with["enum"]:
         top = largest.get(id(field.enum)) if field.enum else None
         if field.enum and top is not None and not _holds(field, top):
             unfit = sum(not _holds(field, m) for m in field.enum.members)
@@ -28,11 +29,11 @@ def member_fits(ctx: Context) -> Iterator[Fault]:
             member = f"{quote(top.name)} = {top.values} of {quote(field.enum.name)}"
             text = f"{member} does not fit the {count(field.bits, 'bit')} of {quote(field.name)}{others}"
             help = f"it takes {count(max(map(field.enum.bits_for, (top.value, top.last))), 'bit')}"
-            help += ", as others of the enumeration are negative" if field.signed and top.value >= 0 else ""
+            help += ", as others of the enumeration are negative" if field.is_signed and top.value >= 0 else ""
             yield Fault.at(field.source, "bits", text, help)
 
 
-def _holds(field: Field, member: Member) -> bool:
+def _holds(field: Scalar, member: Member) -> bool:
     """Whether the field can have all values of the member."""
     return field.raw_min <= member.value and member.last <= field.raw_max
 
@@ -51,7 +52,7 @@ def range_has_more_than_one_value(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD031")
 def const_fits(ctx: Context) -> Iterator[Fault]:
-    for field, _, _ in ctx.having["const"]:
+    for field, _ in ctx.fields_with["const"]:
         problem = _misfit(field, field.const)
         if problem:
             yield Fault.at(field.source, "const", f"`const` {problem[0]}", problem[1])
@@ -59,7 +60,7 @@ def const_fits(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD032")
 def special_fits(ctx: Context) -> Iterator[Fault]:
-    for field, _, _ in ctx.having["special"]:
+    for field, _ in ctx.fields_with["special"]:
         seen = set()
         for item in mappings(field.source["special"]):
             given = item.get("value")
@@ -75,7 +76,7 @@ def special_fits(ctx: Context) -> Iterator[Fault]:
             seen.add(value)
 
 
-def _not_special(field: Field, given: int | float | str) -> tuple[str, str] | None:
+def _not_special(field: Scalar, given: int | float | str) -> tuple[str, str] | None:
     """What keeps a value from having a meaning in the field, and what to do; None if it can."""
     if field.type == "float":
         if isinstance(given, str) and given not in floats.NAMED:
@@ -91,7 +92,7 @@ def _not_special(field: Field, given: int | float | str) -> tuple[str, str] | No
     return f"{quote(given)} of {quote(field.name)} is no whole number", f"`{field.type}` has whole raw values"
 
 
-def _misfit(field: Field, value: int | None) -> tuple[str, str] | None:
+def _misfit(field: Scalar, value: int | None) -> tuple[str, str] | None:
     """What keeps the field from holding the raw value, and what to do; None if it fits."""
     if field.type not in NUMBERS:
         what = f"of {quote(field.name)} has no meaning for type `{field.type}`"
@@ -105,11 +106,11 @@ def _misfit(field: Field, value: int | None) -> tuple[str, str] | None:
 
 @rule("ICD036")
 def display_suits(ctx: Context) -> Iterator[Fault]:
-    for field, _, _ in ctx.having["display"]:
+    for field, line in ctx.fields_with["display"]:
         format_, name = field.display, quote(field.name)
         if format_ is None:
             continue
-        has_bits = field.type in ("uint", "enum") and not field.signed
+        has_bits = field.type in ("uint", "enum") and not field.is_signed
         is_scaled = field.type in ("uint", "int") and not field.source.keys().isdisjoint(("formula", "points"))
         if format_.kind in OF_BITS and is_scaled:
             message = (
@@ -117,22 +118,22 @@ def display_suits(ctx: Context) -> Iterator[Fault]:
             )
             yield Fault.at(field.source, "display", message, "use `{decimals: N}` or `{digits: N}`")
         elif format_.kind in OF_BITS and not has_bits:
-            message = f"{name} is {_in_words(field)}, which `{format_.kind}` does not display"
+            message = f"{name} is {_in_words(field, line.node)}, which `{format_.kind}` does not display"
             help = "use `{decimals: N}` or `{digits: N}`" if field.type == "float" else "remove `display`"
             help = "use `type: uint` for a bit pattern, or remove `display`" if field.type == "int" else help
             yield Fault.at(field.source, "display", message, help)
         elif format_.kind not in OF_BITS and field.type != "float" and not is_scaled:
             without = " without a scale" if field.type in ("uint", "int") else ""
-            message = f"{name} is {_in_words(field)}{without}: its value has no {format_.kind}"
+            message = f"{name} is {_in_words(field, line.node)}{without}: its value has no {format_.kind}"
             help = "remove `display`, or use `hex` or `binary`" if has_bits else "remove `display`"
             yield Fault.at(field.source, "display", message, help)
 
 
-def _in_words(field: Field) -> str:
+def _in_words(field: Scalar, node: LayoutNode) -> str:
     """The type of a field: ``a float``, ``an enumeration with negative values``."""
-    if field.derived is not None:
+    if isinstance(node, Derived):
         return "a derived value"
     if field.type == "enum":
-        return "an enumeration with negative values" if field.signed else "an enumeration"
+        return "an enumeration with negative values" if field.is_signed else "an enumeration"
     words = {"uint": "an unsigned integer", "int": "a signed integer", "bool": "a flag", "float": "a float"}
     return words.get(field.type, f"`{field.type}`")
