@@ -69,7 +69,7 @@ def compare(icd: Icd, folder: Path, *options: str, wide: int = 4000) -> int:
 
 
 def row(field: FieldDescription) -> dict[str, object]:
-    whole, name = physical.scaled(field).whole, stem(field.message)
+    whole, name = physical.scaled(field).integers, stem(field.message)
     found = {
         "type": f"{name}_t",
         "name": field.name,
@@ -80,8 +80,8 @@ def row(field: FieldDescription) -> dict[str, object]:
         "get_whole": None,
     }
     if whole:
-        found["get_whole"] = f"{name}_{field.whole_name(whole.exact.per)}"
-        found["set_whole"] = f"{name}_set_{field.whole_name(whole.exact.per)}"
+        found["get_whole"] = f"{name}_{field.integer_name(whole.scale.per)}"
+        found["set_whole"] = f"{name}_set_{field.integer_name(whole.scale.per)}"
         found["whole"] = whole.type
     return found
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from icdgen.describe import describe
-from icdgen.describe.wholes import part_of_unit
+from icdgen.describe.integer_scale import part_of_unit
 from icdgen.icd.model import Field
 from icdgen.icd.units import STANDARD, Unit
 from icdgen.loading import load

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from icdgen.describe import whole
+from icdgen.describe import nodes
 from icdgen.icd import rules
 from icdgen.loading import load
 from tests.icd.files import HEAD, codes, findings, loaded, status, write
@@ -71,7 +71,7 @@ def test_what_is_described_for_the_rules_about_names_is_described_for_code_too(t
     icd = status(VOLTAGE, "at: 8, bits: 16, name: Current, type: uint", length=3)
     accepted = ACCEPTED.replace("{message: Status}", "{message: Status, field: Current}").replace("ICD024", "ICD021")
     model = loaded(tmp_path, icd + accepted).icd
-    assert any(known.icd is model for known in whole._kept)
+    assert any(known.icd is model for known in nodes._kept)
 
 
 def test_findings_stand_in_the_order_of_the_file(tmp_path):

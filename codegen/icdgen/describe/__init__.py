@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from icdgen.describe.description import FieldDescription, StructDescription
 from icdgen.describe.enums import EnumDescription
-from icdgen.describe.whole import Description, MessageDescription, NodeDescription, describe
+from icdgen.describe.nodes import Description, MessageDescription, NodeDescription, describe
 
 __all__ = [
     "Description",

@@ -36,7 +36,9 @@ class Repeated(NamedTuple):
 
 def repeated_in(one: Composite[Any], within: str = "") -> tuple[Repeated, ...]:
     """Those of a message or struct itself, its open end among them; ``within`` is where their names begin."""
-    return tuple(Repeated(part, part.element, within + part.name) for part in one.blocks if part.element is not None)
+    return tuple(
+        Repeated(part, part.element, within + part.name) for part in one.flat_members if part.element is not None
+    )
 
 
 def all_repeated(one: Composite[Any]) -> Iterator[Repeated]:
@@ -50,7 +52,7 @@ def arrays_named(
     one: Composite[Any], wanted: Callable[[FieldDescription], bool], within: str = ""
 ) -> Iterator[tuple[FieldDescription, str]]:
     """The arrays of a message that are wanted, arrays of structs among them, and their names; those in others come first."""
-    for part in one.blocks:
+    for part in one.flat_members:
         if wanted(part):
             name = within + part.name
             if part.element is not None:
@@ -58,23 +60,23 @@ def arrays_named(
             yield part, name
 
 
-class Rounds(NamedTuple):
-    """``turns`` rounds of ``in_round`` elements; what is left of the array is none."""
+class ElementRounds(NamedTuple):
+    """``repetitions`` rounds of ``in_round`` elements; what is left of the array is none."""
 
     in_round: int
-    turns: int
+    repetitions: int
     begin: int  # the first byte of the first
     step: int  # bytes of each
 
     @property
     def elements(self) -> int:
         """How many there are in all rounds."""
-        return self.turns * self.in_round
+        return self.repetitions * self.in_round
 
     @property
     def length(self) -> int:
         """Bytes of all rounds."""
-        return self.turns * self.step
+        return self.repetitions * self.step
 
     def members(self, first: FieldDescription, name: Callable[[int], str]) -> tuple[FieldDescription, ...]:
         """The elements of one round, counted from where its bytes begin; ``name`` is what they are called by in code."""
@@ -86,11 +88,11 @@ class Rounds(NamedTuple):
         return tuple(found)
 
 
-def rounds_of(first: FieldDescription, count: int) -> Rounds | None:
+def rounds_of(first: FieldDescription, count: int) -> ElementRounds | None:
     """Those of an array of ``count`` elements, which begins with ``first``; None of few, and of what begins within a byte."""
     at, bits = first.model.at, first.model.bits
     if at % 8 or first.model.is_bytes or first.model.when:
         return None
     in_round = 8 // gcd(8, bits)
-    rounds = Rounds(in_round, count // in_round, at // 8, in_round * bits // 8)
-    return rounds if rounds.turns > 1 and rounds.elements >= MANY_ENOUGH else None
+    rounds = ElementRounds(in_round, count // in_round, at // 8, in_round * bits // 8)
+    return rounds if rounds.repetitions > 1 and rounds.elements >= MANY_ENOUGH else None

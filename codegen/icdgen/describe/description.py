@@ -12,16 +12,16 @@ from icdgen.describe.bounds import Bound, bounds
 from icdgen.describe.comments import Comment, field_comment, struct_comment, takes_text, words
 from icdgen.describe.constants import Constant, constants
 from icdgen.describe.enums import EnumDescription, enum_widths
-from icdgen.describe.errata import Thing, tellers, told_elsewhere
+from icdgen.describe.errata import Thing, first_owners, owners_elsewhere
+from icdgen.describe.integer_scale import IntegerScale, part_of_unit
 from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, storage_of
-from icdgen.describe.wholes import Whole, part_of_unit
 from icdgen.icd.curve import Curve
 from icdgen.icd.layout import UNDECLARED, Layout, NodePlace, Orders, places_of
 from icdgen.icd.model import Enum, Icd, Message, Node, Struct
 from icdgen.once import cached_property
 
-_OF_PLACE = ("needs", "places", "elements", "leaves", "instances", "blocks", "element", "comment")
+_OF_PLACE = ("needs", "places", "elements", "leaf_members", "members_by_instance", "flat_members", "element", "comment")
 """Attributes that are worked out for one place of a field."""
 
 
@@ -149,28 +149,28 @@ class FieldDescription(Named[NodePlace]):
         if self.struct is None:
             yield from self.places
         else:
-            yield from (scalar for row in self.instances for one in row for scalar in one.scalars)
+            yield from (scalar for row in self.members_by_instance for one in row for scalar in one.scalars)
 
     @cached_property
-    def leaves(self) -> tuple[FieldDescription, ...]:
+    def leaf_members(self) -> tuple[FieldDescription, ...]:
         """What is read and written as one: itself, or of a struct what stands in it, arrays as one."""
         if self.struct is None:
             return (self,)
-        return tuple(leaf for row in self.instances for one in row for leaf in one.leaves)
+        return tuple(leaf for row in self.members_by_instance for one in row for leaf in one.leaf_members)
 
     @cached_property
-    def instances(self) -> tuple[tuple[FieldDescription, ...], ...]:
+    def members_by_instance(self) -> tuple[tuple[FieldDescription, ...], ...]:
         """The members of a struct wherever it stands: once, or as often as there are elements; else none."""
         if self.struct is None:
             return ()
         return tuple(tuple(map(place._inner, place.model.inner())) for place in self.places)
 
     @cached_property
-    def blocks(self) -> tuple[FieldDescription, ...]:
-        """The same as `leaves`, but an array of structs is one, too."""
+    def flat_members(self) -> tuple[FieldDescription, ...]:
+        """The same as `leaf_members`, but an array of structs is one, too."""
         if self.struct is None or self.count:
             return (self,)
-        return tuple(block for one in self.instances[0] for block in one.blocks)
+        return tuple(block for one in self.members_by_instance[0] for block in one.flat_members)
 
     @cached_property
     def element(self) -> StructDescription | None:
@@ -230,17 +230,17 @@ class FieldDescription(Named[NodePlace]):
         """Whether its bytes are characters: its physical value is a text, which every language gives and takes."""
         return self.model.type == "text"
 
-    def whole_name(self, per: int) -> str:
+    def integer_name(self, per: int) -> str:
         """``estimated_roll_angle_mdeg``: its physical value in whole parts of the unit."""
         return f"{self.declared}_{part_of_unit(self.model, per)[0]}"
 
-    def whole_title(self, per: int) -> str:
+    def integer_title(self, per: int) -> str:
         """``Estimated Roll Angle in thousandths of deg``"""
         return f"{words(self.model.name)} in {words(part_of_unit(self.model, per)[1])}"
 
-    def whole_comment(self, whole: Whole) -> str:
+    def integer_comment(self, scale: IntegerScale) -> str:
         """What it is, and its range."""
-        return f"{self.whole_title(whole.per)}, exact: {whole.low} to {whole.high}."
+        return f"{self.integer_title(scale.per)}, exact: {scale.low} to {scale.high}."
 
     @property
     def size(self) -> int:
@@ -279,7 +279,7 @@ class FieldDescription(Named[NodePlace]):
 
     @cached_property
     def comment(self) -> Comment:
-        told = told_elsewhere(self.model, self.message.tellers) if self.model.errata else {}
+        told = owners_elsewhere(self.model, self.message.first_owners) if self.model.errata else {}
         return field_comment(self.model, told, self.message.model)
 
 
@@ -373,7 +373,7 @@ class Composite(Named[Fielded]):
         return tuple(member for member in self.all_members if member.model.view)
 
     @cached_property
-    def seen(self) -> tuple[FieldDescription, ...]:
+    def overlays(self) -> tuple[FieldDescription, ...]:
         """The views that read bits."""
         return tuple(field for field in self.views if field.model.derived is None)
 
@@ -403,25 +403,25 @@ class Composite(Named[Fielded]):
         return self.tail.fewest if self.tail is not None else 0
 
     @property
-    def sent(self) -> tuple[FieldDescription, ...]:
+    def frame_members(self) -> tuple[FieldDescription, ...]:
         """Members that have bits in the frame: without the count that only the length of the frame tells."""
         return self.members if self.tail is None else tuple(one for one in self.members if not one.model.implied)
 
     @cached_property
-    def sent_fields(self) -> tuple[FieldDescription, ...]:
+    def frame_fields(self) -> tuple[FieldDescription, ...]:
         """The fields that have bits in the frame, each element of an array, but those in arrays of structs."""
-        blocks = (block for block in self.blocks if not block.model.implied and block.element is None)
+        blocks = (block for block in self.flat_members if not block.model.implied and block.element is None)
         return tuple(scalar for block in blocks for scalar in block.scalars)
 
     @cached_property
-    def leaves(self) -> tuple[FieldDescription, ...]:
+    def leaf_members(self) -> tuple[FieldDescription, ...]:
         """The same, but arrays as one."""
-        return tuple(leaf for one in self.members for leaf in one.leaves)
+        return tuple(leaf for one in self.members for leaf in one.leaf_members)
 
     @cached_property
-    def blocks(self) -> tuple[FieldDescription, ...]:
-        """The same as `leaves`, but an array of structs is one, too."""
-        return tuple(block for one in self.members for block in one.blocks)
+    def flat_members(self) -> tuple[FieldDescription, ...]:
+        """The same as `leaf_members`, but an array of structs is one, too."""
+        return tuple(block for one in self.members for block in one.flat_members)
 
     def element(self, part: FieldDescription, struct: StructDescription) -> StructDescription:
         """What an array of structs in it has as an element."""
@@ -458,9 +458,9 @@ class Composite(Named[Fielded]):
         return any(field.steps is not None and field.steps.is_wide for field in self.all_members)
 
     @cached_property
-    def tellers(self) -> dict[str, Thing]:
+    def first_owners(self) -> dict[str, Thing]:
         """By the ids of errata: which part of it tells of it."""
-        return tellers((self.model, *(member.model for member in self.all_members)))
+        return first_owners((self.model, *(member.model for member in self.all_members)))
 
 
 class StructDescription(Composite[Struct]):

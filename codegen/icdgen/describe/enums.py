@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from icdgen import naming
 from icdgen.describe.comments import Comment, enum_comment, member_comment
-from icdgen.describe.errata import Thing, tellers, told_elsewhere
+from icdgen.describe.errata import Thing, first_owners, owners_elsewhere
 from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, holding
 from icdgen.icd.kept import kept
@@ -64,9 +64,9 @@ class EnumDescription(Named[Enum]):
         return naming.snake(naming.words(one.identifier or one.name, self.node.vocabulary))
 
     @cached_property
-    def tellers(self) -> dict[str, Thing]:
+    def first_owners(self) -> dict[str, Thing]:
         """By the ids of errata: which part of the enumeration tells of it."""
-        return tellers((self.model, *(member.model for member in self.members)))
+        return first_owners((self.model, *(member.model for member in self.members)))
 
     @cached_property
     def comment(self) -> Comment:
@@ -91,4 +91,6 @@ class MemberDescription(Named[Member]):
 
     @cached_property
     def comment(self) -> Comment:
-        return member_comment(self.model, told_elsewhere(self.model, self._enum.tellers) if self.model.errata else {})
+        return member_comment(
+            self.model, owners_elsewhere(self.model, self._enum.first_owners) if self.model.errata else {}
+        )

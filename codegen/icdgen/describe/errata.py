@@ -25,7 +25,7 @@ def _each_once(things: Iterable[Thing]) -> list[Erratum]:
     return list(dict.fromkeys(erratum for thing in things for erratum in thing.errata))
 
 
-def tellers(things: Iterable[Thing]) -> dict[str, Thing]:
+def first_owners(things: Iterable[Thing]) -> dict[str, Thing]:
     """By the ids of errata: the first thing that has it, whose comment tells of it."""
     found: dict[str, Thing] = {}
     for thing in things:
@@ -34,6 +34,6 @@ def tellers(things: Iterable[Thing]) -> dict[str, Thing]:
     return found
 
 
-def told_elsewhere(thing: AnyField | Member, by: Mapping[str, Thing]) -> dict[str, str]:
+def owners_elsewhere(thing: AnyField | Member, by: Mapping[str, Thing]) -> dict[str, str]:
     """By the ids of those errata of a thing that another one tells of: the name of that one."""
     return {one.id: by[one.id].name for one in thing.errata if by.get(one.id, thing) is not thing}

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from icdgen import codec
 from icdgen.describe.description import FieldDescription
-from icdgen.describe.whole import MessageDescription
+from icdgen.describe.nodes import MessageDescription
 
 _NUMBERS = (1234, 123, 12, 1, 0)  # the first that the field takes and may hold
 _FLOAT = 1.5  # the same in any width

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from icdgen.describe.description import FieldDescription
-from icdgen.describe.whole import Description
+from icdgen.describe.nodes import Description
 from icdgen.frozen import dataclass
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.once import cached_property

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from icdgen.describe.description import FieldDescription
-from icdgen.describe.whole import MessageDescription
+from icdgen.describe.nodes import MessageDescription
 
 
 class Copied(NamedTuple):
@@ -33,8 +33,8 @@ class PartDescription(NamedTuple):
     def copies(self, composite: MessageDescription, begin: int) -> Iterator[Copied]:
         """What its members are of a message, from a bit on; of a struct what stands in it."""
         fields = {field.model.at: field for field in composite.fields}
-        arrays = {field.model.at: field for field in composite.leaves if field.count}
-        for member in self.message.leaves:
+        arrays = {field.model.at: field for field in composite.leaf_members if field.count}
+        for member in self.message.leaf_members:
             at = begin + member.model.at
             array = arrays.get(at) if member.count else None
             if array is not None and array.count == member.count:

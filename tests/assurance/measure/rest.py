@@ -37,9 +37,9 @@ def source(icd: Icd) -> str:
 
 def _message(message: MessageDescription) -> dict[str, Any]:
     wholes = {
-        field.model.name: (field.whole_name(whole.exact.per), whole)
+        field.model.name: (field.integer_name(whole.scale.per), whole)
         for field in message.fields
-        if field.steps is not None and (whole := physical.scaled(field).whole)
+        if field.steps is not None and (whole := physical.scaled(field).integers)
     }
     beyond = []
     for field in message.fields:
@@ -47,7 +47,7 @@ def _message(message: MessageDescription) -> dict[str, Any]:
             name, whole = wholes[field.model.name]
             limit = 1 << (_BITS[whole.type] - 1)
             steps = (field.model.raw_min - 1, field.model.raw_max + 1)
-            values = (int(field.model.scale.physical(raw) * whole.exact.per) for raw in steps)
+            values = (int(field.model.scale.physical(raw) * whole.scale.per) for raw in steps)
             beyond += [(name, physical.int64(value)) for value in values if -limit <= value < limit]
     rows = message_vectors(message.node, message.model).rows if message.model.length else ()
     return {
@@ -84,7 +84,7 @@ def _part(part: MessageDescription, frame: bytes, begin: int) -> str:
 def _row(message: MessageDescription, row: Row, wholes: dict[str, Any]) -> dict[str, Any]:
     values = []
     for name, (accessor, whole) in wholes.items():
-        exact: Fraction = row.physical[name] * whole.exact.per
+        exact: Fraction = row.physical[name] * whole.scale.per
         assert exact.denominator == 1
         values.append((accessor, physical.int64(int(exact))))
     encoded = "" if row.encoded == row.frame else _bytes(row.encoded)

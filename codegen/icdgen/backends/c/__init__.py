@@ -101,14 +101,16 @@ def _composite(one: Composite[Any], more: Iterable[str] = ()) -> dict[str, objec
         "constants": constants.of_fields(one),
         "initial": members.initial(one),
         "declaration": types.declaration,
-        "whole_accessors": accessors.whole_accessors(one),
+        "integer_accessors": accessors.integer_accessors(one),
         "accessors": accessors.accessors(one),
         "known": constants.table(one),
     }
 
 
 def _message(message: MessageDescription) -> dict[str, object]:
-    groups = in_groups(message.steady) + _arrays(message, (one for one in repeated_in(message) if not one.part.is_open))
+    groups = in_groups(message.unconditional_fields) + _arrays(
+        message, (one for one in repeated_in(message) if not one.part.is_open)
+    )
     return {
         **_composite(message, parts.headers(message)),
         "empty": decoding.EMPTY,
@@ -124,7 +126,7 @@ def _message(message: MessageDescription) -> dict[str, object]:
         "encode": encoding.statements(message, groups),
         "conditional": conditional.conditional(message),
         **(_tail(message, message.tail) if message.tail else {}),
-        "views": [accessors.view(field) for field in message.seen],
+        "views": [accessors.view(field) for field in message.overlays],
         "parts": parts.parts(message),
     }
 
@@ -135,7 +137,7 @@ def _arrays(message: MessageDescription, found: Iterable[Repeated]) -> Groups:
 
 def _repeated(message: MessageDescription, one: Repeated) -> dict[str, object]:
     """The functions that read and write an element of an array of structs."""
-    groups = in_groups(one.element.sent_fields) + _arrays(message, repeated_in(one.element, f"{one.name}_"))
+    groups = in_groups(one.element.frame_fields) + _arrays(message, repeated_in(one.element, f"{one.name}_"))
     return {
         "part": one.part,
         "type": f"{names.stem(one.element)}_t",
@@ -200,9 +202,9 @@ def _client(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
         return {**common, "buses": buses, "telemetry": [(one, one.telemetry_id_name) for one in node.telemetry]}
     asked = {row.reply for row in form.telecommands if row.least == 0}
     telemetry = [
-        (under.id in asked, one, under.tried[: place + 1])
+        (under.id in asked, one, under.tested[: place + 1])
         for under in node.ids("telemetry")
-        for place, one in enumerate(under.candidates)
+        for place, one in enumerate(under.messages)
     ]
     return {**common, "sequences": form.sequences, "telemetry": telemetry}
 

@@ -100,20 +100,20 @@ def _member(field: FieldDescription) -> str:
     return f"message->{field.name}{f'[{ELEMENT}]' if field.count else ''}"
 
 
-def whole_accessors(message: Composite[Any]) -> list[Accessor]:
+def integer_accessors(message: Composite[Any]) -> list[Accessor]:
     """In whole thousandths or millionths of the unit."""
-    wholes = ((field, physical.scaled(field).whole) for field in message.all_members if field.steps is not None)
-    return [_whole(field, whole) for field, whole in wholes if whole is not None]
+    found = ((field, physical.scaled(field).integers) for field in message.all_members if field.steps is not None)
+    return [_integer_accessor(field, integers) for field, integers in found if integers is not None]
 
 
-def _whole(field: FieldDescription, whole: physical.Whole) -> Accessor:
+def _integer_accessor(field: FieldDescription, integers: physical.IntegerAccessors) -> Accessor:
     return Accessor(
-        end=field.whole_name(whole.exact.per),
-        type=whole.type,
-        about=field.whole_comment(whole.exact),
-        what=field.whole_title(whole.exact.per),
-        expression=whole.getter.format(raw=_raw(field)),
-        assignment="" if field.model.view else f"{_member(field)} = {whole.setter};",
-        test=either(whole.refused) if whole.refused else "",
+        end=field.integer_name(integers.scale.per),
+        type=integers.type,
+        about=field.integer_comment(integers.scale),
+        what=field.integer_title(integers.scale.per),
+        expression=integers.getter.format(raw=_raw(field)),
+        assignment="" if field.model.view else f"{_member(field)} = {integers.setter};",
+        test=either(integers.refused) if integers.refused else "",
         elements=field.count,
     )

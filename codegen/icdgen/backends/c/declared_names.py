@@ -128,5 +128,5 @@ def _fields(message: Composite[Any]) -> Iterator[Identifier]:
 
 def _physical_names(field: FieldDescription) -> tuple[str, ...]:
     """What its accessors are called by: the physical value as a text or a double, and in whole parts of its unit."""
-    whole = None if field.steps is None else physical.scaled(field).whole
-    return (field.physical_name,) if whole is None else (field.physical_name, field.whole_name(whole.exact.per))
+    integers = None if field.steps is None else physical.scaled(field).integers
+    return (field.physical_name,) if integers is None else (field.physical_name, field.integer_name(integers.scale.per))

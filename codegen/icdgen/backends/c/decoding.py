@@ -13,7 +13,7 @@ from icdgen.backends.c.text import WIDTH
 from icdgen.backends.c.types import cast, type_of
 from icdgen.backends.lines import STEP
 from icdgen.describe import FieldDescription, MessageDescription
-from icdgen.describe.arrays import Repeated, Rounds
+from icdgen.describe.arrays import ElementRounds, Repeated
 from icdgen.describe.description import Composite, TailDescription
 
 EMPTY = "empty"
@@ -130,7 +130,7 @@ def miscount(tail: TailDescription, counter: str = "") -> str:
     return either(tests)
 
 
-def in_rounds(rounds: Rounds, const: str, lines: Iterable[str]) -> str:
+def in_rounds(rounds: ElementRounds, const: str, lines: Iterable[str]) -> str:
     """The loop around lines for one round, whose bytes ``part`` points to; ``const`` if they are only read."""
     pointer = f"{const}uint8_t *const part = &buffer[{place(rounds.begin, rounds.step, rounds.in_round)}];"
     body = "".join(f"{STEP * 2}{line}\n".replace(f"\n{STEP}", f"\n{STEP * 2}") for line in (pointer, *lines))

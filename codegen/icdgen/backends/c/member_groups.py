@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from icdgen.describe import FieldDescription
-from icdgen.describe.arrays import Repeated, Rounds, rounds_of
+from icdgen.describe.arrays import ElementRounds, Repeated, rounds_of
 from icdgen.frozen import dataclass
 
 LONG_ENOUGH = 8
@@ -70,7 +70,7 @@ class Array:
     """An array of numbers that are no words, which a loop reads and writes; ``members`` are those of a round, at ``element``."""
 
     members: Members
-    rounds: Rounds
+    rounds: ElementRounds
 
 
 Groups = list[Flags | Row | Array | FieldDescription | Structs]

@@ -23,7 +23,7 @@ _Said = Callable[[FieldDescription, str, str], list[str]]
 def _statements(
     field: FieldDescription, said: _Said, count: str, owner: str = "", of: str = "", depth: int = 1
 ) -> list[str]:
-    """The lines for one of the `blocks` of a message; of an array for so many elements, ``count`` in C."""
+    """The lines for one of the `flat_members` of a message; of an array for so many elements, ``count`` in C."""
     name, member = of + field.model.name, owner + field.member
     if not field.count:
         return said(field, member, name)
@@ -32,7 +32,7 @@ def _statements(
     if field.element is None:
         lines = said(field, member, name)
     else:
-        inner = ((one, f"{one.count}u") for one in field.element.blocks)
+        inner = ((one, f"{one.count}u") for one in field.element.flat_members)
         lines = [
             line for one, many in inner for line in _statements(one, said, many, f"{member}.", f"{name}[].", depth + 1)
         ]
@@ -45,7 +45,7 @@ def initial(message: Composite[Any]) -> list[str]:
     """Statements that give fields with only one valid value that value, and what counts an open end its smallest."""
     counters = [field for field in message.members if field.model.smallest_raw]
     found = [f"message->{field.member} = {field.fresh}u;" for field in counters]
-    for field in message.blocks:
+    for field in message.flat_members:
         count = message.fewest if field.is_open else field.count
         if count or not field.count:
             found += _statements(field, _valid, f"{count}u")
@@ -68,7 +68,7 @@ def excess(message: MessageDescription) -> list[str]:
 
 def _looked_at(message: MessageDescription, is_open: bool, said: _Said) -> list[str]:
     found = []
-    for field in message.blocks:
+    for field in message.flat_members:
         if field.is_open == is_open:
             found += _statements(field, said, elements(message.tail) if is_open and message.tail else f"{field.count}u")
     return found

@@ -8,7 +8,7 @@ from itertools import accumulate
 from typing import NamedTuple
 
 from icdgen.backends.c.types import cast
-from icdgen.describe import FieldDescription, wholes
+from icdgen.describe import FieldDescription, integer_scale
 from icdgen.describe.steps import Steps, wide_parts
 from icdgen.describe.storage import Storage
 from icdgen.icd.curve import Curve
@@ -17,10 +17,10 @@ RAW = "{raw}"  # stands for the member in the expressions made here
 INT32, INT64 = (1 << 31) - 1, (1 << 63) - 1
 
 
-class Whole(NamedTuple):
+class IntegerAccessors(NamedTuple):
     """Integer accessors: ``getter`` over ``{raw}``; ``setter``, the raw value of a ``value`` unless a test of ``refused`` holds."""
 
-    exact: wholes.Whole
+    scale: integer_scale.IntegerScale
     type: str  # "int32_t" | "int64_t"
     getter: str
     refused: tuple[str, ...]
@@ -33,7 +33,7 @@ class Scaled(NamedTuple):
     getter: str  # a double, over ``{raw}``
     setter: tuple[str, ...]  # a function, and its arguments after the raw value
     declared: tuple[str, ...] = ()  # lines that declare what both use
-    whole: Whole | None = None
+    integers: IntegerAccessors | None = None
 
 
 def scaled(field: FieldDescription) -> Scaled:
@@ -47,7 +47,7 @@ def scaled(field: FieldDescription) -> Scaled:
 @lru_cache(maxsize=2048)
 def _scaled(steps: Steps, storage: Storage) -> Scaled:
     declared = tuple(_wide_scale(steps)) if steps.is_wide else ()
-    return Scaled(_double_getter(steps, storage), _double_setter(steps, storage), declared, _whole(steps, storage))
+    return Scaled(_double_getter(steps, storage), _double_setter(steps, storage), declared, _integers(steps, storage))
 
 
 def _on_curve(field: FieldDescription, curve: Curve) -> Scaled:
@@ -103,8 +103,8 @@ def _double_getter(steps: Steps, storage: Storage) -> str:
     kind = _kind(storage, 64)
     if steps.is_wide:
         return f"icdgen_wide_physical_{kind}({RAW}, &scale)"
-    if steps.exact_in_doubles and wholes.computable(storage, factor, offset, 64):
-        return f"icdgen_quotient({_whole_getter(factor, offset, 64, storage)}, {int64(divisor)})"
+    if steps.exact_in_doubles and integer_scale.computable(storage, factor, offset, 64):
+        return f"icdgen_quotient({_integer_getter(factor, offset, 64, storage)}, {int64(divisor)})"
     if offset > INT64:  # has no literal, but its negative has
         return f"0.0 - icdgen_physical_{kind}({RAW}, {int64(-factor)}, {int64(-offset)}, {int64(divisor)})"
     return f"icdgen_physical_{kind}({RAW}, {int64(factor)}, {int64(offset)}, {int64(divisor)})"
@@ -138,28 +138,28 @@ def _limit(value: int, storage: Storage) -> str:
     return f"UINT64_C({value})" if value >= 1 << 32 else f"{value}u"
 
 
-def _whole(steps: Steps, storage: Storage) -> Whole | None:
+def _integers(steps: Steps, storage: Storage) -> IntegerAccessors | None:
     """None where there are no whole numbers, or some step would overflow."""
-    found = wholes.whole(steps)
-    bits = wholes.whole_bits(found, storage) if found is not None else None
+    found = integer_scale.integer_scale(steps)
+    bits = integer_scale.integer_bits(found, storage) if found is not None else None
     if found is None or bits is None:
         return None
     factor, offset = found.factor, found.offset
     most_of_type = INT32 if bits == 32 else INT64
     least, most = max(found.least, -most_of_type - 1), min(found.most, most_of_type)
-    wide = 32 if bits == 32 and wholes.within(32, least - offset, most - offset) else 64
+    wide = 32 if bits == 32 and integer_scale.within(32, least - offset, most - offset) else 64
     refused = [f"value < {int64(least)}"] if least > -most_of_type - 1 else []
     refused += [f"value > {int64(most)}"] if most < most_of_type else []
-    getter, setter = _whole_getter(factor, offset, bits, storage), _whole_setter(factor, offset, wide, storage)
-    return Whole(found, f"int{bits}_t", getter, tuple(refused), setter)
+    getter, setter = _integer_getter(factor, offset, bits, storage), _integer_setter(factor, offset, wide, storage)
+    return IntegerAccessors(found, f"int{bits}_t", getter, tuple(refused), setter)
 
 
-def _whole_getter(factor: int, offset: int, bits: int, storage: Storage) -> str:
+def _integer_getter(factor: int, offset: int, bits: int, storage: Storage) -> str:
     raw = cast(RAW, 64, True) if storage.bits == 64 and not storage.signed else RAW
     return _plus(raw if factor == 1 else f"{raw} * INT{bits}_C({factor})", offset, bits)
 
 
-def _whole_setter(factor: int, offset: int, wide: int, storage: Storage) -> str:
+def _integer_setter(factor: int, offset: int, wide: int, storage: Storage) -> str:
     if factor > 0:
         value = _plus("value", -offset, wide)
     else:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from icdgen.backends.c.names import constant
 from icdgen.backends.c.text import WIDTH
 from icdgen.backends.lines import STEP, bracketed
-from icdgen.describe.whole import Candidate
+from icdgen.describe.nodes import MessageOfId
 
 _COMPOUND = re.compile(r" (?:<<|>>|&) \w+\Z")
 
@@ -51,7 +51,7 @@ def assigned_byte(target: str, terms: Sequence[str]) -> str:
     return f"{target} = ICDGEN_U8(\n{STEP * 2}{rows});"
 
 
-def like(candidate: Candidate, depth: int = 3) -> str:
+def like(candidate: MessageOfId, depth: int = 3) -> str:
     """Whether a frame is that of a message: its length, and the bytes of its constants; 0 where zeros are cut off.
 
     ``depth`` is that of the lines after the first.

@@ -15,7 +15,7 @@ from icdgen.backends.lines import in_rows
 from icdgen.backends.origin import origin
 from icdgen.describe import FieldDescription, MessageDescription, NodeDescription, describe
 from icdgen.describe.description import TailDescription
-from icdgen.describe.whole import Direction
+from icdgen.describe.nodes import Direction
 from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import Icd, Message
 from icdgen.render import Renderer
@@ -254,16 +254,16 @@ def _scaled(field: FieldDescription, settings: Settings | None) -> Accessors:
 
 def _whole(field: FieldDescription) -> Accessors | None:
     """The integer accessors, if the field has some, with their exact values."""
-    whole = physical.scaled(field).whole if field.steps else None
+    whole = physical.scaled(field).integers if field.steps else None
     if whole is None or field.steps is None:
         return None
     lines = []
     for raw in values(field.model):
         assert isinstance(raw, int)
-        exact = field.steps.physical(raw) * whole.exact.per
+        exact = field.steps.physical(raw) * whole.scale.per
         assert exact.denominator == 1
         lines.append(f"{{{_unsigned(raw)}, {physical.int64(int(exact))}}},")
-    return _accessors(field, field.whole_name(whole.exact.per), whole.type, lines)
+    return _accessors(field, field.integer_name(whole.scale.per), whole.type, lines)
 
 
 def _unsigned(value: int) -> str:

@@ -8,11 +8,11 @@ from fractions import Fraction
 from icdgen.backends.lines import STEP, exploded
 from icdgen.backends.python.names import class_name
 from icdgen.backends.python.text import literal
-from icdgen.describe import FieldDescription, MessageDescription, wholes
+from icdgen.describe import FieldDescription, MessageDescription, integer_scale
 from icdgen.describe.constants import Constant
 from icdgen.describe.derived import derived
 from icdgen.describe.description import TailDescription
-from icdgen.describe.wholes import Whole
+from icdgen.describe.integer_scale import IntegerScale
 from icdgen.icd import floats
 from icdgen.icd.curve import Curve
 from icdgen.icd.model import Special
@@ -193,15 +193,15 @@ def text(field: FieldDescription) -> str:
     return _statement(field.physical_name, "tuple[str, ...]" if field.count else "str", "text", [f"default={first}"])
 
 
-def whole(field: FieldDescription) -> Whole | None:
+def integers(field: FieldDescription) -> IntegerScale | None:
     """The same in whole thousandths or millionths of the unit, where these are exact."""
-    return None if field.steps is None else wholes.whole(field.steps)
+    return None if field.steps is None else integer_scale.integer_scale(field.steps)
 
 
-def exact(field: FieldDescription, found: Whole) -> str:
+def exact(field: FieldDescription, found: IntegerScale) -> str:
     """``estimated_roll_angle_mdeg: int = _base.whole(...)``"""
     note = "tuple[int, ...]" if field.count else _perhaps(field, "int")
-    return _statement(field.whole_name(found.per), note, "whole", [str(found.factor), str(found.offset)])
+    return _statement(field.integer_name(found.per), note, "whole", [str(found.factor), str(found.offset)])
 
 
 def _statement(name: str, note: str, call: str, items: list[str]) -> str:

@@ -12,8 +12,8 @@ from icdgen.backends.python.text import docstring, literal, paragraph
 from icdgen.describe import Description, EnumDescription, MessageDescription, NodeDescription, StructDescription
 from icdgen.describe.comments import sentence
 from icdgen.describe.description import Composite
+from icdgen.describe.nodes import MessagesOfId
 from icdgen.describe.parts import parts_of
-from icdgen.describe.whole import Under
 from icdgen.icd.model import Message, Node
 
 _OF_NODE = (
@@ -47,11 +47,11 @@ def _by_id(node: NodeDescription, direction: str) -> list[tuple[int, str]]:
     return sorted((one.id, _known(one)) for one in node.ids(direction))
 
 
-def _known(under: Under) -> str:
+def _known(under: MessagesOfId) -> str:
     if not under.is_shared:
         return literal(names.class_name(under.first.message))
     rows = []
-    for one in under.candidates:
+    for one in under.messages:
         signs = "".join(f"({sign.byte}, 0x{sign.mask:02X}, 0x{sign.value:02X}), " for sign in one.signs)
         rows.append(
             f"({literal(names.class_name(one.message))}, {_lengths(one.message.model)}, ({signs.rstrip(' ')})),"

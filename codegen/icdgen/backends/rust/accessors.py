@@ -10,7 +10,7 @@ from icdgen.backends.rust.physical import curve_name, curve_value, physical, raw
 from icdgen.backends.rust.text import WIDTH, assigned, double, integer, string
 from icdgen.describe import FieldDescription
 from icdgen.describe.comments import physical_comment, physical_name
-from icdgen.describe.wholes import Whole, whole, whole_bits
+from icdgen.describe.integer_scale import IntegerScale, integer_bits, integer_scale
 
 
 class Accessor(NamedTuple):
@@ -40,13 +40,13 @@ def accessors(field: FieldDescription) -> list[Accessor]:
         Accessor(name, "f64", about, physical(field), sets.format(what), refused, f"{scale}.raw(value)"),
         Accessor(single_name(field), "f32", f"{what}, the nearest float of 32 bits.", single(field)),
     ]
-    known = whole_of(field)
+    known = integers_of(field)
     if known is not None:
         exact, bits = known
         value = "value" if bits == 64 else "value.into()"
         raw = f"{scale}.whole({value}, {integer(exact.factor)}, {integer(exact.offset)})"
-        name, about, what = field.whole_name(exact.per), field.whole_comment(exact), field.whole_title(exact.per)
-        read = _whole_value(field, exact, bits)
+        name, about, what = field.integer_name(exact.per), field.integer_comment(exact), field.integer_title(exact.per)
+        read = _integer_value(field, exact, bits)
         found.append(Accessor(name, f"i{bits}", about, read, sets.format(what), f"if it does not fit{end}", raw))
     return found
 
@@ -56,14 +56,14 @@ def single_name(field: FieldDescription) -> str:
     return f"{field.physical_name}_f32"
 
 
-def whole_of(field: FieldDescription) -> tuple[Whole, int] | None:
+def integers_of(field: FieldDescription) -> tuple[IntegerScale, int] | None:
     """The whole parts of the unit, and the bits of the integer that holds them."""
-    exact = whole(field.steps) if field.steps is not None and not field.steps.is_wide else None
-    bits = None if exact is None else whole_bits(exact, field.storage)
+    exact = integer_scale(field.steps) if field.steps is not None and not field.steps.is_wide else None
+    bits = None if exact is None else integer_bits(exact, field.storage)
     return None if exact is None or bits is None else (exact, bits)
 
 
-def _whole_value(field: FieldDescription, exact: Whole, bits: int) -> str:
+def _integer_value(field: FieldDescription, exact: IntegerScale, bits: int) -> str:
     raw = raw_value(field)
     value = raw if field.storage == (bits, True) else f"i{bits}::from({raw})"
     value = value if exact.factor == 1 else f"{value} * {integer(exact.factor)}"

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from icdgen.describe import FieldDescription
-from icdgen.describe.arrays import Rounds, arrays_named, rounds_of
+from icdgen.describe.arrays import ElementRounds, arrays_named, rounds_of
 from icdgen.describe.description import Composite
 
 
@@ -23,7 +23,7 @@ def helper_of(field: FieldDescription) -> str:
     return "" if rounds is None else "rounds" if rounds.in_round > 1 else "each"
 
 
-def rounds_in(field: FieldDescription) -> Rounds | None:
+def rounds_in(field: FieldDescription) -> ElementRounds | None:
     """How the elements of an array of numbers are read and written, where a function does it."""
     if not field.count or field.struct is not None or is_run(field):
         return None

@@ -57,7 +57,7 @@ def _called(field: FieldDescription, helper: str, within: str, depth: int) -> st
 
 
 def _struct(field: FieldDescription, struct: StructDescription, tables: set[int], depth: int, within: str) -> str:
-    pad, (row,) = STEP * depth, field.instances
+    pad, (row,) = STEP * depth, field.members_by_instance
     lines = (f"{pad}{STEP}{own_name(one)}: {reading(one, tables, depth + 1, within)},\n" for one in row)
     return f"{struct_path(struct, field.message.seen_from)} {{\n{''.join(lines)}{pad}}}"
 
@@ -251,6 +251,8 @@ def _put(piece: Piece, part: str) -> str:
 
 def flag_tables(message: Composite[Any]) -> set[int]:
     """The bytes that hold so many flags that a table is worth its load."""
-    steady = [one for one in message.blocks if one.model.type == "bool" and not one.model.when and not helper_of(one)]
+    steady = [
+        one for one in message.flat_members if one.model.type == "bool" and not one.model.when and not helper_of(one)
+    ]
     flags = [field.pieces[0].byte for one in steady for field in one.elements or (one,)]
     return {byte for byte in flags if flags.count(byte) >= FLAGS_FROM}

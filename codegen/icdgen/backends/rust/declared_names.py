@@ -7,7 +7,7 @@ from typing import Any
 
 from icdgen.backends import Identifier
 from icdgen.backends.rust import arrays, names
-from icdgen.backends.rust.accessors import single_name, whole_of
+from icdgen.backends.rust.accessors import integers_of, single_name
 from icdgen.describe import Description, MessageDescription, NodeDescription
 from icdgen.describe.description import Composite
 from icdgen.naming import DEVICES
@@ -86,9 +86,9 @@ def _members(message: Composite[Any]) -> Iterator[Identifier]:
                 yield field.identifier(methods, f"set_{field.physical_name}")
         if field.steps is not None:
             yield field.identifier(methods, single_name(field))
-        known = whole_of(field)
+        known = integers_of(field)
         if known is not None:
-            name = field.whole_name(known[0].per)
+            name = field.integer_name(known[0].per)
             yield field.identifier(methods, name)
             if not is_view:
                 yield field.identifier(methods, f"set_{name}")

@@ -9,7 +9,7 @@ from icdgen.backends.lines import STEP
 from icdgen.backends.rust import arrays, bits
 from icdgen.backends.rust.names import one_type, own_name, struct_path
 from icdgen.describe import FieldDescription, StructDescription
-from icdgen.describe.arrays import Rounds
+from icdgen.describe.arrays import ElementRounds
 from icdgen.describe.description import Composite
 
 DEPTH = 2  # steps of the body of a function
@@ -29,12 +29,12 @@ def functions(one: Composite[Any]) -> Iterator[dict[str, object]]:
 def _of_struct(struct: StructDescription, within: str) -> dict[str, object]:
     tables, type = bits.flag_tables(struct), struct_path(struct, struct.seen_from)
     value = literal(struct.members, [bits.reading(one, tables, within=within) for one in struct.members], type)
-    writings = [line for one in struct.blocks for line in bits.writing(one, "part", within)]
+    writings = [line for one in struct.flat_members for line in bits.writing(one, "part", within)]
     step = struct.model.length
     return {"step": step, "type": type, "tables": sorted(tables), "value": value, "writings": writings}
 
 
-def _of_numbers(field: FieldDescription, rounds: Rounds) -> dict[str, object]:
+def _of_numbers(field: FieldDescription, rounds: ElementRounds) -> dict[str, object]:
     type, pad, many = one_type(field), STEP * DEPTH, rounds.in_round > 1
     members = rounds.members(field, lambda element: f"part[{element}]" if many else "part")
     if many:

@@ -11,7 +11,7 @@ from icdgen.backends.rust.text import double, integer, mask
 from icdgen.describe import EnumDescription, MessageDescription, NodeDescription
 from icdgen.describe.examples import Example, Shown, example
 from icdgen.describe.links import LinkDescription
-from icdgen.describe.whole import Direction
+from icdgen.describe.nodes import Direction
 
 _WHOLE = 8  # bytes of a frame that is written out; of a longer one, those that are not 0
 

@@ -27,9 +27,9 @@ def values(message: MessageDescription) -> dict[str, object]:
     """What is read, written, derived and imported."""
     fields, tables, tail = message.members, bits.flag_tables(message), message.tail
     readings = ["None" if field.model.when else bits.reading(field, tables) for field in fields]
-    views = [(field, bits.reading(field, set(), depth=2)) for field in message.seen]
+    views = [(field, bits.reading(field, set(), depth=2)) for field in message.overlays]
     conditions = conditional.conditional(message)
-    writings = [line for one in message.blocks if not one.model.when for line in bits.writing(one)]
+    writings = [line for one in message.flat_members if not one.model.when for line in bits.writing(one)]
     return {
         **of_composite(message),
         "refused": message.is_narrow or bool(conditions),

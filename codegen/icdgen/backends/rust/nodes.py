@@ -6,8 +6,8 @@ from icdgen.backends.lines import STEP
 from icdgen.backends.rust.text import WIDTH, code, doc, integer, mask, prose
 from icdgen.describe import NodeDescription
 from icdgen.describe.comments import sentence
+from icdgen.describe.nodes import MessageOfId
 from icdgen.describe.storage import holding
-from icdgen.describe.whole import Candidate
 from icdgen.icd.model import Node
 
 
@@ -36,7 +36,7 @@ def typed(value: int) -> str:
     return f"u{holding(value.bit_length())} = {integer(value)}"
 
 
-def guarded(candidate: Candidate, path: str) -> str:
+def guarded(candidate: MessageOfId, path: str) -> str:
     """What an arm takes: the id, and what of the bytes shows that they are of this message, its length and its constants."""
     model = candidate.message.model
     terms = _lengths(model.layout.lengths, f"{path}::LENGTH")

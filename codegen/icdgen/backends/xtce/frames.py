@@ -188,7 +188,7 @@ class Frames:
 
     def _lay_out(self, made: Frame, found: list[Entry], end: int) -> None:
         """Gives entries their places, and reserved bits entries: each then follows the one before it, if that can be."""
-        is_plain = all(one.run.is_usual and not one.needs for one in found) and not made.message.seen
+        is_plain = all(one.run.is_usual and not one.needs for one in found) and not made.message.overlays
         if is_plain and made.base is None and not any("order of its bits" in text for text in made.lacks):
             found += map(self._reserved, gaps((one.run for one in found), self.head, end))
             made.entries = sorted(found, key=lambda one: one.run.at)
@@ -225,12 +225,12 @@ def _add_row(made: Frame, one: FieldDescription, type_: str, most: int = 0) -> N
 
 def _parts(message: MessageDescription) -> Iterator[FieldDescription]:
     """What has a fixed place: fields of structs, arrays as one where XTCE can have them so, at last views."""
-    for one in message.leaves:
+    for one in message.leaf_members:
         if one.is_open or one.is_inner or one.model.implied:
             continue
         is_array = one.model.const is None and one.count and run_of_all(one.model.elements(), message.node) is not None
         yield from (one,) if is_array or not one.count else one.elements
-    yield from message.seen
+    yield from message.overlays
 
 
 def _hex(value: int, bits: int) -> str:

@@ -50,7 +50,7 @@ def side(icd: Icd, node: NodeDescription, direction: str) -> Side | None:
     id_bits = max(node.model.id_bits, *(id.bit_length() for one in node.spoken for id in one.model.ids))
     head = _head(id_bits, icd.protocol_of(node.model), direction, types)
     shared = {
-        one.id: min(among.message.model.layout.shortest for among in one.candidates)
+        one.id: min(among.message.model.layout.shortest for among in one.messages)
         for one in node.ids(direction)
         if one.is_shared
     }

@@ -26,7 +26,7 @@ _PREFIXABLE = frozenset(
 _IN_WORDS = frozenset(("deg", "c", "rpm", "deg_per_s", "deg_per_s2"))  # whose symbols nobody writes with a prefix
 
 
-class Whole(NamedTuple):
+class IntegerScale(NamedTuple):
     """value = raw*factor + offset, in ``1 / per`` of the unit."""
 
     per: int  # 1000 | 1_000_000
@@ -39,31 +39,31 @@ class Whole(NamedTuple):
 
 
 @lru_cache(maxsize=4096)
-def whole(steps: Steps) -> Whole | None:
+def integer_scale(steps: Steps) -> IntegerScale | None:
     """In thousandths where every raw value gives a whole number of them, else in millionths, else None."""
     for per in (1000, 1_000_000):
         factor, offset = Fraction(steps.p * per, steps.q), Fraction(steps.c * per, steps.q)
         if factor.denominator == offset.denominator == 1:
-            return _whole(per, int(factor), int(offset), steps)
+            return _integer_scale(per, int(factor), int(offset), steps)
     return None
 
 
-def _whole(per: int, factor: int, offset: int, steps: Steps) -> Whole:
+def _integer_scale(per: int, factor: int, offset: int, steps: Steps) -> IntegerScale:
     low, high = sorted((raw * factor + offset, raw) for raw in (steps.raw_min, steps.raw_max))
     bottom, top = low[0] - Fraction(abs(factor), 2), high[0] + Fraction(abs(factor), 2)
     least, most = -int(-bottom // 1), int(top // 1)
     least += least == bottom and low[1] % 2  # ties go to the even raw value
     most -= most == top and high[1] % 2
-    return Whole(per, factor, offset, low[0], high[0], least, most)
+    return IntegerScale(per, factor, offset, low[0], high[0], least, most)
 
 
 @lru_cache(maxsize=4096)
-def whole_bits(found: Whole, storage: Storage) -> int | None:
+def integer_bits(scale: IntegerScale, storage: Storage) -> int | None:
     """32 or 64: bits of the integer that holds them, whatever the raw value's own holds; None where no such integer does."""
-    bits = 32 if computable(storage, found.factor, found.offset, 32) else 64
+    bits = 32 if computable(storage, scale.factor, scale.offset, 32) else 64
     ends = Storage(bits, True)
-    differences = max(found.least, ends.min) - found.offset, min(found.most, ends.max) - found.offset
-    return bits if computable(storage, found.factor, found.offset, bits) and within(64, *differences) else None
+    differences = max(scale.least, ends.min) - scale.offset, min(scale.most, ends.max) - scale.offset
+    return bits if computable(storage, scale.factor, scale.offset, bits) and within(64, *differences) else None
 
 
 def computable(storage: Storage, factor: int, offset: int, bits: int) -> bool:

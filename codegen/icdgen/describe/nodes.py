@@ -52,9 +52,9 @@ class MessageDescription(Composite[Message]):
         return tuple(member for member in self.members if member.model.when)
 
     @cached_property
-    def steady(self) -> tuple[FieldDescription, ...]:
-        """Those of `sent_fields` that are in every frame."""
-        fields = self.sent_fields
+    def unconditional_fields(self) -> tuple[FieldDescription, ...]:
+        """Those of `frame_fields` that are in every frame."""
+        fields = self.frame_fields
         return tuple(field for field in fields if not field.model.when) if self.conditional else fields
 
     @property
@@ -124,7 +124,7 @@ class Direction(NamedTuple):
     messages: tuple[tuple[MessageDescription, str], ...]
 
 
-class Candidate(NamedTuple):
+class MessageOfId(NamedTuple):
     """A message under an id, the name of its id there, and what bytes show that a frame of its length is it."""
 
     message: MessageDescription
@@ -132,33 +132,33 @@ class Candidate(NamedTuple):
     signs: tuple[layout.Sign, ...]
 
 
-class Under(NamedTuple):
+class MessagesOfId(NamedTuple):
     """The messages of one id, in the order in which a frame is tried with them."""
 
     id: int
-    candidates: tuple[Candidate, ...]
+    messages: tuple[MessageOfId, ...]
     length: int | None  # that all of them have; None if they have several
 
     @property
-    def first(self) -> Candidate:
+    def first(self) -> MessageOfId:
         """One of them, whose constant says the id."""
-        return self.candidates[0]
+        return self.messages[0]
 
     @property
     def is_shared(self) -> bool:
         """Whether it takes more than the id to know the message."""
-        return len(self.candidates) > 1
+        return len(self.messages) > 1
 
     @property
-    def rest(self) -> Candidate | None:
+    def fallback(self) -> MessageOfId | None:
         """The candidate that is left when the frame is none of the others: nothing but its length may be wrong."""
-        last = self.candidates[-1]
+        last = self.messages[-1]
         return last if not self.is_shared or (self.length is not None and not last.signs) else None
 
     @property
-    def tried(self) -> tuple[Candidate, ...]:
+    def tested(self) -> tuple[MessageOfId, ...]:
         """Those that a frame has to be looked at for."""
-        return self.candidates if self.rest is None else self.candidates[:-1]
+        return self.messages if self.fallback is None else self.messages[:-1]
 
 
 class NodeDescription:
@@ -220,7 +220,7 @@ class NodeDescription:
         )
         return tuple(direction for direction in found if direction.messages)
 
-    def ids(self, direction: str) -> tuple[Under, ...]:
+    def ids(self, direction: str) -> tuple[MessagesOfId, ...]:
         """The messages of a direction by their ids, in the order of the ICD."""
         return self._ids[direction]
 
@@ -230,7 +230,7 @@ class NodeDescription:
 
     def shares_id(self, direction: str, message: MessageDescription) -> bool:
         """Whether it takes more than the id to know the message."""
-        shared = (one.candidates for one in self._ids[direction] if one.is_shared)
+        shared = (one.messages for one in self._ids[direction] if one.is_shared)
         return any(one.message is message for among in shared for one in among)
 
     @cached_property
@@ -239,20 +239,20 @@ class NodeDescription:
         return ids_of(self._description.icd, self.model)
 
     @cached_property
-    def _ids(self) -> dict[str, tuple[Under, ...]]:
+    def _ids(self) -> dict[str, tuple[MessagesOfId, ...]]:
         known = self.known_ids
         return {
             "telecommand": tuple(self._under("set_id", id, those) for id, those in known.telecommand.items()),
             "telemetry": tuple(self._under("get_id", id, those) for id, those in known.telemetry.items()),
         }
 
-    def _under(self, other_name: str, id: int, variants: tuple[Variant, ...]) -> Under:
+    def _under(self, other_name: str, id: int, variants: tuple[Variant, ...]) -> MessagesOfId:
         message = self._description.message
         found = (
-            Candidate(message(one.message), "id" if one.message.id is not None else other_name, layout.signs(one))
+            MessageOfId(message(one.message), "id" if one.message.id is not None else other_name, layout.signs(one))
             for one in variants
         )
-        return Under(id, tuple(found), common_length(variants))
+        return MessagesOfId(id, tuple(found), common_length(variants))
 
     @property
     def is_linked(self) -> bool:
