@@ -22,7 +22,7 @@ STAGES = {
     "pages to words and rules, those two included": ("extract.py", "extract"),
     "pages to pieces of tables": ("flow.py", "items"),
     "pieces to tables": ("tables.py", "run"),
-    "tables to messages": ("survey.py", "survey"),
+    "tables to messages": ("interpret.py", "interpret"),
     "messages to ICDs": ("assemble.py", "assemble"),
     "YAML, read back": ("emit.py", "text"),
 }

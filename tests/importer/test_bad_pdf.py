@@ -34,7 +34,7 @@ def drawn(pages: int = 1, text: str = "Nothing but prose.", encrypt=None, pictur
 @pytest.mark.parametrize(
     ("data", "message", "help"),
     [
-        (drawn(), "no message and no enumeration was found", "right document"),
+        (drawn(), "the document has no table", ""),
         (drawn(encrypt=StandardEncryption("secret", canPrint=0)), "the PDF is encrypted", "remove the password"),
         (drawn(text="", picture=True), "only pictures of pages: there is no text layer", "text recognition"),
         (drawn(text=""), "pages without text", "text recognition"),
@@ -71,7 +71,7 @@ def test_two_thousand_pages_are_read(tmp_path):
     path.write_bytes(drawn(pages=2000))
     with pytest.raises(Findings) as error:
         imported(path)
-    assert "no message" in error.value.findings[0].message
+    assert "no table" in error.value.findings[0].message
 
 
 def test_a_missing_file_is_a_finding(tmp_path):

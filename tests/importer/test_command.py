@@ -5,24 +5,25 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
 from icdgen.diagnostics import Findings
 from icdgen.importer import profile
-from tests.importer.test_text import ENUM, LIST, MESSAGE, RAW
+from tests.importer.conftest import RULES
+from tests.importer.test_text import ENUM, LIST, LISTED, MESSAGE, PUMP, RAW
 
 TEXT = LIST.replace("\t6\n", "\t4\n").rsplit("141", 1)[0] + "\n" + MESSAGE + ENUM
 
 
-WORDS = Path(__file__).with_name("words.yaml")  # a profile without rules: the vocabulary that comes with icdgen
-
-
 def icdgen(*arguments, cwd) -> subprocess.CompletedProcess:
-    """Run icdgen; an import of `pump.txt`, whose tables the vocabulary knows, gets the profile without rules."""
-    words = ["--profile", WORDS] if "pump.txt" in arguments and "--profile" not in arguments else []
-    command = [sys.executable, "-m", "icdgen", *map(str, [*arguments, *words])]
+    """Run icdgen; an import of `pump.txt` gets the rules of the pump unless it has a profile of its own."""
+    rules = ["--profile", "pump.yaml"] if "pump.txt" in arguments and "--profile" not in arguments else []
+    if rules:
+        listed = LISTED if "List of" in (cwd / "pump.txt").read_text(encoding="utf-8") else ""
+        profile = PUMP.read_text(encoding="utf-8").replace("phrases:", f"{listed}phrases:")
+        (cwd / "pump.yaml").write_text(profile, encoding="utf-8")
+    command = [sys.executable, "-m", "icdgen", *map(str, [*arguments, *rules])]
     return subprocess.run(command, cwd=cwd, capture_output=True, text=True)
 
 
@@ -31,7 +32,10 @@ def test_without_a_profile_nothing_becomes_a_message(folder):
     result = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     assert result.returncode == 1 and not (folder / "icd").exists()
     assert "error[IMP004]: no rule gives a message" in result.stdout
-    assert "= help: write rules in a profile (--profile): --explore proposes them" in result.stdout
+    assert (
+        "= help: write rules in a profile (--profile): --explore proposes them, --workbench serves a page"
+        in result.stdout
+    )
     assert result.stdout.count("warning[IMP100]: no rule applies to table") == 3
 
 
@@ -143,11 +147,11 @@ def test_findings_as_json(folder):
 
 def test_a_profile_that_is_wrong_is_a_finding_with_its_line(folder):
     (folder / "words.yaml").write_text(
-        "profile: 1\nheadings:\n  fieldz: {}\ntypes:\n  WORD: {type: word}\n", encoding="utf-8"
+        "profile: 1\nrules:\n  - {tablez: {}}\ntypes:\n  WORD: {type: word}\n", encoding="utf-8"
     )
     result = icdgen("import", "pump.txt", "--profile", "words.yaml", cwd=folder)
     assert result.returncode == 1
-    assert "words.yaml:3:3: error[IMP001]: unknown key `fieldz`" in result.stderr
+    assert "words.yaml:3:6: error[IMP001]: unknown key `tablez`" in result.stderr
     assert "words.yaml:5:" in result.stderr
     assert not (folder / "icd").exists()
 
@@ -156,7 +160,7 @@ def test_a_profile_that_is_wrong_is_a_finding_with_its_line(folder):
     "line, said",
     [
         ("captions: [1]", "this entry of `captions` must be text, not the number 1"),
-        ("titles: {telemetry: a}", "`telemetry` must be a list, not the text 'a'"),
+        ("phrases: {unit: a}", "`unit` must be a list, not the text 'a'"),
         ("types: {WORD: 3}", "`X`: a mapping such as `{type: uint, bits: 16}`".replace("X", "WORD")),
         ("nodes: [{match: [a]}]", "`name` is missing from this entry of `nodes`"),
         ("nodes: [{name: a, tables: [1]}]", "`tables`: the first and the last table number: `[57, 68]`"),
@@ -167,11 +171,20 @@ def test_a_profile_that_is_wrong_is_a_finding_with_its_line(folder):
 )
 def test_each_fault_of_a_profile_has_its_remedy(tmp_path, line, said):
     path = tmp_path / "words.yaml"
-    path.write_text(f"profile: 1\n{line}\n", encoding="utf-8")
+    path.write_text(f"profile: 1\n{line}\nrules: []\n", encoding="utf-8")
     with pytest.raises(Findings) as caught:
         profile.load(path)
     assert {(f.code, f.place.line) for f in caught.value.findings} == {("IMP001", 2)}
     assert any(said in f"{f.message}: {f.help}" for f in caught.value.findings)
+
+
+def test_a_profile_without_rules_is_an_error_with_a_remedy(folder):
+    (folder / "words.yaml").write_text("profile: 1\nheadings: {fields: {name: [Signal]}}\n", encoding="utf-8")
+    for option in ([], ["--workbench"], ["--explain", "1"]):
+        result = icdgen("import", "pump.txt", "--profile", "words.yaml", *option, cwd=folder)
+        assert result.returncode == 1 and not (folder / "icd").exists()
+        assert "words.yaml:1:1: error[IMP001]: the profile has no `rules:`" in result.stderr
+        assert "--explore" in result.stderr and "--workbench" in result.stderr
 
 
 def test_a_profile_that_is_not_there_is_said_with_those_that_are(folder):
@@ -182,8 +195,8 @@ def test_a_profile_that_is_not_there_is_said_with_those_that_are(folder):
 
 @pytest.mark.parametrize("option", [[], ["--dry-run"], ["--format", "json"]])
 def test_an_import_whose_result_has_errors_ends_with_1(folder, option):
-    twice = MESSAGE.replace("Table 7: Pump", "Table 9: Tank")  # the id of another message
-    (folder / "pump.txt").write_text(MESSAGE + ENUM + twice, encoding="utf-8")
+    wide = MESSAGE.replace("\t4\n", "\t3\n", 1)
+    (folder / "pump.txt").write_text(wide + ENUM, encoding="utf-8")  # a field lies beyond the message
     result = icdgen("import", "pump.txt", *option, cwd=folder)
     assert result.returncode == 1, result.stdout
     if "json" in option:
@@ -212,7 +225,7 @@ def test_a_manual_that_lacks_something_ends_with_1_and_is_written_all_the_same(f
     result = icdgen("import", "pump.txt", cwd=folder)
     assert result.returncode == 1
     assert (
-        "error[IMP023]: table 7: Pump State Telemetry Format, field `Mode`: the offset `l6` is not a number"
+        "error[IMP023]: table 2 (`Pump State Telemetry Format`), field `Mode`: `bit` is `l6`, which is no number"
         in result.stdout
     )
     assert "--> pump.txt:" in result.stdout
@@ -235,10 +248,12 @@ def test_the_page_shows_each_doubtful_table_as_a_picture(tmp_path):
 
     manual = content.manual(content.shipped("common"), {"common": "Common"})
     LAYOUTS["ruled"](manual, tmp_path / "manual.pdf")
-    result = icdgen("import", "manual.pdf", "--report", "report.html", "--profile", WORDS, cwd=tmp_path)
-    assert (result.returncode, result.stderr) == (1, "")  # without its errata, the result has errors
-    assert "error[" not in result.stdout
+    rules = RULES.read_text(encoding="utf-8").replace("Data Type: type", "Data Type: text")  # fields have no type
+    (tmp_path / "rules.yaml").write_text(rules, encoding="utf-8")
+    result = icdgen("import", "manual.pdf", "--report", "report.html", "--profile", "rules.yaml", cwd=tmp_path)
+    assert (result.returncode, result.stderr) == (1, "")
+    assert "IMP026" in result.stdout
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
-    assert 'id="table-0"' in page
+    assert 'id="table-' in page
     assert "data:image/png;base64," in page
     assert "http" not in page.replace("http-equiv", "")

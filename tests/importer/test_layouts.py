@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 from tests.importer.compare import differences
@@ -25,8 +25,10 @@ TITLES = {
 def back(manual: content.Manual, layout: str, path) -> list[str]:
     """What differs after drawing and importing."""
     LAYOUTS[layout](manual, path)
-    _, trees = imported(path)
+    result, trees = imported(path)
     assert set(trees) == set(manual.trees)
+    # A rule for tables that a layout does not have applies to none; random fields may share a name. Nothing else is wrong.
+    assert {trouble.code for trouble in result.troubles if trouble.severity == "error"} <= {"IMP101", "IMP107"}
     return [line for name, tree in manual.trees.items() for line in differences(tree, trees[name])]
 
 
@@ -52,7 +54,10 @@ def test_a_manual_of_one_page_without_lists_and_prose_comes_back(layout, tmp_pat
     assert differences(trees["cubewheel"], got["cubewheel"]) == []
 
 
-@settings(max_examples=12, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+@settings(
+    max_examples=12, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True,
+    phases=[Phase.explicit, Phase.generate],  # to draw and read a document for each step of shrinking takes minutes
+)  # fmt: skip
 @given(tree=random_icds.trees(), layout=st.sampled_from(sorted(LAYOUTS)))
 def test_random_icds_come_back(tree, layout, tmp_path_factory):
     path = tmp_path_factory.mktemp("random") / "manual.pdf"

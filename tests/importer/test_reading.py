@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from icdgen.icd import formula as formulas
-from icdgen.importer import labels, profile
-from icdgen.importer.understand import descriptions, lists
+from icdgen.importer import descriptions, labels, profile
+from icdgen.importer.rules import lists
 from icdgen.importer.words import join
 
 WORDS = profile.load()

@@ -1,4 +1,4 @@
-"""Documents as vendors of sensors and modems set them: with the profile that each needs, its ICD comes back."""
+"""Documents as vendors of sensors and modems set them: the rules of each give its ICD back."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from icdgen.importer import profile, run
 from tests.importer.compare import differences
 from tests.importer.manuals import browser, office
 from tests.importer.manuals.typeset import TYPESET
-from tests.importer.manuals.wild import MESSAGES, PROSE, UNSEEN, WILD
+from tests.importer.manuals.wild import MESSAGES, PROSE, UNSEEN, WILD, rule
 
 
 @pytest.mark.parametrize("layout", [*WILD, *UNSEEN, *TYPESET, *office.OFFICE])
@@ -24,13 +24,10 @@ def test_a_document_in_the_wild_comes_back(layout, tmp_path):
     if layout in ("article", "two columns"):
         pytest.importorskip("typst")
     wild.draw(tmp_path / "motor.pdf")
-    words = None
-    if wild.profile:
-        words = tmp_path / "words.yaml"
-        words.write_text("profile: 1\n" + wild.profile, encoding="utf-8")
-    result, trees = run.run(tmp_path / "motor.pdf", profile.load(words), jobs=1)
+    (tmp_path / "rules.yaml").write_text(wild.profile, encoding="utf-8")
+    result, trees = run.run(tmp_path / "motor.pdf", profile.load(tmp_path / "rules.yaml"), jobs=1)
     assert differences({"messages": wild.messages}, next(iter(trees.values())), tables=False) == []
-    assert not [t for t in result.troubles if t.code in ("IMP020", "IMP022", "IMP023", "IMP027", "IMP040")]
+    assert [t.message for t in result.troubles if t.severity == "error"] == []
 
 
 @pytest.mark.parametrize("caption", ["{name} (0x{id:02X})", "Table {number}: {name} (0x{id:02X})"])
@@ -53,6 +50,11 @@ def test_prose_between_a_caption_and_its_table_parts_them_not(tmp_path, caption)
             Table(rows, style=[("GRID", (0, 0), (-1, -1), 0.5, colors.black)]),
         ]
     SimpleDocTemplate(str(tmp_path / "motor.pdf")).build(story)
-    _, trees = run.run(tmp_path / "motor.pdf", profile.load(), jobs=1)
+    rules = rule(
+        "Offset (bits) | Length (bits)", r"{}: '{{message}} \({{id}}\)$'".format("caption" if "Table" in caption else "before"),
+        "Offset (bits): bit, Length (bits): bits, Name: name, Data Type: type, Unit: unit",
+    )  # fmt: skip
+    (tmp_path / "rules.yaml").write_text(rules, encoding="utf-8")
+    _, trees = run.run(tmp_path / "motor.pdf", profile.load(tmp_path / "rules.yaml"), jobs=1)
     plain = [m | {"fields": [{k: v for k, v in f.items() if k != "formula"} for f in m["fields"]]} for m in MESSAGES]
     assert differences({"messages": plain}, next(iter(trees.values())), tables=False) == []

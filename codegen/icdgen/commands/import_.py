@@ -126,7 +126,6 @@ def import_(
         return
     try:
         vocabulary = profile.load(profile.find(words))
-        vocabulary.has_rules |= words is None  # nothing becomes a message that no profile asks for
         with progress.pages("reading") as show:
             result, trees = run.run(manual, vocabulary, show, jobs, descriptions, pages)
         if folder is not None:
@@ -228,9 +227,6 @@ def _workbench(
     path = Path(words or "profile.yaml")
     try:
         vocabulary = profile.load(path if path.exists() else None)
-        if path.exists() and not vocabulary.has_rules:
-            raise UserError(f"the profile {path} has no rules", "add `rules: []`, or name a new file with --profile")
-        vocabulary.has_rules = True
         with progress.pages("reading") as show:
             document, tables = sources.read(manual, vocabulary, show, jobs, pages)
     except Findings as error:
@@ -243,12 +239,9 @@ def _workbench(
 
 
 def _explanation(result: Result, number: int) -> str:
-    """Return what `--explain` prints. Raises `UserError` without rules, or if there is no such table."""
-    from icdgen.errors import UserError
+    """Return what `--explain` prints. Raises `UserError` if there is no such table."""
     from icdgen.importer.rules import explain
 
-    if result.interpretation is None:
-        raise UserError("--explain needs a profile with rules", "add --profile PROFILE; --explore proposes rules")
     if not 1 <= number <= len(result.tables):
         raise UserError(
             f"there is no table {number}", f"tables are numbered from 1 to {len(result.tables)}, see --tables"

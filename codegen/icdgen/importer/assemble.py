@@ -9,9 +9,8 @@ from typing import Any
 
 from icdgen.importer import icd_trees, references
 from icdgen.importer.document import Document, Trouble
+from icdgen.importer.model import Found, NodeParts, ReadEnum, ReadList, ReadMessage, Survey
 from icdgen.importer.profile import Profile
-from icdgen.importer.understand.model import NodeParts, ReadEnum, ReadList, ReadMessage
-from icdgen.importer.understand.survey import Found, Survey
 from icdgen.importer.words import folded, squeezed, table_name
 
 
@@ -48,29 +47,14 @@ def _parts_by_node(document: Document, survey: Survey, profile: Profile) -> list
 
 def _keys(survey: Survey, profile: Profile) -> list[str]:
     """The node of each table, as the manual calls it; "" where nothing tells."""
-    by_number = {}
-    for one, listed in survey.of(ReadList):
-        for row in listed.rows:
-            if row.table_number is not None:
-                by_number[one.table.run, row.table_number] = listed.node
-    numbered = [one.table.number for one in survey.found if one.table.number is not None]
-    restarts = len(set(numbered)) < len(numbered) and not any(listed.node for _, listed in survey.of(ReadList))
     keys, current, twins = [], "", _twins(survey)
     for one in survey.found:
         told = _by_profile(one, profile)
         if told is None and isinstance(one.thing, ReadList) and one.thing.node:
             current = one.thing.node
-        if told is None and not profile.nodes and restarts and not profile.has_rules:
-            told = f"part {one.table.run}"
-        number = one.table.number
-        key = (
-            told
-            if told is not None
-            else (by_number.get((one.table.run, number)) if number is not None else "") or current
-        )
         if told is not None:
             current = told
-        keys.append(key)
+        keys.append(current)
     keys = [_canonical(key, profile) for key in keys]
     named = {id(one.table): key for one, key in zip(survey.found, keys, strict=True)}
     return [key or named.get(twins.get(id(one.table), 0), "") for one, key in zip(survey.found, keys, strict=True)]
@@ -90,7 +74,7 @@ def _twins(survey: Survey) -> dict[int, int]:
 
 
 def _by_profile(one: Found, profile: Profile) -> str | None:
-    number = one.table.number
+    number = one.table.label
     for words in profile.nodes:
         if words.tables is not None or words.group is not None:
             in_group = words.group is None or words.group == one.table.run
@@ -158,7 +142,7 @@ def _merge_enums(node: NodeParts, survey: Survey) -> None:
             kept[one.name] = one
             continue
         if [(m.value, m.name) for m in first.members] == [(m.value, m.name) for m in one.members]:
-            is_meant, first_is = ((enum.table.run, enum.table.number) in pointed for enum in (one, first))
+            is_meant, first_is = ((enum.table.run, enum.table.label) in pointed for enum in (one, first))
             if is_meant and not first_is:
                 one.also = [first.table, *first.also]
                 kept[one.name] = one
@@ -168,9 +152,9 @@ def _merge_enums(node: NodeParts, survey: Survey) -> None:
         taken[one.name] += 1
         name = f"{one.name} {taken[one.name] + 1}"
         survey.troubles.append(
-            Trouble("IMP052", f"{one.table.title}: table {table_name(first.table.number)} has an enumeration of this name "
+            Trouble("IMP052", f"{one.table.title}: table {table_name(first.table.label)} has an enumeration of this name "
                     "with other members", one.table.spot, f"held as `{name}`: see which one the fields mean", "error")
         )  # fmt: skip
         one.name = name
         kept[name] = one
-    node.enums = sorted(kept.values(), key=lambda enum: enum.table.order or 0)
+    node.enums = sorted(kept.values(), key=lambda enum: enum.table.number)

@@ -7,10 +7,11 @@ from collections import Counter
 from collections.abc import Sequence
 
 from icdgen.diagnostics import Finding
+from icdgen.icd.rules.wording import count
 from icdgen.import_results import report as shared
 from icdgen.import_results.findings import CERTAIN, DOUBTFUL, LIKELY
+from icdgen.importer.model import BACKGROUND, UNKNOWN
 from icdgen.importer.run import Result
-from icdgen.importer.understand.survey import BACKGROUND, UNKNOWN
 from icdgen.importer.words import table_name
 
 
@@ -24,17 +25,17 @@ def summary(result: Result) -> list[str]:
     kinds = Counter(one.what for one in result.survey.found)
     order = ["message", "enumeration", "list", "loggable frames", BACKGROUND, UNKNOWN]
     parts = [f"{kinds[kind]} {_many(kind, kinds[kind])}" for kind in order if kinds[kind]]
-    pages = f"{result.document.pages:,} pages, " if result.document.pages else ""
+    pages = f"{count(result.document.pages, 'page')}, " if result.document.pages else ""
     sure = result.sureness()
     return [
-        f"{pages}{len(result.survey.found):,} tables" + (": " if parts else "") + ", ".join(parts),
+        f"{pages}{count(len(result.survey.found), 'table')}" + (": " if parts else "") + ", ".join(parts),
         "read: " + (", ".join(f"{sure[one]} {one}" for one in (CERTAIN, LIKELY, DOUBTFUL) if sure[one]) or "none"),
         shared.severities(result.troubles),
     ]
 
 
-def _many(kind: str, count: int) -> str:
-    if kind in (BACKGROUND, UNKNOWN) or kind.endswith("s") or count == 1:
+def _many(kind: str, number: int) -> str:
+    if kind in (BACKGROUND, UNKNOWN) or kind.endswith("s") or number == 1:
         return kind
     return kind + "s"
 
@@ -43,7 +44,7 @@ def as_json(result: Result, checked: Sequence[Finding]) -> str:
     """Tables and findings for programs; ``checked`` are the findings of `icdgen check` for the files."""
     found = [
         {
-            "table": _table(one.table.number),
+            "table": _table(one.table.label),
             "caption": one.table.caption,
             "page": one.table.page,
             "line": one.table.line,

@@ -1,4 +1,8 @@
-"""What both readers, of PDF and of text, make of a manual: headings, text and tables in reading order."""
+"""Headings, text and tables of a document in reading order, whatever the source.
+
+Rules (`rules/`) give tables a meaning. A table keeps what rules need: the line breaks in cells, the spans of cells in both
+directions, the caption, the chain of headings above the table, and all text since the table before it.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +14,7 @@ from icdgen.import_results.findings import DOUBTFUL as DOUBTFUL
 from icdgen.import_results.findings import LIKELY as LIKELY
 from icdgen.import_results.findings import Spot as Spot
 from icdgen.import_results.findings import Trouble as Trouble
-from icdgen.importer.words import plain, table_name
+from icdgen.importer.words import plain, squeezed
 
 
 class Box(NamedTuple):
@@ -29,26 +33,6 @@ class Box(NamedTuple):
     @property
     def height(self) -> float:
         return self.bottom - self.top
-
-
-@dataclass(slots=True)
-class PrintedRow:
-    """A row exactly as the page shows it, before cells are moved below headings or their lines are joined.
-
-    ``texts``: one text per cell, lines separated by line breaks; ``edges``: the x coordinates between which the cells
-    stand, one more than cells, or none where nothing on the page separates them; ``continues``: whether a cell has no rule
-    above it, so that it belongs to the cell above.
-    """
-
-    texts: list[str]
-    edges: tuple[float, ...] = ()
-    continues: tuple[bool, ...] = ()
-    page: int | None = None
-
-    def slice(self, start: int, width: int) -> PrintedRow:
-        """Return the cells of some columns."""
-        end = start + width
-        return PrintedRow(self.texts[start:end], self.edges[start : end + 1], self.continues[start:end], self.page)
 
 
 @dataclass(slots=True)
@@ -74,96 +58,109 @@ class SourceRow:
         return " | ".join(plain(cell.text) for cell in self.cells if cell.text.strip())
 
 
-@dataclass(slots=True)
-class Row:
-    """A row of a table. ``cells`` may be fewer or more than the columns where the page has them so (spans, torn rows)."""
+class Slot(NamedTuple):
+    """One row and column of a table: the cell over it, the first column of that cell, and whether it begins here."""
 
-    cells: list[str]
-    page: int | None = None
-    line: int | None = None
-    mended: str = ""  # what the reader had to do to it, in words
-    edges: tuple[float, ...] = ()  # of its cells, where rules on the page part them
-    printed: PrintedRow | None = None
-
-    @classmethod
-    def of(cls, text: str, width: int, page: int | None, line: int | None = None) -> Row:
-        """A row of so many cells, of which only the first one holds something: a heading over rows below."""
-        return cls([text, *[""] * (width - 1)], page, line)
+    cell: Cell
+    column: int
+    is_origin: bool
 
     @property
     def text(self) -> str:
-        """What stands in it, as if it were a line of text."""
-        return " ".join(filter(None, self.cells))
-
-    @property
-    def shown(self) -> str:
-        """Its cells for a finding."""
-        return " | ".join(filter(None, self.cells))
+        """The text of the cell in the row and column where it begins, and in the rows that it spans; else empty."""
+        return self.cell.text if self.is_origin else ""
 
 
 @dataclass(slots=True)
-class Header:
-    """The heading row of a table: what kind of table has such headings, and the role of each cell ("" if unknown)."""
+class SourceTable:
+    """A table with all its continuations on later pages.
 
-    kind: str  # "fields" | "enumeration" | "list" | "loggable"
-    roles: list[str]
-    titles: list[str]
-    printed: list[PrintedRow] = field(default_factory=list, compare=False)
+    ``number`` is its place in the document, counted from 1. ``headings`` is the chain of section headings, the outermost
+    first. ``before`` are the texts since the table before, in reading order, headings among them; ``after`` those behind the
+    last table of the document.
+    """
 
-    @property
-    def known(self) -> int:
-        """How many cells have a role."""
-        return sum(map(bool, self.roles))
-
-    @property
-    def known_words(self) -> int:
-        """How many words these cells have."""
-        return sum(len(title.split()) for title, role in zip(self.titles, self.roles, strict=True) if role)
-
-    @property
-    def has_offsets(self) -> bool:
-        """Whether a column says where fields stand."""
-        return "at" in self.roles or "at_bytes" in self.roles
-
-
-@dataclass(slots=True)
-class Table:
-    """A table with all its continuations on later pages. ``head`` are the rows above the headings."""
-
-    number: int | None = None
+    number: int = 0
+    rows: list[SourceRow] = field(default_factory=list)
     caption: str = ""
-    header: Header | None = None
-    head: list[Row] = field(default_factory=list)
-    rows: list[Row] = field(default_factory=list)
+    label: int | None = None  # the number that its caption prints
+    headings: list[str] = field(default_factory=list)
+    before: list[str] = field(default_factory=list)
+    after: list[str] = field(default_factory=list)
     boxes: list[Box] = field(default_factory=list)
-    page: int | None = None
-    line: int | None = None
-    doubts: list[str] = field(default_factory=list)  # what makes the reading less than certain
-    order: int | None = None  # which table of the document it is
-    run: int = 1  # which run of ascending numbers it is in
-    section: str = ""  # the heading above it
     sheet: str = ""  # of a spreadsheet
-    source_rows: list[SourceRow] = field(default_factory=list)  # of sources that state the spans of cells
+    run: int = 1  # which run of ascending labels it is in: parts of a document may number their tables anew
 
     @property
-    def all_rows(self) -> list[Row]:
-        return self.head + self.rows
+    def page(self) -> int | None:
+        """The page on which the table begins."""
+        return self.boxes[0].page if self.boxes else next((row.page for row in self.rows if row.page), None)
+
+    @property
+    def line(self) -> int | None:
+        """The line on which the first row stands, of sources that have lines."""
+        return next((row.line for row in self.rows if row.line), None)
 
     @property
     def spot(self) -> Spot:
-        return Spot(self.page, self.line, self.number, self.order)
+        """Where the table stands, for a finding."""
+        return Spot(self.page, self.line, self.label, self.number - 1)
 
-    def spot_of(self, row: Row) -> Spot:
-        """Where one of its rows stands."""
-        return Spot(row.page or self.page, row.line, self.number, self.order)
+    def spot_of(self, row: SourceRow) -> Spot:
+        """Where one of the rows stands."""
+        return Spot(row.page or self.page, row.line, self.label, self.number - 1)
 
     @property
     def title(self) -> str:
-        """How a reader finds it: number and caption."""
-        number = f"table {table_name(self.number)}" if self.number is not None else "a table without number"
-        if not self.caption and self.number is None and self.section:
-            return f"the table below `{self.section[:60]}`"
-        return f"{number}: {self.caption}" if self.caption else number
+        """How a finding calls the table: ``table 12 (`Motor State`)``."""
+        name = self.caption or (self.headings[-1] if self.headings else "")
+        return f"table {self.number}" + (f" (`{plain(name)[:60]}`)" if name else "")
+
+    @property
+    def width(self) -> int:
+        """How many columns the table has."""
+        return max((len(row) for row in self.grid()), default=0)
+
+    def grid(self) -> list[list[Slot]]:
+        """Every row with a slot for each column, cells that span rows or columns in all of their slots."""
+        made: list[list[Slot]] = []
+        reaching: dict[int, tuple[int, Cell, int]] = (
+            {}
+        )  # column -> rows that a cell above goes on, the cell, its first column
+        for row in self.rows:
+            slots: dict[int, Slot] = {}
+            for column, (left, cell, first) in list(reaching.items()):
+                slots[column] = Slot(cell, first, column == first)
+                reaching[column] = left - 1, cell, first
+                if left == 1:
+                    del reaching[column]
+            column = 0
+            for cell in row.cells:
+                while column in slots:
+                    column += 1
+                for offset in range(cell.columns):
+                    slots[column + offset] = Slot(cell, column, offset == 0)
+                    if cell.rows > 1:
+                        reaching[column + offset] = cell.rows - 1, cell, column
+                column += cell.columns
+            width = max(slots, default=-1) + 1
+            made.append([slots.get(column) or Slot(Cell(""), column, True) for column in range(width)])
+        return made
+
+    @property
+    def kind(self) -> tuple[str, ...]:
+        """What tables with the same headings have in common: the first row of several filled cells, without case and
+        punctuation."""
+        return tuple(squeezed(text) for text in self.titles)
+
+    @property
+    def titles(self) -> list[str]:
+        """The first row of several filled cells: usually the headings of the columns."""
+        for row in self.rows:
+            texts = [plain(cell.text) for cell in row.cells]
+            if sum(map(bool, texts)) > 1:
+                return texts
+        return [plain(cell.text) for cell in self.rows[0].cells] if self.rows else []
 
 
 @dataclass(slots=True)
@@ -197,7 +194,7 @@ class Text:
     line: int | None = None
 
 
-Block = Table | Heading | Text
+Block = SourceTable | Heading | Text
 
 
 @dataclass(slots=True)
@@ -209,13 +206,7 @@ class Document:
     troubles: list[Trouble] = field(default_factory=list)
     pages: int | None = None  # None for text, which has no pages
     title: str = ""
-    needs_rules: bool = False  # of sources whose tables only rules can read
 
     @property
-    def tables(self) -> list[Table]:
-        return [block for block in self.blocks if isinstance(block, Table)]
-
-    def count_tables(self) -> None:
-        """Tells each table its place in the document."""
-        for order, table in enumerate(self.tables):
-            table.order = order
+    def tables(self) -> list[SourceTable]:
+        return [block for block in self.blocks if isinstance(block, SourceTable)]

@@ -8,9 +8,9 @@ import io
 from collections import Counter
 from collections.abc import Iterator
 
-from icdgen.importer.document import CERTAIN, Box, Table, Trouble
+from icdgen.importer.document import CERTAIN, Box, Cell, SourceTable, Trouble
+from icdgen.importer.model import Found
 from icdgen.importer.run import Result
-from icdgen.importer.understand.survey import Found
 
 RESOLUTION = 110
 MARGIN = 6.0
@@ -57,11 +57,11 @@ def report(result: Result) -> str:
     loose = [t for t in about.get(None, []) if t.severity != "error"]
     if loose:
         parts += ["<h2>About the document</h2>", _list(loose)]
-    doubtful.sort(key=lambda one: _stake(about.get(one.table.order, [])))
+    doubtful.sort(key=lambda one: _stake(about.get(one.table.spot.order, [])))
     with _Pictures(result) as pictures:
         for one in doubtful:
-            parts += _table(one, result, about.get(one.table.order, []), pictures)
-    noted = [t for one in rest for t in about.get(one.table.order, [])]
+            parts += _table(one, result, about.get(one.table.spot.order, []), pictures)
+    noted = [t for one in rest for t in about.get(one.table.spot.order, [])]
     if noted:
         parts += ["<h2>Notes about tables that were read without doubt</h2>", _list(noted)]
     return "\n".join(parts) + "\n</body></html>\n"
@@ -89,25 +89,21 @@ def _list(troubles: list[Trouble], linked: bool = False) -> str:
 def _table(one: Found, result: Result, troubles: list[Trouble], pictures: _Pictures) -> Iterator[str]:
     table = one.table
     title = html.escape(table.title[:1].upper() + table.title[1:])
-    yield f'<h2 id="table-{table.order}">{title} <span class="sure">{one.what}, {result.sure_of(table)}</span></h2>'
+    yield f'<h2 id="table-{table.spot.order}">{title} <span class="sure">{one.what}, {result.sure_of(table)}</span></h2>'
     yield _list(troubles)
     images = "".join(pictures.of(table))
     read = _as_read(table)
     yield f'<div class="pair"><div>{images}</div><div>{read}</div></div>' if images else f"<div>{read}</div>"
 
 
-def _as_read(table: Table) -> str:
-    width = max([len(row.cells) for row in table.all_rows] + [1])
-    rows = [_row(row.cells, width, "td") for row in table.head]
-    if table.header:
-        rows.append(_row(table.header.titles, width, "th"))
-    rows += [_row(row.cells, width, "td") for row in table.rows]
+def _as_read(table: SourceTable) -> str:
+    rows = ("<tr>" + "".join(map(_cell, row.cells)) + "</tr>" for row in table.rows)
     return "<table>" + "\n".join(rows) + "</table>"
 
 
-def _row(cells: list[str], width: int, tag: str) -> str:
-    padded = [*cells, *[""] * (width - len(cells))]
-    return "<tr>" + "".join(f"<{tag}>{html.escape(cell)}</{tag}>" for cell in padded) + "</tr>"
+def _cell(cell: Cell) -> str:
+    spans = "".join(f' {key}="{n}"' for key, n in (("colspan", cell.columns), ("rowspan", cell.rows)) if n > 1)
+    return f"<td{spans}>{html.escape(cell.text)}</td>"
 
 
 class _Pictures:
@@ -131,7 +127,7 @@ class _Pictures:
         if self.file is not None:
             self.file.close()
 
-    def of(self, table: Table) -> Iterator[str]:
+    def of(self, table: SourceTable) -> Iterator[str]:
         for box in table.boxes:
             if self.file is None or self.left <= 0:
                 return

@@ -8,9 +8,9 @@ from typing import Any
 from icdgen.icd import units
 from icdgen.icd.fmt.emit import Spelled
 from icdgen.icd.units import SIGNS, SPELLINGS, STANDARD
-from icdgen.importer.document import Document, Table, Trouble
+from icdgen.importer.document import Document, SourceTable, Trouble
+from icdgen.importer.model import Listed, NodeParts, ReadEnum, ReadField, ReadMessage
 from icdgen.importer.profile import Profile
-from icdgen.importer.understand.model import Listed, NodeParts, ReadEnum, ReadField, ReadMessage
 from icdgen.importer.words import squeezed, table_name
 
 
@@ -61,10 +61,10 @@ def head(node: NodeParts, document: Document, profile: Profile) -> dict[str, Any
     return found
 
 
-def _source(table: Table) -> dict[str, Any]:
+def _source(table: SourceTable) -> dict[str, Any]:
     made = {}
-    if table.number is not None and table_name(table.number).isdigit():
-        made["table"] = table.number
+    if table.label is not None and table_name(table.label).isdigit():
+        made["table"] = table.label
     if table.page is not None:
         made["page"] = table.page
     return made
@@ -101,7 +101,6 @@ def _field(one: ReadField, prose: bool) -> dict[str, Any]:
         **_given(
             count=one.count, enum=one.enum, unit=SIGNS.get(said.unit, said.unit), formula=said.formula,
             formula_for=said.formula_for, const=said.const and Spelled(said.const),
-            bitfields=[bits._asdict() for bits in one.bitfields],
         ),
         **_prose(one.name, said.rest, prose),
     }  # fmt: skip

@@ -1,4 +1,4 @@
-"""The vocabulary of a manual: a small YAML file, laid over the one that comes with icdgen."""
+"""Profiles: the rules for the tables of a document, and the words by which its tables are found."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from icdgen.importer.words import folded
 
 DEFAULT = Path(__file__).with_name("profile.yaml")
 CODE = "IMP001"
-_PLACEHOLDER = re.compile(r"\\?\{(name|node|unit|number|table|title|id|hex|kind|length)\\?\}")
+_PLACEHOLDER = re.compile(r"\\?\{(unit|number|table|title)\\?\}")
 
 
 @dataclass(slots=True)
@@ -34,12 +34,11 @@ class NodeWords:
 
 @dataclass
 class Profile:
-    """A vocabulary, ready for use."""
+    """A profile, ready for use."""
 
     data: dict[str, Any]
     own: dict[str, Any] = field(default_factory=dict)  # what was laid over the profile that comes with icdgen
     rules: list[Rule] = field(default_factory=list)
-    has_rules: bool = False  # a profile may state an empty list: then nothing is read, and everything listed
 
     @cached_property
     def headings(self) -> dict[str, dict[str, list[tuple[str, ...]]]]:
@@ -119,43 +118,9 @@ class Profile:
         )
 
     @cached_property
-    def titles(self) -> dict[str, list[re.Pattern[str]]]:
-        return {what: [title(text) for text in texts] for what, texts in self.data["titles"].items()}
-
-    @cached_property
-    def patterns(self) -> list[re.Pattern[str]]:
-        """How names, ids, kinds and lengths are printed around a table."""
-        kinds = "|".join(
-            r"\s+".join(map(re.escape, text.split())) for texts in self.data["kinds"].values() for text in texts
-        )
-        one = r"(?:0[xX][0-9A-Fa-f]+|[0-9A-Fa-f]+[hH](?![A-Za-z0-9])|[0-9]+)"
-        stand_ins = {
-            "name": r"(?P<name>\S.*?)",
-            "hex": r"(?P<id>(?:0[xX][0-9A-Fa-f]+|[0-9A-Fa-f]+[hH](?![A-Za-z0-9]))(?:[\s,/]+0[xX][0-9A-Fa-f]+)*)",
-            "id": rf"(?P<id>{one}(?:[\s,/]+0[xX][0-9A-Fa-f]+)*)(?![0-9A-Za-z])",
-            "kind": rf"(?P<kind>{kinds})",
-            "length": r"(?P<length>[0-9]+)",
-        }
-        return [re.compile(_pattern(text, stand_ins), re.I) for text in self.data["patterns"]]
-
-    def says(self, kind: str, role: str, title: tuple[str, ...]) -> bool:
-        """Whether the profile laid over the shipped one gives a heading this role itself."""
-        own = self.own.get("headings", {}).get(kind, {}).get(role, ())
-        return any(folded(text) == title for text in own)
-
-    @cached_property
-    def registers(self) -> dict[str, set[tuple[str, ...]]]:
-        """Role -> the headings beside the bits or bytes of a grid, as folded words."""
-        return {role: {folded(text) for text in texts} for role, texts in self.data["registers"].items()}
-
-    @cached_property
     def reserved(self) -> set[tuple[str, ...]]:
         """Names of bits that have no meaning."""
         return {folded(text) for text in self.data["reserved"]}
-
-    @cached_property
-    def types(self) -> dict[str, dict[str, Any]]:
-        return {"".join(folded(name)): rule for name, rule in self.data["types"].items()}
 
     @cached_property
     def types_of_profile(self) -> dict[str, TypeName]:
@@ -187,10 +152,6 @@ class Profile:
         return {what: [phrase(text) for text in texts] for what, texts in self.data["phrases"].items()}
 
     @cached_property
-    def background(self) -> list[re.Pattern[str]]:
-        return [re.compile(re.escape(text).replace(r"\*", ".*"), re.I) for text in self.data["background"]]
-
-    @cached_property
     def nodes(self) -> list[NodeWords]:
         return [
             NodeWords(
@@ -203,11 +164,6 @@ class Profile:
             )
             for item in self.data.get("nodes", ())
         ]
-
-
-def title(text: str) -> re.Pattern[str]:
-    """``{name} Command Format`` as a pattern for a whole caption."""
-    return re.compile(_pattern(text, {"name": "(?P<name>.+?)", "node": "(?P<node>.+?)"}) + r"\.?\Z", re.I)
 
 
 def phrase(text: str) -> re.Pattern[str]:
@@ -256,10 +212,8 @@ def of_tree(tree: Map) -> Profile:
     base = plain(source.read(DEFAULT))
     _check(tree)
     own = plain(tree)
-    if "rules" in tree:
-        _check_orders(tree, base)
-    rules = read_rules(tree["rules"]) if "rules" in tree else []
-    return Profile(_laid_over(_without_moved(base, own), own), own, rules, "rules" in tree)
+    _check_orders(tree, base)
+    return Profile(_laid_over(base, own), own, read_rules(tree["rules"]))
 
 
 def _check_orders(tree: Map, base: dict[str, Any]) -> None:
@@ -274,17 +228,6 @@ def _check_orders(tree: Map, base: dict[str, Any]) -> None:
             message = f"the nodes have different values of `{key}`: {' and '.join(sorted(set(map(str, stated))))}"
             help = "rules read all tables in one order: write a profile for each node"
             raise Findings([Finding(CODE, message, tree.at("nodes"), help)])
-
-
-def _without_moved(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
-    """The profile below without the headings to which the one above gives a role of its own choice."""
-    made = {**base, "headings": {kind: dict(roles) for kind, roles in base["headings"].items()}}
-    for kind, roles in over.get("headings", {}).items():
-        moved = {folded(text): role for role, texts in roles.items() if role != "needs" for text in texts}
-        for role, texts in base["headings"].get(kind, {}).items():
-            if role != "needs":
-                made["headings"][kind][role] = [text for text in texts if moved.get(folded(text), role) == role]
-    return made
 
 
 def _laid_over(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
@@ -302,7 +245,11 @@ def _laid_over(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
 
 
 def _check(tree: Map) -> None:
-    """Raises `Findings` where the file does not have the form of a profile."""
-    findings, _ = schema.check(tree, "profile")
+    """Raise `Findings` if the file does not have the form of a profile."""
+    if "rules" in tree:
+        findings, _ = schema.check(tree, "profile")
+    else:
+        help = "`icdgen import FILE --explore` prints rules to complete, `--workbench` serves a page to write them"
+        findings = [Finding(CODE, "the profile has no `rules:`, which say what the tables mean", tree.place, help)]
     if findings:
         raise Findings([finding._replace(code=CODE) for finding in findings])

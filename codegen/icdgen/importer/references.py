@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import replace
 from typing import Any
 
 from icdgen.icd.wire_ids import DEFAULT_BITS
 from icdgen.importer.document import DOUBTFUL, LIKELY, Trouble
-from icdgen.importer.understand import messages
-from icdgen.importer.understand.model import Listed, NodeParts, ReadEnum, ReadField, ReadMessage
+from icdgen.importer.model import Listed, NodeParts, ReadEnum, ReadField, ReadMessage
 from icdgen.importer.words import plain, squeezed, table_name
 
 
@@ -19,7 +17,6 @@ def listed(node: NodeParts, troubles: list[Trouble]) -> None:
     for message in node.messages:
         row = _row_of(message, rows)
         if row is None:
-            message.name = next(iter(message.names), "")
             if any(one.kind in ("", message.kind) for one in node.lists):
                 troubles.append(Trouble("IMP062", f"{message.table.title}: no list table names it", message.table.spot,
                                         "compare with the list tables"))  # fmt: skip
@@ -28,35 +25,23 @@ def listed(node: NodeParts, troubles: list[Trouble]) -> None:
         message.group = row.group
         if not message.kind and row.kind:
             message.kind = row.kind
-        _name(message, row)
+        message.name = message.name or row.name
         _compare(message, row, troubles)
     for row in rows:
         if not row.used:
             node.missing.append(row)
-            which = f"table {table_name(row.table_number)}" if row.table_number else "no table"
             troubles.append(
-                Trouble("IMP061", f"`{row.name}` is listed, and {which} refers to it, but no table describes it", row.spot,
+                Trouble("IMP061", f"`{row.name}` is listed, and no table describes it", row.spot,
                         "it is listed under `missing:`; check whether its table was read", sure=DOUBTFUL)
             )  # fmt: skip
 
 
 def _row_of(message: ReadMessage, rows: list[Listed]) -> Listed | None:
-    """The list's row for a message: by the table it names, else by kind and id, else by name."""
+    """The list's row for a message: by kind and id, else by name."""
     free = [row for row in rows if not row.used and (not row.kind or not message.kind or row.kind == message.kind)]
-    number = message.table.number
-    named = [row for row in free if number is not None and row.table_number == number]
     same = [row for row in free if (row.id, row.set_id, row.get_id) == message.ids]
-    titled = [row for row in free if squeezed(row.name) in {squeezed(name) for name in message.names}]
-    for found in ([r for r in named if r in same or r in titled], same, titled, named):
-        if found:
-            return found[0]
-    return None
-
-
-def _name(message: ReadMessage, row: Listed) -> None:
-    """The name that caption and list agree on; the caption's where they do not."""
-    alike = [name for name in message.names if plain(name) == plain(row.name)]
-    message.name = next(iter(alike + message.names), row.name)
+    titled = [row for row in free if squeezed(row.name) == squeezed(message.name)]
+    return next(iter([*same, *titled]), None)
 
 
 def _compare(message: ReadMessage, row: Listed, troubles: list[Trouble]) -> None:
@@ -99,7 +84,7 @@ def _meant(
     """The enumeration that a field points to; None, and a finding, if there is none."""
     said = field.described
     where = f"{message.table.title}, field `{field.name}`"
-    of_number = [enum for enum in everything if enum.table.number == said.enum_table is not None]
+    of_number = [enum for enum in everything if enum.table.label == said.enum_table is not None]
     of_number.sort(key=lambda enum: enum.table.run != message.table.run)  # where numbers start anew, several have it
     numbered = next(iter(of_number), None)
     titled = _by_title(said.enum_title, everything, node)
@@ -108,7 +93,7 @@ def _meant(
         chosen = titled
         troubles.append(
             Trouble("IMP051", f"{where}: it points to table {table_name(said.enum_table)} by number and to "
-                    f"table {table_name(titled.table.number)} (`{titled.name}`) by title", field.spot,
+                    f"table {table_name(titled.table.label)} (`{titled.name}`) by title", field.spot,
                     "the title was followed")
         )  # fmt: skip
     if chosen is None:
@@ -147,41 +132,10 @@ def _within_reach(node: NodeParts, nodes: list[NodeParts], enum: ReadEnum) -> st
 def complete(node: NodeParts, head: dict[str, Any], troubles: list[Trouble]) -> None:
     """Report what messages lack and bits without a field; drop messages that an ICD cannot represent.
 
-    ``head`` is the section `node` of the ICD: the only source of the bit order, the byte order and the size of ids.
+    ``head`` is the section `node` of the ICD, which has the size of ids.
     """
     most = (1 << head.get("id_bits", DEFAULT_BITS)) - 1
-    for message in node.messages:
-        if message.register_bits is not None and not message.lacks:
-            _order_bits(message, message.register_bits, head, troubles)
     node.messages = [message for message in node.messages if _is_held(message, most, troubles)]
-
-
-def _order_bits(message: ReadMessage, bits: int, head: dict[str, Any], troubles: list[Trouble]) -> None:
-    """Turn positions that a register counts from its lowest bit into those of the node's bit order.
-
-    ``bits`` is the width of each register; 0 if the whole message is one register.
-    """
-    end = max((field.end for field in message.fields), default=0)
-    bits = bits or 8 * max(message.length or 0, (end + 7) // 8)
-    if head.get("bit_order") == "msb0":
-        message.fields = [element for field in message.fields for element in _elements(field)]  # their order turns, too
-        for field in message.fields:
-            first = field.at // bits * bits
-            field.at = first + bits - (field.end - first)
-    elif head.get("byte_order") == "big" and bits > 8:
-        troubles.append(Trouble("IMP037", f"{message.table.title}: its bits are counted down over {bits // 8} bytes, the "
-                                "highest byte first", message.table.spot, "set `bit_order: msb0` in the profile; it was left out",
-                                "error"))  # fmt: skip
-        message.lacks = "-"
-    message.fields.sort(key=lambda field: field.at)
-
-
-def _elements(field: ReadField) -> list[ReadField]:
-    """Return a field for each element of an array; the field itself if it is no array."""
-    if not field.count:
-        return [field]
-    places = ((f"{field.name} {index + 1}", field.at + index * field.bits) for index in range(field.count))
-    return [replace(field, name=name, at=at, count=0) for name, at in places]
 
 
 def _is_held(message: ReadMessage, most: int, troubles: list[Trouble]) -> bool:
@@ -190,50 +144,27 @@ def _is_held(message: ReadMessage, most: int, troubles: list[Trouble]) -> bool:
     def say(code: str, what: str, help: str, severity: str = "warning", sure: str = LIKELY) -> None:
         troubles.append(Trouble(code, f"{message.table.title}: {what}", message.table.spot, help, severity, sure))
 
-    if not message.lacks and (large := [i for i in message.ids if i is not None and i > most]):
-        wider = "in the profile, `node: {id_bits: 16}` makes room"
-        message.lacks = f"its id {large[0]} (0x{large[0]:X}) is above {most}: {wider}"
-    if message.lacks:
-        if message.lacks != "-":
-            say("IMP037", message.lacks, "it was left out", "error")
+    if large := [i for i in message.ids if i is not None and i > most]:
+        what = f"its id {large[0]} (0x{large[0]:X}) is above {most}"
+        say("IMP037", what, "in the profile, `node: {id_bits: 16}` makes room; it was left out", "error")
         return False
-    if message.is_by_rule and (lacking := _lacking(message)):
+    if lacking := _lacking(message):
         say("IMP031", f"its rule gives no {' and no '.join(lacking)}; the message was left out",
             "state it under `message:`, or take it with a pattern", "error")  # fmt: skip
         return False
-    by_kind = "`defaults: {kind: telemetry}`"
-    if not message.kind:
-        what = "nothing that says whether it is a telecommand or telemetry; it was left out"
-        say("IMP031", what, f"in the profile: {by_kind}, or words under `kinds:`", "error")
-        return False
-    if all(value is None for value in message.ids):
-        say(
-            "IMP031",
-            "no id; it was left out",
-            f'in the profile: `patterns: ["{{name}} ({{id}})"]`, or {by_kind}',
-            "error",
-        )
-        return False
-    if not message.name:
-        number = message.table.number
-        message.name = f"Table {table_name(number)}" if number else f"Message {message.id}"
-        say("IMP025", "the message has no name", "name it in the ICD", "error")
     needed = max(((end + 7) // 8 for _, end in message.extents()), default=0)
     if message.length is None:
         message.length = needed
-        severity = "note" if message.is_by_rule else "error" if messages.gaps(message) else "warning"
         what = f"it does not say its length; the fields need {needed} byte{'s' if needed != 1 else ''}"
-        say("IMP032", what, "look at the page", severity)
+        say("IMP032", what, "look at the page", "note")
     elif needed > message.length:
         what = f"its fields need {needed} bytes, its length is {message.length}"
         say("IMP033", what, "look at the page; `icdgen check` names the fields")
     if message.length and not message.fields:
-        severity = "error" if message.is_by_rule else "warning"
-        say("IMP034", f"it has {message.length} bytes and no field", "look at the page", severity, DOUBTFUL)
-    elif free := messages.gaps(message):
+        say("IMP034", f"it has {message.length} bytes and no field", "look at the page", "error", DOUBTFUL)
+    elif free := _gaps(message):
         bits = ", ".join(f"{a}" if a == b else f"{a} to {b}" for a, b in free)
-        severity = "warning" if message.is_by_rule else "note"
-        say("IMP035", f"no field covers bit {bits}", "such bits are reserved; make sure that no row was lost", severity)
+        say("IMP035", f"no field covers bit {bits}", "such bits are reserved; make sure that no row was lost")
     return True
 
 
@@ -241,3 +172,16 @@ def _lacking(message: ReadMessage) -> list[str]:
     """What a message needs and its rule does not give."""
     given = {"name": message.name, "kind": message.kind, "id": any(one is not None for one in message.ids)}
     return [key for key, value in given.items() if not value]
+
+
+def _gaps(message: ReadMessage) -> list[tuple[int, int]]:
+    """Runs of bits, first and last, that no field covers."""
+    total = 8 * (message.length or 0)
+    free, at = [], 0
+    for start, end in sorted(message.extents()):
+        if start > at:
+            free.append((at, min(start, total) - 1))
+        at = max(at, end)
+    if at < total:
+        free.append((at, total - 1))
+    return [(first, last) for first, last in free if last >= first]

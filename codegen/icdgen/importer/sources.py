@@ -5,11 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from icdgen.importer import reading, source_tables, table_files
-from icdgen.importer.document import Document
+from icdgen.importer.document import Document, SourceTable
 from icdgen.importer.profile import Profile
-from icdgen.importer.reading import c_structs
-from icdgen.importer.source_tables import SourceTable
-from icdgen.importer.understand import byte_lines
+from icdgen.importer.reading import byte_lines, c_structs
 
 
 def read(
@@ -24,8 +22,6 @@ def read(
         tables = table_files.read(path)
         return table_files.document_of(path), tables
     document = reading.read(path, profile, progress, jobs, pages)
-    if profile.has_rules:
-        c_structs.in_document(document)
-    byte_lines.tables(document)
-    document.count_tables()
+    c_structs.in_document(document)
+    byte_lines.make_tables(document)
     return document, source_tables.from_document(document)

@@ -14,8 +14,8 @@ from typing import Any
 from icdgen.diagnostics import Finding, Findings
 from icdgen.icd import schema, source
 from icdgen.icd.located import Map
-from icdgen.importer.document import Box, Cell, Document, SourceRow
-from icdgen.importer.source_tables import SourceTable, name_of
+from icdgen.importer.document import Box, Cell, Document, SourceRow, SourceTable
+from icdgen.importer.source_tables import name_of
 from icdgen.importer.words import table_name, table_number
 
 SUFFIX = ".table.yaml"
@@ -64,7 +64,7 @@ def text_of(table: SourceTable, document: Document, same: list[int]) -> str:
     lines += [f"sheet: {_quoted(table.sheet)}"] if table.sheet else []
     lines += [f"label: {_quoted(table_name(table.label))}"] if table.label is not None else []
     lines += [f"caption: {_quoted(table.caption)}"] if table.caption else []
-    for key, texts in (("headings", table.headings), ("before", table.before)):
+    for key, texts in (("headings", table.headings), ("before", table.before), ("after", table.after)):
         lines += [f"{key}:", *(f"  - {_quoted(text)}" for text in texts)] if texts else []
     if table.boxes:
         lines.append("boxes:  # page, then left, top, right and bottom in points")
@@ -150,6 +150,7 @@ def _table(tree: Map) -> SourceTable:
         label,
         list(tree.get("headings", ())),
         list(tree.get("before", ())),
+        list(tree.get("after", ())),
         boxes,
         tree.get("sheet", ""),
     )
@@ -164,4 +165,4 @@ def _cell_of(value: Any) -> Cell:
 def document_of(folder: Path) -> Document:
     """Return the document that the tables of a folder come from, without its text. Raises `Findings`."""
     first = source.read(min(folder.glob(f"*{SUFFIX}")))
-    return Document(str(first.get("document", folder.name)), title=str(first.get("title", "")), needs_rules=True)
+    return Document(str(first.get("document", folder.name)), title=str(first.get("title", "")))

@@ -8,7 +8,7 @@ import tempfile
 from html import escape
 from pathlib import Path
 
-from tests.importer.manuals.wild import MESSAGES, PROSE, Wild, size, unit
+from tests.importer.manuals.wild import BY_HEADING, MESSAGES, PROSE, Wild, rule, size, unit
 
 HEADS = ["Byte Offset", "Bytes", "Parameter", "Type", "Unit", "Scale"]
 
@@ -97,4 +97,8 @@ def _row(cells: list[str]) -> str:
     return f"<table:table-row>{made}</table:table-row>"
 
 
-OFFICE = {"office": Wild(draw, MESSAGES, "")}
+OFFICE = {
+    "office": Wild(draw, MESSAGES, rule(
+        "Byte Offset | Bytes | Parameter", BY_HEADING,
+        "Byte Offset: byte, Bytes: bytes, Parameter: name, Type: type, Unit: unit, Scale: scale")),
+}  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
-from tests.importer.manuals.wild import MESSAGES, PROSE, REGISTERS, Wild, unit, web
+from tests.importer.manuals.wild import MESSAGES, PROSE, REGISTERS, Wild, registers_rule, rule, unit, web
 
 
 def typst(path: Path, text: str) -> None:
@@ -85,7 +85,13 @@ def sheet(path: Path) -> None:
 
 
 TYPESET = {
-    "article": Wild(article, MESSAGES, ""),
-    "two columns": Wild(two_columns, MESSAGES, ""),
-    "sheet": Wild(sheet, REGISTERS, "patterns: ['Register {name} (address {hex}, {kind})']\n"),
-}
+    "article": Wild(article, MESSAGES, rule(
+        "Offset (bytes) | Size (bytes)", "heading: '^[\\d.]+ {message}$', before: '^Message ID: {id}[.]'",
+        "Offset (bytes): byte, Size (bytes): bytes, Signal: name, Type: type, Unit: unit, Scale: scale")),
+    "two columns": Wild(two_columns, MESSAGES, rule(
+        "Byte Offset | Bytes | Field", r"caption: '^{message} \({id}\)$'",
+        "Byte Offset: byte, Bytes: bytes, Field: name, Type: type, Unit: unit, Factor: scale")),
+    "sheet": Wild(sheet, REGISTERS, registers_rule(
+        "Bits | Field | Reset", r"length: 1, heading: '^Register {message} \(address {id}, {kind:R/W|read-only}\)$'",
+        r"Bits: '^{bit}(?::{last_bit})?$', Field: name, Reset: default, Description: text", "width: unit")),
+}  # fmt: skip

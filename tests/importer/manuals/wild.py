@@ -52,7 +52,7 @@ PROSE = "The host asks for it by its number; the module answers within ten milli
 
 @dataclass(frozen=True)
 class Wild:
-    """A layout: how it is drawn, what it prints, and what a profile must say of it."""
+    """A layout: how it is drawn, what it prints, and the rules that read it."""
 
     draw: Callable[[Path], None]
     messages: list[dict]
@@ -199,14 +199,46 @@ def two_heads(path: Path) -> None:
     platypus(path, A4, story)
 
 
+NODE = "profile: 1\nnode: {byte_order: little, bit_order: lsb0}\n"
+WORDS = "types: {unsigned: {type: uint}, signed: {type: int}}\n"
+
+
+def rule(head: str, message: str, columns: str, *more: str) -> str:
+    """A profile with one rule for tables of messages."""
+    lines = [f"tables: {{head: {head}}}", f"message: {{{message}, kind: telemetry}}", f"columns: {{{columns}}}", *more]
+    return f"{NODE}rules:\n  - " + "\n    ".join(lines) + "\n"
+
+
+BY_HEADING = r"heading: '^(?:[\d.]+ )?{message} (?:\(|- ){id}\)?$'"
+FACTOR = r"['^{scale}(?: {unit:\S+})?$', '^{unit:[^0-9]+}$']"
+
+
+def registers_rule(head: str, message: str, columns: str, *more: str) -> str:
+    """A profile with one rule for registers whose access gives their kind."""
+    kinds = "map: {kind: {R: telemetry, read-only: telemetry, R/W: configuration}}"
+    flags = "set: [{where: {name: '^(EN|BOOT|READY|OVR)$'}, type: bool}]"
+    lines = [f"tables: {{head: {head}}}", "what: registers", f"message: {{{message}}}", f"columns: {{{columns}}}", kinds,
+             "each: {type: uint}", flags, *more]  # fmt: skip
+    return f"{NODE}reserved: ['-']\nrules:\n  - " + "\n    ".join(lines) + "\n"
+
+
 WILD = {
-    "sections": Wild(sections, MESSAGES, ""),
-    "prose": Wild(prose, MESSAGES, "patterns: ['Message ID: {id}']\ndefaults: {kind: telemetry}\n"),
-    "registers": Wild(registers, REGISTERS, ""),
-    "bit tables": Wild(bit_tables, REGISTERS, 'patterns: ["{name} ({hex}), {kind}"]\n'),
-    "ranges": Wild(ranges, MESSAGES, ""),
-    "two heads": Wild(two_heads, MESSAGES, "defaults: {kind: telemetry}\n"),
-}
+    "sections": Wild(sections, MESSAGES, rule(
+        "Offset | Size | Field", BY_HEADING, "Offset: byte, Size: bytes, Field: name, Type: type, Unit: unit, Scale: scale")),
+    "prose": Wild(prose, MESSAGES, rule(
+        "Field | Type | Unit", "heading: '^{message}$', before: '^Message ID: {id}'", f"Field: name, Type: type, Unit: {FACTOR}")),
+    "registers": Wild(registers, REGISTERS, registers_rule(
+        "Addr | Register | R/W | 7", "length: 1", 'Addr: id, Register: message, R/W: kind, "*": name', "melt: '^{bit}$'")),
+    "bit tables": Wild(bit_tables, REGISTERS, registers_rule(
+        "Bits | Name | Description", r"length: 1, heading: '^{message} \({id}\), {kind:R/W|read-only}$'",
+        r"Bits: '^{bit}(?::{last_bit})?$', Name: name, Description: text", "width: unit")),
+    "ranges": Wild(ranges, MESSAGES, rule(
+        "Byte | Parameter | Format", "before: '^{message}: {id}$'",
+        f"Byte: '^{{byte}}(?:-{{last_byte}})?$', Parameter: name, Format: type, Unit: {FACTOR}", "width: unit") + WORDS),
+    "two heads": Wild(two_heads, MESSAGES, rule(
+        "Position | Length (bits)", BY_HEADING,
+        f"Position Byte: byte, Position Bit: bit, Length (bits): bits, Name: name, Type: type, Unit: {FACTOR}", "head_rows: 2")),
+}  # fmt: skip
 
 
 # Held back until the importer was done with the others.
@@ -294,11 +326,22 @@ def byte_lines(path: Path) -> None:
     pdf.output(str(path))
 
 
-WILD |= {"beside": Wild(beside, MESSAGES, ""), "byte lines": Wild(byte_lines, FRAMES, "")}
+WILD |= {
+    "beside": Wild(beside, MESSAGES, rule(
+        "Offset | Size | Field", f"before: {BY_HEADING.partition(' ')[2]}",
+        f"Offset: byte, Size: bytes, Field: name, Type: type, Unit: {FACTOR}")),
+    "byte lines": Wild(byte_lines, FRAMES, rule(
+        "Byte | Name", BY_HEADING, "Byte: '^{byte}(?:-{last_byte})?$', Name: name", "width: unit", "each: {type: uint}")),
+}  # fmt: skip
 
 
 UNSEEN = {
-    "bare": Wild(bare, MESSAGES, ""),
-    "frames": Wild(frames, FRAMES, ""),
-    "lined": Wild(lined, MESSAGES, ""),
-}
+    "bare": Wild(bare, MESSAGES, rule(
+        "Start Byte | Bytes | Signal", BY_HEADING,
+        f"Start Byte: byte, Bytes: bytes, Signal: name, Data Type: type, Scaling: {FACTOR}")),
+    "frames": Wild(frames, FRAMES, rule(
+        "Byte0 | Byte1", BY_HEADING, '"*": name', "melt: '^Byte{byte}$'", "each: {type: uint}")),
+    "lined": Wild(lined, MESSAGES, rule(
+        "Byte Offset | Size | Parameter", "heading: '^[\\d.]+ {message}$', before: '^Telemetry ID {id}[.]'",
+        f"Byte Offset: byte, Size: '^{{bytes}} bytes?$', Parameter: name, Encoding: type, Conversion: {FACTOR}") + WORDS),
+}  # fmt: skip

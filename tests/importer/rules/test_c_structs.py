@@ -145,9 +145,9 @@ def test_the_layout_is_that_of_gcc(tmp_path):
     code.append("int main(void) {")
     expected = []
     for index, struct in enumerate(structs):
-        (table,) = [block for block in c_structs.read_structs(struct)[0] if hasattr(block, "source_rows")]
-        rows = [[cell.text for cell in row.cells] for row in table.source_rows[1:]]
-        (size,) = [block.text for block in c_structs.read_structs(struct)[0] if not hasattr(block, "source_rows")]
+        (table,) = [block for block in c_structs.read_structs(struct)[0] if hasattr(block, "rows")]
+        rows = [[cell.text for cell in row.cells] for row in table.rows[1:]]
+        (size,) = [block.text for block in c_structs.read_structs(struct)[0] if not hasattr(block, "rows")]
         code.append(f"{{ static union {{ struct made{index} s; uint8_t b[sizeof(struct made{index})]; }} u;")
         code.append('printf("sizeof %zu\\n", sizeof u.s);')
         expected.append(size)

@@ -10,7 +10,7 @@ from icdgen.diagnostics import Findings
 from icdgen.importer import table_files
 from tests.importer.rules.test_mistakes import RULES, TABLE
 from tests.importer.rules.test_rules import NODE
-from tests.importer.test_command import WORDS, icdgen
+from tests.importer.test_command import icdgen
 
 
 @pytest.fixture
@@ -81,8 +81,6 @@ def test_explain_says_which_rule_read_a_table_and_why_others_did_not(folder):
     assert result.returncode == 2 and "tables are numbered from 1 to 1" in result.stderr
     result = icdgen("import", "state.txt", "--explain", "1", cwd=folder)
     assert result.returncode == 0 and "no rule applies: the table is not imported" in result.stdout
-    result = icdgen("import", "state.txt", "--profile", WORDS, "--explain", "1", cwd=folder)
-    assert result.returncode == 2 and "--explain needs a profile with rules" in result.stderr
 
 
 def test_explore_gives_a_rule_for_each_kind_of_table(folder):

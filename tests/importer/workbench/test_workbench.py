@@ -229,4 +229,4 @@ def test_the_command_serves_the_page_until_it_is_interrupted(tmp_path):
     (tmp_path / "words.yaml").write_text("profile: 1\ncaptions: [Listing]\n", encoding="utf-8")
     command[-2] = "words.yaml"
     refused = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
-    assert refused.returncode == 2 and "the profile words.yaml has no rules" in refused.stderr
+    assert refused.returncode == 1 and "the profile has no `rules:`" in refused.stderr

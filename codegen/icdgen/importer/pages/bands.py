@@ -7,8 +7,8 @@ import math
 import re
 from dataclasses import dataclass
 
-from icdgen.importer.document import Header, PrintedRow, Row
 from icdgen.importer.pages.columns import index_of
+from icdgen.importer.pages.draft import Header, PrintedRow
 from icdgen.importer.pages.extract import Word
 from icdgen.importer.pages.lines import Line, lines, words_of
 from icdgen.importer.words import join, unbroken
@@ -41,10 +41,6 @@ class Band:
     def texts(self, known: frozenset[str]) -> list[str]:
         """The texts of its cells."""
         return [_cell(part, edge, known) for part, edge in zip(self.parts(), self.edges[1:], strict=True)]
-
-    def row(self, known: frozenset[str]) -> Row:
-        """The row that the band is."""
-        return Row(self.texts(known), self.page, printed=self.printed(known))
 
     def printed(self, known: frozenset[str]) -> PrintedRow:
         """The row as the page shows it."""
@@ -95,7 +91,7 @@ def aligned(band: Band, edges: list[float]) -> Band:
     return Band(band.page, edges, moved)
 
 
-def rows(band: Band, header: Header, known: frozenset[str], torn: bool = False) -> list[Row]:
+def rows(band: Band, header: Header, known: frozenset[str], torn: bool = False) -> list[PrintedRow]:
     """The rows of a band whose cells are those of ``header``. ``torn``: it may begin with the rest of a row."""
     found = lines(band.words)
     key = _key_column(header) if header.kind in KEYS else _column_of_most_keys(found, band.edges)
@@ -103,10 +99,10 @@ def rows(band: Band, header: Header, known: frozenset[str], torn: bool = False) 
         return _around(band, found, groups, header, known)
     keyed = [i for i, line in enumerate(found) if is_key(_text_in(line, band.edges, key))]
     if len(keyed) <= (0 if torn else 1):
-        return [band.row(known)] if band.words else []
+        return [band.printed(known)] if band.words else []
     made = []
     for first, last in _stretches(found, keyed, _leading(band), torn):
-        made.append(band.of(found[first:last]).row(known))
+        made.append(band.of(found[first:last]).printed(known))
     return made
 
 
@@ -137,17 +133,24 @@ def _is_group(line: Line, edges: list[float], key: int) -> bool:
     return bool(first) and index_of(line.x0, edges) <= key and not any(is_key(word) for word in first)
 
 
-def _around(band: Band, found: list[Line], groups: list[int], header: Header, known: frozenset[str]) -> list[Row]:
+def _around(
+    band: Band, found: list[Line], groups: list[int], header: Header, known: frozenset[str]
+) -> list[PrintedRow]:
     """The rows of a band in which group headings stand."""
-    made: list[Row] = []
+    made: list[PrintedRow] = []
     start = 0
     for index in [*groups, len(found)]:
         if start < index:
             made += rows(band.of(found[start:index]), header, known)
         if index < len(found):
-            made.append(Row.of(found[index].text, len(band.edges) - 1, band.page))
+            made.append(group_row(found[index].text, len(band.edges) - 1, band.page))
         start = index + 1
     return made
+
+
+def group_row(text: str, width: int, page: int) -> PrintedRow:
+    """A heading over rows below: a row of so many cells of which only the first one has a text."""
+    return PrintedRow([text, *[""] * (width - 1)], page=page)
 
 
 def _text_in(line: Line, edges: list[float], column: int) -> str:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from icdgen.importer import headings
-from icdgen.importer.document import Row, Table
+from icdgen.importer.pages import headings
+from icdgen.importer.pages.draft import Draft
 from icdgen.importer.pages.flow import Mark
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import squeezed
 
-Items = list[Table | Mark]
+Items = list[Draft | Mark]
 
 
 def parted(items: Items, profile: Profile) -> Items:
@@ -27,7 +27,7 @@ def parted(items: Items, profile: Profile) -> Items:
         if not tables:
             tables = [item]
             while (
-                index < len(items) and isinstance(following := items[index], Table) and _beside(tables[-1], following)
+                index < len(items) and isinstance(following := items[index], Draft) and _beside(tables[-1], following)
             ):
                 tables.append(following)
                 index += 1
@@ -46,7 +46,7 @@ def parted(items: Items, profile: Profile) -> Items:
     return made
 
 
-def _beside(one: Table, other: Table) -> bool:
+def _beside(one: Draft, other: Draft) -> bool:
     """Whether two tables stand side by side on a page, and on none besides."""
     if len(one.boxes) != 1 or len(other.boxes) != 1:
         return False
@@ -55,11 +55,11 @@ def _beside(one: Table, other: Table) -> bool:
     return a.page == b.page and apart and min(a.bottom, b.bottom) > max(a.top, b.top)
 
 
-def _parts(table: Table, profile: Profile) -> list[Table]:
+def _parts(table: Draft, profile: Profile) -> list[Draft]:
     """The tables side by side; none where the headings do not repeat."""
     if table.header is not None or len(table.head) < 2:
         return []
-    titles = [squeezed(cell) for cell in table.head[0].cells]
+    titles = [squeezed(text) for text in table.head[0].lines]
     starts = [index for index, title in enumerate(titles) if title and title == titles[0]]
     if len(starts) < 2:
         return []
@@ -69,20 +69,13 @@ def _parts(table: Table, profile: Profile) -> list[Table]:
         return []
     made = []
     for start in starts:
-        header = headings.match(table.head[0].cells[start : start + width], profile, loose=True)
+        header = headings.match(table.head[0].lines[start : start + width], profile, loose=True)
         if header is None:
             return []
-        if table.head[0].printed:
-            header.printed = [table.head[0].printed.slice(start, width)]
-        rows = [_cut(row, start, width) for row in table.head[1:]]
-        rows = [row for row in rows if any(row.cells)]
-        made.append(Table(header=header, rows=rows, boxes=list(table.boxes), page=table.page))
+        header.printed = [table.head[0].slice(start, width)]
+        rows = [row.slice(start, width) for row in table.head[1:]]
+        made.append(Draft(list(table.boxes), header, rows=[row for row in rows if any(row.texts)]))
     return made
-
-
-def _cut(row: Row, start: int, width: int) -> Row:
-    printed = row.printed.slice(start, width) if row.printed else None
-    return Row(row.cells[start : start + width], row.page, edges=row.edges[start : start + width + 1], printed=printed)
 
 
 def _lines(mark: Mark, count: int, profile: Profile) -> list[Mark]:

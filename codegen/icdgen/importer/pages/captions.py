@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from icdgen.importer.document import Block, Heading, Table, Text
+from icdgen.importer.document import Block, Heading, SourceTable, Text
 from icdgen.importer.pages import beside, guessed
+from icdgen.importer.pages.draft import Draft
 from icdgen.importer.pages.flow import Mark
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import CONTINUED, table_number
 
 FAR = 4  # lines of text between a caption and its table; more, and it is none
-Items = list[Table | Mark]
+Items = list[Draft | Mark]
 
 
 def attached(items: Items, profile: Profile, is_part: bool = False) -> list[Block]:
@@ -27,11 +28,12 @@ def attached(items: Items, profile: Profile, is_part: bool = False) -> list[Bloc
     used = set(owner.values())
     blocks: list[Block] = []
     for index, item in enumerate(items):
-        if isinstance(item, Table):
+        if isinstance(item, Draft):
             caption = items[owner[index]] if index in owner else None
+            table = item.table()
             if isinstance(caption, Mark):
-                _name(item, caption, profile)
-            blocks.append(item)
+                _name(table, caption, profile)
+            blocks.append(table)
         elif index not in used:
             page, is_heading = item.box.page, item.kind == "heading" or item.strong
             blocks.append(
@@ -46,7 +48,7 @@ def _table_from(items: Items, index: int, step: int) -> int | None:
     position = index + step
     while 0 <= position < len(items):
         item = items[position]
-        if isinstance(item, Table):
+        if isinstance(item, Draft):
             return position
         if item.kind != "text" or between >= FAR:
             return None
@@ -74,16 +76,15 @@ def _distance(items: Items, caption: int, index: int | None, step: int) -> float
     if index is None:
         return 1000.0
     mark, table = items[caption], items[index]
-    assert isinstance(mark, Mark) and isinstance(table, Table)
+    assert isinstance(mark, Mark) and isinstance(table, Draft)
     box = table.boxes[0 if step > 0 else -1]
     if box.page != mark.box.page:
         return 500.0
     return max(0.0, box.top - mark.box.bottom if step > 0 else mark.box.top - box.bottom)
 
 
-def _name(table: Table, mark: Mark, profile: Profile) -> None:
+def _name(table: SourceTable, mark: Mark, profile: Profile) -> None:
     match = profile.caption.match(mark.text)
     assert match is not None
-    table.number = table_number(match["number"])
+    table.label = table_number(match["number"])
     table.caption = CONTINUED.sub("", match["title"]).strip()
-    table.page = min(mark.box.page, table.page or mark.box.page)

@@ -6,8 +6,8 @@ import itertools
 from bisect import bisect_left, bisect_right
 from typing import NamedTuple
 
-from icdgen.importer import headings
-from icdgen.importer.document import Header
+from icdgen.importer.pages import headings
+from icdgen.importer.pages.draft import Header
 from icdgen.importer.pages.extract import Word
 from icdgen.importer.pages.lines import Line, runs, words_of
 from icdgen.importer.profile import Profile

@@ -8,9 +8,9 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from icdgen.importer import headings, labels
+from icdgen.importer import labels
 from icdgen.importer.document import Box
-from icdgen.importer.pages import columns, furniture, gutter
+from icdgen.importer.pages import columns, furniture, gutter, headings
 from icdgen.importer.pages.bands import Band, is_key
 from icdgen.importer.pages.columns import Columns
 from icdgen.importer.pages.extract import Page

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 
-from icdgen.importer.document import Row, Table
+from icdgen.importer.pages.draft import Draft, PrintedRow
 from icdgen.importer.pages.flow import Mark
 from icdgen.importer.pages.lines import box_around
 
@@ -13,9 +13,9 @@ FEWEST_LINES = 3
 ALIGNED = 4.0  # points
 
 
-def made(items: list[Table | Mark]) -> list[Table | Mark]:
+def made(items: list[Draft | Mark]) -> list[Draft | Mark]:
     """The items, with such lines made tables: they must not pass unseen."""
-    out: list[Table | Mark] = []
+    out: list[Draft | Mark] = []
     for is_mark, group in itertools.groupby(items, lambda item: isinstance(item, Mark)):
         run = list(group)
         marks = [item for item in run if isinstance(item, Mark)]
@@ -27,7 +27,7 @@ def made(items: list[Table | Mark]) -> list[Table | Mark]:
     return out
 
 
-def _tables(marks: list[Mark]) -> list[tuple[int, int, Table]]:
+def _tables(marks: list[Mark]) -> list[tuple[int, int, Draft]]:
     """First and last index, and the table, of each run of text lines that looks like one."""
     found = []
     start = 0
@@ -61,14 +61,14 @@ def _end(marks: list[Mark], start: int) -> int:
     return index
 
 
-def _table(marks: list[Mark]) -> Table:
+def _table(marks: list[Mark]) -> Draft:
     box = box_around(marks[0].box.page, [mark.box for mark in marks])
     columns = [x for x, _ in marks[0].cells]
-    made = Table(page=box.page, boxes=[box])
+    made = Draft([box])
     for mark in marks:
         cells = [""] * len(columns)
         for x, text in mark.cells:
             nearest = min(range(len(columns)), key=lambda i: abs(columns[i] - x))
             cells[nearest] = f"{cells[nearest]} {text}".strip()
-        made.head.append(Row(cells, box.page))
+        made.head.append(PrintedRow(cells, page=box.page))
     return made

@@ -5,28 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from itertools import pairwise
 
-from icdgen.importer import headings, labels
-from icdgen.importer.document import Block, Header, PrintedRow, Row, Table
-from icdgen.importer.pages import bands, captions, columns
+from icdgen.importer import labels
+from icdgen.importer.document import Block
+from icdgen.importer.pages import bands, captions, columns, headings
 from icdgen.importer.pages.bands import Band
+from icdgen.importer.pages.draft import Draft, Header, PrintedRow
 from icdgen.importer.pages.flow import Item, Mark, Piece
 from icdgen.importer.pages.lines import Line, lines, words_of
 from icdgen.importer.pages.rules import row_marks
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import CONTINUED, squeezed
-
-
-@dataclass
-class Draft:
-    """A table in the making."""
-
-    table: Table
-    edges: list[float] | None = None
-    loose: list[Piece] = field(default_factory=list)  # pieces without vertical rules
-
-    @property
-    def last_page(self) -> int:
-        return self.table.boxes[-1].page
 
 
 @dataclass
@@ -37,6 +25,9 @@ class Builder:
     known: frozenset[str]
     is_part: bool = False  # whether only some pages of the document are read
     out: list[Draft | Mark] = field(default_factory=list)
+    loose_pieces: dict[int, list[Piece]] = field(
+        default_factory=dict
+    )  # id of a draft -> its pieces without vertical rules
 
     def run(self, items: list[Item]) -> list[Block]:
         """Headings, text and tables, captions attached."""
@@ -46,24 +37,23 @@ class Builder:
             else:
                 self.out.append(item)
         for one in self.out:
-            if isinstance(one, Draft) and one.loose:
-                self.cut(one)
-        made = [one.table if isinstance(one, Draft) else one for one in self.out]
-        return captions.attached(made, self.profile, self.is_part)
+            if isinstance(one, Draft) and id(one) in self.loose_pieces:
+                self.cut(one, self.loose_pieces[id(one)])
+        return captions.attached(self.out, self.profile, self.is_part)
 
     def piece(self, piece: Piece) -> None:
         draft = self.continued(piece)
         if draft is None:
             draft = self.begin(piece)
         else:
-            draft.table.boxes.append(piece.box)
+            draft.boxes.append(piece.box)
         if piece.ruled:
             self.ruled(draft, piece)
         else:
             self.loose(draft, piece)
 
     def begin(self, piece: Piece) -> Draft:
-        draft = Draft(Table(page=piece.box.page, boxes=[piece.box]))
+        draft = Draft([piece.box])
         self.out.append(draft)
         return draft
 
@@ -91,7 +81,7 @@ class Builder:
             return None
         draft = item
         follows = piece.box.page == draft.last_page + 1
-        below = piece.box.page == draft.last_page and 0 <= piece.box.top - draft.table.boxes[-1].bottom < 30
+        below = piece.box.page == draft.last_page and 0 <= piece.box.top - draft.boxes[-1].bottom < 30
         if between > 3 or not (follows or below):
             return None
         if self.first_is_id(piece):
@@ -99,13 +89,13 @@ class Builder:
         if number is None and not self.fits(draft, piece, follows):
             return None
         if number is None and between == 1 and last is not None and self.is_group(draft, last):
-            assert draft.table.header is not None
-            draft.table.rows.append(Row.of(last.text, len(draft.table.header.roles), last.box.page))
+            assert draft.header is not None
+            draft.rows.append(bands.group_row(last.text, len(draft.header.roles), last.box.page))
             self.out.remove(last)
-        if torn and (draft.table.header is not None or not draft.table.head):
+        if torn and (draft.header is not None or not draft.head):
             return None
         for mark in torn:
-            draft.table.head.append(Row([mark.text], mark.box.page))
+            draft.head.append(PrintedRow([mark.text], page=mark.box.page))
             self.out.remove(mark)
         if number is not None:  # a repeated caption
             while self.out[-1] is not draft:
@@ -114,9 +104,9 @@ class Builder:
 
     def is_group(self, draft: Draft, mark: Mark) -> bool:
         """Whether a line below a list is its last row, the heading of the group with which the next page begins."""
-        if draft.table.header is None or draft.table.header.kind != "list":
+        if draft.header is None or draft.header.kind != "list":
             return False
-        box = draft.table.boxes[-1]
+        box = draft.boxes[-1]
         touches = mark.box.page == box.page and mark.box.top - box.bottom < mark.size and mark.box.x0 - box.x0 < 8
         return mark.strong or (touches and len(mark.cells) == 1)
 
@@ -139,19 +129,19 @@ class Builder:
         return any(labels.begins(text, self.profile) for text in texts)
 
     def fits(self, draft: Draft, piece: Piece, follows: bool) -> bool:
-        header = draft.table.header
+        header = draft.header
         if not piece.ruled:
             if piece.columns is None:
                 return True
-            return (header is None and bool(draft.table.head)) or (
+            return (header is None and bool(draft.head)) or (
                 header is not None and follows and headings.repeats(piece.columns.header.titles, header, self.profile)
             )
         own = self.header_of(piece)
         if own is not None:
             if header is None:
-                return own.kind == "fields" and bool(draft.table.head)
+                return own.kind == "fields" and bool(draft.head)
             return follows and own.kind == header.kind and own.roles == header.roles
-        last, box = draft.table.boxes[-1], piece.box
+        last, box = draft.boxes[-1], piece.box
         if header is None:
             return follows and abs(box.x0 - last.x0) < 8 and abs(box.x1 - last.x1) < 8
         return abs(box.width - last.width) < 8
@@ -176,28 +166,28 @@ class Builder:
             texts = band.texts(self.known)
             if self.is_new(draft, texts):
                 draft = self.begin(piece)
-            if draft.table.header is None:
+            if draft.header is None:
                 if not self.header(draft, band, waiting):
-                    draft.table.head += self.head(band, texts)
-            elif not draft.table.rows and (whole := self.lower_half(draft, texts)):
-                upper = draft.table.header.printed[-1:]
+                    draft.head += self.head(band)
+            elif not draft.rows and (whole := self.lower_half(draft, texts)):
+                upper = draft.header.printed[-1:]
                 for row in upper:
                     row.texts = [f"{a}\n{b}".strip("\n") for a, b in zip(row.texts, texts, strict=True)]
                 whole.printed = upper
-                draft.table.header = whole
-            elif headings.repeats(texts, draft.table.header, self.profile):
+                draft.header = whole
+            elif headings.repeats(texts, draft.header, self.profile):
                 if len(band.edges) == len(draft.edges or ()):
                     draft.edges = band.edges
-            elif fresh and len(draft.table.boxes) > 1 and (rest := self.below_headings(draft, band)) is not None:
+            elif fresh and len(draft.boxes) > 1 and (rest := self.below_headings(draft, band)) is not None:
                 if rest.words:
                     waiting.insert(0, rest)
             else:
-                self.body(draft, band, torn=fresh and len(draft.table.boxes) > 1)
+                self.body(draft, band, torn=fresh and len(draft.boxes) > 1)
                 fresh = False
 
     def below_headings(self, draft: Draft, band: Band) -> Band | None:
         """What follows the headings that a page repeats in one band with its rows; None where it repeats none."""
-        header = draft.table.header
+        header = draft.header
         assert header is not None
         titles = [squeezed(title) for title in header.titles]
         found = lines(band.words)
@@ -208,7 +198,7 @@ class Builder:
 
     def lower_half(self, draft: Draft, texts: list[str]) -> Header | None:
         """The headings as a whole where a page break stands between their two lines."""
-        header = draft.table.header
+        header = draft.header
         assert header is not None
         if len(texts) != len(header.titles):
             return None
@@ -217,7 +207,7 @@ class Builder:
 
     def is_new(self, draft: Draft, texts: list[str]) -> bool:
         """Whether a band is the first of another message within the same rules."""
-        has_more = draft.table.header is not None or len(draft.table.head) > 0
+        has_more = draft.header is not None or len(draft.head) > 0
         return has_more and labels.begins(" ".join(t for t in texts if t), self.profile)
 
     def header(self, draft: Draft, band: Band, waiting: list[Band]) -> bool:
@@ -238,23 +228,23 @@ class Builder:
             if split is None:
                 return False
             above, found, rest = split
-            draft.table.head += [Row([line.text], band.page) for line in above]
+            draft.head += [PrintedRow([line.text], page=band.page) for line in above]
             printed = [PrintedRow(found.titles, tuple(band.edges), page=band.page)]
             if rest.words:
                 waiting.insert(0, rest)
         found.printed = printed
-        draft.table.header, draft.edges = found, band.edges
+        draft.header, draft.edges = found, band.edges
         return True
 
-    def head(self, band: Band, texts: list[str]) -> list[Row]:
+    def head(self, band: Band) -> list[PrintedRow]:
         """A band above the headings: one row, or where that labels more, one for each line."""
-        whole = Row(texts, band.page, edges=tuple(band.edges), printed=band.printed(self.known))
-        single = [Row([line.text], band.page) for line in lines(band.words)]
-        return single if len(single) > 1 and self.labelled(single) > self.labelled([whole]) else [whole]
+        single = [PrintedRow([line.text], page=band.page) for line in lines(band.words)]
+        whole = [band.printed(self.known)]
+        return single if len(single) > 1 and self.labelled(single) > self.labelled(whole) else whole
 
-    def labelled(self, rows: list[Row]) -> int:
+    def labelled(self, rows: list[PrintedRow]) -> int:
         """How many values have a label that the vocabulary knows."""
-        found = (labels.parse(row.text, self.profile) for row in rows)
+        found = (labels.parse(" ".join(filter(None, row.lines)), self.profile) for row in rows)
         return sum(1 for parts in found for one in parts if one.what and one.value)
 
     def split(self, band: Band) -> tuple[list[Line], Header, Band] | None:
@@ -271,43 +261,42 @@ class Builder:
         return None
 
     def body(self, draft: Draft, band: Band, torn: bool) -> None:
-        assert draft.table.header is not None and draft.edges is not None
-        header = draft.table.header
+        assert draft.header is not None and draft.edges is not None
+        header = draft.header
         if len(band.edges) < len(draft.edges):
             plain = Band(band.page, draft.edges, band.words)
             if bands.has_keys(plain, header):  # rules part the headings only, the rows stand below them all the same
                 band = plain
         rows = bands.rows(bands.aligned(band, draft.edges), header, self.known, torn)
         if len(rows) == 1:  # its cells as they are, not as they were moved below the headings
-            rows[0].printed = band.printed(self.known)
-        draft.table.rows += rows
+            rows = [band.printed(self.known)]
+        draft.rows += rows
 
     # --- without vertical rules ------------------------------------------------------------------------------------
 
     def loose(self, draft: Draft, piece: Piece) -> None:
-        draft.table.head += [Row([text], piece.box.page) for text in piece.head]
-        if piece.columns is not None and draft.table.header is None:
-            draft.table.header = piece.columns.header
-        if draft.table.header is not None:
-            draft.loose.append(piece)
+        draft.head += [PrintedRow([text], page=piece.box.page) for text in piece.head]
+        if piece.columns is not None and draft.header is None:
+            draft.header = piece.columns.header
+        if draft.header is not None:
+            self.loose_pieces.setdefault(id(draft), []).append(piece)
 
-    def cut(self, draft: Draft) -> None:
+    def cut(self, draft: Draft, pieces: list[Piece]) -> None:
         """The rows of pieces without vertical rules, once all lines of the table tell where its columns are."""
-        spans = next((piece.columns.spans for piece in draft.loose if piece.columns is not None), None)
-        header = draft.table.header
+        spans = next((piece.columns.spans for piece in pieces if piece.columns is not None), None)
+        header = draft.header
         if spans is None or header is None:
             return
-        body = [line for piece in draft.loose for line in piece.lines]
-        for piece in draft.loose:
+        body = [line for piece in pieces for line in piece.lines]
+        for piece in pieces:
             own = piece.columns.spans if piece.columns is not None and len(piece.columns.spans) == len(spans) else spans
             edges = columns.boundaries(own, body, *piece.extent)
             for band in _bands(piece, edges):
                 if not headings.repeats(band.texts(self.known), header, self.profile):
                     rows = bands.rows(band, header, self.known)
                     for row in rows:
-                        if row.printed:
-                            row.printed.edges = ()  # columns are found on each page anew: cells go by their number
-                    draft.table.rows += rows
+                        row.edges = ()  # columns are found on each page anew: cells go by their number
+                    draft.rows += rows
 
 
 def _bands(piece: Piece, edges: list[float]) -> list[Band]:

@@ -15,7 +15,7 @@ from typing import Any
 
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.errors import UserError
-from icdgen.importer.document import Block, Cell, Document, Heading, SourceRow, Spot, Table, Text, Trouble
+from icdgen.importer.document import Block, Cell, Document, Heading, SourceRow, SourceTable, Spot, Text, Trouble
 from icdgen.importer.reading.c_text import CText
 from icdgen.importer.reading.utf8 import utf8_text
 
@@ -70,7 +70,7 @@ class Layout:
 def read_header(path: Path) -> Document:
     """Return the document of a header file. Raises `Findings` if it is no C, `UserError` without pycparser."""
     text = utf8_text(path, "save it as UTF-8")
-    document = Document(str(path), needs_rules=True)
+    document = Document(str(path))
     try:
         document.blocks, document.troubles = read_structs(text)
     except Unreadable as error:
@@ -96,14 +96,13 @@ def in_document(document: Document) -> None:
                 except (Unreadable, UserError):
                     tables, troubles = [], []
                 for table in tables:
-                    if isinstance(table, Table):
-                        table.page, table.line = waiting[0].page, waiting[0].line
-                        for row in table.source_rows:
+                    if isinstance(table, SourceTable):
+                        for row in table.rows:
                             row.page, row.line = waiting[0].page, None
                         made.append(table)
                 document.troubles += [t._replace(spot=Spot(waiting[0].page, waiting[0].line)) for t in troubles]
                 waiting = []
-        elif isinstance(block, (Table, Heading)):
+        elif isinstance(block, (SourceTable, Heading)):
             waiting = []
     document.blocks = made
 
@@ -215,7 +214,7 @@ class _Reader:
         above = self.source.above(line)
         self.blocks += [Text(text, line=line) for text in (above, *texts) if text]
         self.blocks.append(
-            Table(caption=caption, line=line, source_rows=[SourceRow(list(map(Cell, row)), line=line) for row in rows])
+            SourceTable(caption=caption, rows=[SourceRow(list(map(Cell, row)), line=line) for row in rows])
         )
 
     # --- layout ----------------------------------------------------------------------------------------------------

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from icdgen.importer.document import Block, Table, Text
+from icdgen.importer.document import Block, SourceTable, Text
 
 
 class Caption(NamedTuple):
@@ -39,18 +39,17 @@ def attach_captions(blocks: Sequence[Block | Caption]) -> list[Block]:
             if index not in used:
                 made.append(Text(block.text, block.page, block.line))
             continue
-        if isinstance(block, Table) and index in owner:
+        if isinstance(block, SourceTable) and index in owner:
             caption = blocks[owner[index]]
             assert isinstance(caption, Caption)
-            if made and isinstance(made[-1], Table) and made[-1].number == caption.number:
-                made[-1].rows += block.rows or block.head
-                made[-1].source_rows += block.source_rows
+            if made and isinstance(made[-1], SourceTable) and made[-1].label == caption.number:
+                made[-1].rows += block.rows
                 continue
-            block.number, block.caption, block.line = caption.number, caption.title, caption.line
+            block.label, block.caption = caption.number, caption.title
         made.append(block)
     return made
 
 
 def _table_beside(blocks: Sequence[Block | Caption], index: int, step: int) -> int | None:
     near = index + step
-    return near if 0 <= near < len(blocks) and isinstance(blocks[near], Table) else None
+    return near if 0 <= near < len(blocks) and isinstance(blocks[near], SourceTable) else None

@@ -10,7 +10,7 @@ from typing import Any
 
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.errors import UserError
-from icdgen.importer.document import Block, Cell, Document, Heading, SourceRow, Table, Text
+from icdgen.importer.document import Block, Cell, Document, Heading, SourceRow, SourceTable, Text
 from icdgen.importer.profile import Profile
 from icdgen.importer.reading.captions import Caption, attach_captions
 from icdgen.importer.reading.utf8 import utf8_text
@@ -46,7 +46,7 @@ def _of_html(data: bytes, name: str, profile: Profile) -> Document:
     except etree.ParserError as error:
         raise Findings([Finding(CODE, f"the page cannot be read: {error}", Place(name), "is it a web page?")]) from None
     title = root.findtext(".//title") or ""
-    document = Document(name, title=plain(title), needs_rules=True)
+    document = Document(name, title=plain(title))
     body = root.find("body")
     document.blocks = attach_captions(list(_html_blocks(body if body is not None else root, profile)))
     return document
@@ -80,14 +80,14 @@ def _is_layout(table: Any) -> bool:
     return table.find(".//table") is not None
 
 
-def _html_table(table: Any) -> Table:
+def _html_table(table: Any) -> SourceTable:
     caption = table.find("caption")
     rows = []
     for row in table.iter("tr"):
         cells = [c for c in row if c.tag in ("td", "th")]
         rows.append(SourceRow([Cell(_cell_text(c), _span(c, "colspan"), _span(c, "rowspan")) for c in cells]))
     text = plain(_text(caption)) if caption is not None else ""
-    return Table(caption=text, source_rows=_within(rows))
+    return SourceTable(caption=text, rows=_within(rows))
 
 
 def _within(rows: list[SourceRow]) -> list[SourceRow]:
@@ -154,11 +154,11 @@ def read_docx(path: Path, profile: Profile) -> Document:
     except (PackageNotFoundError, zipfile.BadZipFile, KeyError, ValueError) as error:
         help = "open it in a word processor and save it as .docx"
         raise Findings([Finding(CODE, f"the document cannot be read: {error}", Place(str(path)), help)]) from None
-    document = Document(str(path), title=word.core_properties.title or "", needs_rules=True)
+    document = Document(str(path), title=word.core_properties.title or "")
     blocks: list[Block | Caption] = []
     for part in word.iter_inner_content():
         if isinstance(part, WordTable):
-            blocks.append(Table(source_rows=_word_rows(part)))
+            blocks.append(SourceTable(rows=_word_rows(part)))
         elif isinstance(part, Paragraph):
             style = part.style.name if part.style is not None and part.style.name else ""
             level = style.removeprefix("Heading ")

@@ -15,7 +15,7 @@ from typing import Any
 
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.errors import UserError
-from icdgen.importer.document import Block, Cell, Document, Heading, SourceRow, Spot, Table, Text, Trouble
+from icdgen.importer.document import Block, Cell, Document, Heading, SourceRow, SourceTable, Spot, Text, Trouble
 from icdgen.importer.reading.utf8 import utf8_text
 
 CODE = "IMP002"
@@ -40,7 +40,7 @@ def read_csv(path: Path) -> Document:
         raise Findings(
             [Finding(CODE, message, Place(name, reader.line_num), "check the quotes in this line")]
         ) from None
-    document = Document(name, needs_rules=True)
+    document = Document(name)
     document.blocks = _blocks(rows, "")
     return document
 
@@ -58,7 +58,7 @@ def read_xlsx(path: Path) -> Document:
     except (InvalidFileException, zipfile.BadZipFile, KeyError, ValueError, OSError) as error:
         help = "open it in a spreadsheet program and save it as .xlsx"
         raise Findings([Finding(CODE, f"the workbook cannot be read: {error}", Place(str(path)), help)]) from None
-    document = Document(str(path), title=str(book.properties.title or ""), needs_rules=True)
+    document = Document(str(path), title=str(book.properties.title or ""))
     for sheet in book.worksheets:
         if sheet.sheet_state != "visible":
             document.troubles.append(
@@ -143,7 +143,7 @@ def _blocks(rows: Cells, sheet: str) -> list[Block]:
             rows = list(table)
             while rows and not rows[-1].shown:
                 rows.pop()
-            made.append(Table(line=rows[0].line, sheet=sheet, source_rows=_without_empty_columns(rows)))
+            made.append(SourceTable(sheet=sheet, rows=_without_empty_columns(rows)))
             table.clear()
 
     for number, cells in rows:

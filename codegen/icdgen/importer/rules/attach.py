@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
+from icdgen.importer.model import Found, ReadMessage
 from icdgen.importer.rules.bit_order import Order, bits_of, run_of
 from icdgen.importer.rules.fields import Draft
 from icdgen.importer.rules.language import decimal, normalised
 from icdgen.importer.rules.notes import Notes
 from icdgen.importer.rules.parts import Part
-from icdgen.importer.understand.model import ReadMessage
-from icdgen.importer.understand.survey import Found
 from icdgen.importer.words import squeezed
 
 _SAID = ("kind", "length")
@@ -118,7 +117,7 @@ def check_index(index: list[Part], found: list[Found], notes: Notes) -> None:
 
 def _complete(message: ReadMessage, entry: Part, id: int | None, name: str, notes: Notes) -> None:
     if not message.name:
-        message.name, message.names = name, [name]
+        message.name = name
     stated = {"kind": entry.given.get("kind"), "length": entry.number("length")}
     if all(one is None for one in message.ids) and id is not None:
         if (message.kind or stated["kind"]) == "configuration":

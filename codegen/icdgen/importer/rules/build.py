@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 
+from icdgen.importer.model import Found, ReadEnum, ReadField, ReadMember, ReadMessage, ReadStruct
 from icdgen.importer.profile import Profile
 from icdgen.importer.rules import attach, lists
 from icdgen.importer.rules.bit_order import Order
@@ -11,8 +12,6 @@ from icdgen.importer.rules.fields import Draft, joined_parts
 from icdgen.importer.rules.language import KINDS, normalised
 from icdgen.importer.rules.notes import Notes
 from icdgen.importer.rules.parts import Part
-from icdgen.importer.understand.model import ReadEnum, ReadField, ReadMember, ReadMessage, ReadStruct
-from icdgen.importer.understand.survey import Found
 from icdgen.importer.words import squeezed
 
 
@@ -42,7 +41,7 @@ class Builder:
             for part in parts
             if part.rule.what == "enumeration" and part.given.get("enumeration")
         ]
-        return sorted(made, key=lambda found: found.table.order or 0), self.notes
+        return sorted(made, key=lambda found: found.table.number), self.notes
 
     def place(self, part: Part) -> None:
         """Put the pieces of split fields together and bring bits into the node's order."""
@@ -73,7 +72,7 @@ class Builder:
 
     def message(self, part: Part) -> ReadMessage:
         """Return the message of a part."""
-        table = part.table.as_table()
+        table = part.table
         kind = part.given.get("kind", "")
         if kind and kind not in KINDS:
             self.notes.error(
@@ -84,8 +83,7 @@ class Builder:
                 part.rule.place,
             )
             kind = ""
-        made = ReadMessage(normalised(part.name), kind, table, names=[normalised(part.name)] if part.name else [])
-        made.is_by_rule = True
+        made = ReadMessage(normalised(part.name), kind, table)
         made.summary = part.given.get("message_text", "")
         made.group = part.given.get("section", "")
         for role in ("id", "set_id", "get_id", "length"):
@@ -104,7 +102,22 @@ class Builder:
             made.set_id = made.get_id = made.id
             made.id = None
         self.fields(made, part)
+        self.check_announced_formulas(made, part)
         return made
+
+    def check_announced_formulas(self, made: ReadMessage, part: Part) -> None:
+        """Report formulas that give another value than the words before them announce: one finding for a table."""
+        for announced, given in (("raw", "physical"), ("physical", "raw")):
+            names = [field.name for field in made.fields if field.described.formula_for == announced]
+            if names:
+                which = f"the formula of `{names[0]}`" + (f" and of {len(names) - 1} more fields" if names[1:] else "")
+                self.notes.warn(
+                    "IMP041",
+                    f"{part.where}: {which} is announced as giving the {announced} value and gives the {given} one",
+                    part.table.spot,
+                    "taken as printed; `formula_for` has what the words announce: find out which is right",
+                    part.rule.place,
+                )
 
     def fields(self, made: ReadMessage, part: Part) -> None:
         """Give the message its fields, reserved bits and structs."""
@@ -175,7 +188,7 @@ class Builder:
         for name in (draft.name, f"{part.name} {draft.name}".strip(), f"{part.name} {draft.name} {draft.at}"):
             own = self.enums.get(name)
             if own is None:
-                own = self.enums[name] = ReadEnum(name, members, part.table.as_table())
+                own = self.enums[name] = ReadEnum(name, members, part.table)
                 self.enums_found.append(Found(own.table, "enumeration", own))
             if own.members == members:
                 return name

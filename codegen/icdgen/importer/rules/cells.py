@@ -6,11 +6,11 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from icdgen.importer.document import SourceTable
 from icdgen.importer.rules.language import Pattern, normalised, take, whole_number
 from icdgen.importer.rules.notes import Notes
 from icdgen.importer.rules.rows import DataRow, one_line
 from icdgen.importer.rules.rule import Column, Rule
-from icdgen.importer.source_tables import SourceTable
 
 
 @dataclass
@@ -189,7 +189,18 @@ def _melted(
         if numbers is None or not text or title not in row.ranges:
             continue
         first, last = row.ranges[title]
-        ends = [numbers.roles for t in titles[first : last + 1] if (numbers := take([rule.melt], t)) is not None]
+        covered = titles[first : last + 1]
+        ends = [numbers.roles for t in covered if (numbers := take([rule.melt], t)) is not None]
+        if len(ends) < len(covered):
+            other = next(t for t in covered if take([rule.melt], t) is None)
+            notes.error(
+                "IMP103",
+                f"{table.title}: the cell `{text[:60]}` covers the column `{other}`, whose heading `melt` does not take",
+                table.spot_of(row.source),
+                "correct the heading in the table file, or the pattern",
+                rule.melt.place,
+            )
+            continue
         roles = dict(shared)
         for role in ("byte", "bit"):
             found = [

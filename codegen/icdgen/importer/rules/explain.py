@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from icdgen.importer.document import Trouble
+from icdgen.importer.document import SourceTable, Trouble
 from icdgen.importer.rules.cells import find_columns
 from icdgen.importer.rules.interpret import Interpretation
 from icdgen.importer.rules.notes import Notes
 from icdgen.importer.rules.parts import Part
 from icdgen.importer.rules.rows import read_rows
 from icdgen.importer.rules.rule import Rule
-from icdgen.importer.source_tables import SourceTable
 
 SHOWN = 60  # characters of a cell
 

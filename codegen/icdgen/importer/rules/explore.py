@@ -10,7 +10,8 @@ import json
 import re
 from typing import Any
 
-from icdgen.importer.source_tables import SourceTable, kinds, name_of
+from icdgen.importer.document import SourceTable
+from icdgen.importer.source_tables import kinds, name_of
 from icdgen.importer.words import plain
 
 SAMPLES = 3  # cells shown of a column

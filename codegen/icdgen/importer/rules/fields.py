@@ -8,7 +8,9 @@ from decimal import Decimal
 from itertools import pairwise
 from typing import Any
 
-from icdgen.importer.document import Spot
+from icdgen.importer import descriptions, formulas
+from icdgen.importer.descriptions import Described
+from icdgen.importer.document import SourceTable, Spot
 from icdgen.importer.profile import Profile
 from icdgen.importer.rules import bit_order
 from icdgen.importer.rules.bit_order import Bit, Order
@@ -16,9 +18,6 @@ from icdgen.importer.rules.cells import Roles
 from icdgen.importer.rules.language import NUMBERS, TypeName, decimal, type_of, whole_number
 from icdgen.importer.rules.notes import Notes
 from icdgen.importer.rules.rule import Rule
-from icdgen.importer.source_tables import SourceTable
-from icdgen.importer.understand import descriptions, formulas
-from icdgen.importer.understand.descriptions import Described
 from icdgen.importer.words import tidy_unit
 
 MOST_BITS = 64  # of a number

@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from icdgen.importer.document import Spot, Trouble
+from icdgen.importer.document import SourceTable, Spot, Trouble
+from icdgen.importer.model import BACKGROUND, UNKNOWN, Found, Survey
 from icdgen.importer.profile import Profile
 from icdgen.importer.rules import attach, build, lists
 from icdgen.importer.rules.bit_order import Order
@@ -16,10 +17,10 @@ from icdgen.importer.rules.notes import Notes
 from icdgen.importer.rules.parts import Part
 from icdgen.importer.rules.rows import read_rows
 from icdgen.importer.rules.rule import Rule
-from icdgen.importer.rules.selection import Choice, choose, heading_row, texts_of, why_not
-from icdgen.importer.source_tables import SourceTable, count_runs, kinds, texts
-from icdgen.importer.understand.survey import BACKGROUND, UNKNOWN, Found, Survey
+from icdgen.importer.rules.selection import Choice, choose, heading_rows, texts_of, why_not
+from icdgen.importer.source_tables import count_runs, kinds, texts
 
+_IDS = ("id", "set_id", "get_id")
 _HEX = re.compile(r"\b(?:0[xX][0-9A-Fa-f]+|[0-9A-Fa-f]*[0-9][0-9A-Fa-f]*[hH])\b")
 
 
@@ -64,15 +65,16 @@ class _Interpreter:
         notes.dropped = self.notes.dropped
         notes.finish(self.profile.rules)
         survey.troubles += notes.troubles
-        things: dict[int | None, list[Found]] = {}
+        things: dict[int, list[Found]] = {}
         for found in [*self.found, *made]:
-            things.setdefault(found.table.order, []).append(found)
+            things.setdefault(found.table.number, []).append(found)
         for choice in choices:
             table = choice.table
             ignored = bool(choice.rules) and choice.rules[-1].what == "ignore"
-            own = things.get(table.number - 1)
-            survey.found += own or [Found(table.as_table(), _what(choice, ignored), None)]
+            own = things.get(table.number)
+            survey.found += own or [Found(table, _what(choice, ignored), None)]
         self.report_unread(choices, survey)
+        self.report_without_table(choices, survey)
         return Interpretation(choices, self.parts, survey, self.attributes, self.profile.rules)
 
     # --- one table -------------------------------------------------------------------------------------------------
@@ -168,8 +170,8 @@ class _Interpreter:
         """The texts of a source, the nearest first. Of rows: each of them, then those above the headings as one text."""
         if source == "row":
             found = [" | ".join(filter(None, (cell_text(c.text, self.known) for c in r.cells))) for r in table.rows]
-            head = heading_row(rule, texts_of(table, rule.transpose))
-            found.append(" | ".join(filter(None, found if head is None or head < 0 else found[:head])))
+            head = heading_rows(rule, texts_of(table, rule.transpose))
+            found.append(" | ".join(filter(None, found[: head.start] if head else found)))
         else:
             found = {
                 "caption": [table.caption],
@@ -254,6 +256,39 @@ class _Interpreter:
                         place=rule.place,
                     )
                 )
+
+    def report_without_table(self, choices: list[Choice], survey: Survey) -> None:
+        """Report texts that give the id of a message by the pattern of a rule, if no table gives a message with this id."""
+        known = {part.number(role) for part in self.parts for role in _IDS}
+        used = {rule.name for choice in choices for rule in choice.rules}
+        patterns = [
+            (rule, pattern)
+            for rule in self.profile.rules
+            for source in ("heading", "before")
+            for pattern in rule.sources.get(source, ())
+            if rule.name in used and rule.what in ("message", "registers") and pattern.roles & set(_IDS)
+        ]
+        for table in self.tables:
+            for text in map(normalised, (*table.before, *table.after)):
+                for rule, pattern in patterns:
+                    taken = take([pattern], text)
+                    ids = (
+                        {whole_number(taken.roles[role], rule.base) for role in _IDS if role in taken.roles}
+                        if taken
+                        else set()
+                    )
+                    if not ids - {None} or ids & known:
+                        continue
+                    survey.troubles.append(
+                        Trouble(
+                            "IMP039",
+                            f"`{text[:80]}` gives the id of a message, and no table below it was read as one",
+                            table.spot,
+                            "add a message without fields to the ICD by hand; if it has a table, `--tables` shows what was found",
+                            place=pattern.place,
+                        )
+                    )
+                    known |= ids
 
 
 def _what(choice: Choice, ignored: bool) -> str:

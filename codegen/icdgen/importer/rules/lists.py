@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import re
+
+from icdgen.importer.document import SourceTable
+from icdgen.importer.model import Found, Listed, LogBit, ReadEnum, ReadList, ReadLog, ReadMember
 from icdgen.importer.rules.cells import Roles
 from icdgen.importer.rules.language import normalised, whole_number
 from icdgen.importer.rules.notes import Notes
 from icdgen.importer.rules.parts import Part
 from icdgen.importer.rules.rule import Rule
-from icdgen.importer.source_tables import SourceTable
-from icdgen.importer.understand.lists import bit_of_mask
-from icdgen.importer.understand.model import Listed, LogBit, ReadEnum, ReadList, ReadLog, ReadMember
-from icdgen.importer.understand.survey import Found
 
+_MASK = re.compile(r"(?:0x)?(?:[0-9A-Fa-f]{2}\s*)+\Z")
 _IDS = ("id", "set_id", "get_id")
 
 
@@ -45,7 +46,7 @@ def list_of(rule: Rule, table: SourceTable, given: dict[str, str], rows: list[Ro
                 spot,
             )
         )
-    return Found(table.as_table(), "list", made)
+    return Found(table, "list", made)
 
 
 def log_of(rule: Rule, table: SourceTable, rows: list[Roles], notes: Notes) -> Found:
@@ -64,13 +65,13 @@ def log_of(rule: Rule, table: SourceTable, rows: list[Roles], notes: Notes) -> F
             )
             continue
         made.bits.append(LogBit(bit, frame, roles.get("message")))
-    return Found(table.as_table(), "loggable frames", made)
+    return Found(table, "loggable frames", made)
 
 
 def enumeration_of(part: Part) -> Found:
     """Return the enumeration that a table prints under a name of its own."""
     members = [ReadMember(value, name, text) for (value, name), text in zip(part.pairs, part.texts, strict=True)]
-    table = part.table.as_table()
+    table = part.table
     return Found(table, "enumeration", ReadEnum(normalised(part.given["enumeration"]), members, table))
 
 
@@ -86,3 +87,12 @@ def _number(rule: Rule, table: SourceTable, roles: Roles, role: str, notes: Note
             rule.place,
         )
     return value
+
+
+def bit_of_mask(text: str) -> int | None:
+    """The number of the one bit in a mask of bytes whose first byte has the lowest bits; None if it is no such mask."""
+    if not _MASK.match(text.strip()):
+        return None
+    data = bytes.fromhex(text.strip().removeprefix("0x").replace(" ", ""))
+    value = int.from_bytes(data, "little")
+    return value.bit_length() - 1 if value and value & (value - 1) == 0 else None

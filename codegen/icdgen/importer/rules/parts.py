@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from icdgen.importer.document import SourceTable
 from icdgen.importer.rules.fields import Draft
 from icdgen.importer.rules.language import whole_number
 from icdgen.importer.rules.rule import Rule
-from icdgen.importer.source_tables import SourceTable
 
 
 @dataclass

@@ -8,12 +8,11 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 
-from icdgen.importer.document import Cell, SourceRow
+from icdgen.importer.document import Cell, Slot, SourceRow, SourceTable
 from icdgen.importer.rules.language import cell_text, normalised
 from icdgen.importer.rules.notes import Notes
 from icdgen.importer.rules.rule import Rule
-from icdgen.importer.rules.selection import heading_row, texts_of
-from icdgen.importer.source_tables import Slot, SourceTable
+from icdgen.importer.rules.selection import heading_rows, texts_of
 
 
 @dataclass
@@ -37,17 +36,18 @@ class DataRow:
 def read_rows(rule: Rule, table: SourceTable, notes: Notes) -> tuple[list[str], list[DataRow]]:
     """Return the headings and the rows of a table that a rule selected."""
     texts = texts_of(table, rule.transpose)
-    head = heading_row(rule, texts)
+    head = heading_rows(rule, texts)
     assert head is not None
     grid = table.grid()
     if rule.transpose:
-        titles, rows = _transposed(table, grid, head)
+        titles, rows = _transposed(table, grid, head.start if head else -1)
     else:
-        start = head + rule.head_rows if head >= 0 else 0
-        titles = _titles(grid[head:start]) if head >= 0 else [str(i + 1) for i in range(max(map(len, grid), default=0))]
-        rows = [_row(titles, slots, row) for slots, row in zip(grid[start:], table.rows[start:], strict=True)]
-        repeated = [[normalised(slot.text) for slot in slots] for slots in grid[head:start]]
-        if head >= 0:
+        heads = grid[head.start : head.stop]
+        titles = _titles(heads) if head else [str(i + 1) for i in range(max(map(len, grid), default=0))]
+        below = zip(grid[head.stop :], table.rows[head.stop :], strict=True)
+        rows = [_row(titles, _completed(rule, titles, slots), row) for slots, row in below]
+        repeated = [[normalised(slot.text) for slot in slots] for slots in heads]
+        if head:
             rows = [row for row in rows if [normalised(v) for v in row.values.values()] not in repeated]
     return titles, _operated(rule, rows, notes)
 
@@ -66,6 +66,14 @@ def _numbered(title: str, before: list[str]) -> str:
     """The heading with its number if columns to the left have it, too."""
     count = before.count(title)
     return f"{title}.{count + 1}" if count and title else title
+
+
+def _completed(rule: Rule, titles: list[str], slots: list[Slot]) -> list[Slot]:
+    """The slots of a row, with an empty cell in the column of `absent` if the row has a cell less than there are headings."""
+    at = next((index for index, title in enumerate(titles) if title in rule.absent), None)
+    if at is None or len(slots) != len(titles) - 1 or not slots[at].text.strip():
+        return slots
+    return [*slots[:at], Slot(Cell(""), at, True), *(slot._replace(column=slot.column + 1) for slot in slots[at:])]
 
 
 def _row(titles: list[str], slots: list[Slot], source: SourceRow) -> DataRow:

@@ -73,6 +73,7 @@ class Rule:
     fill: list[str] = field(default_factory=list)
     glue: list[str] = field(default_factory=list)
     ignore: list[str] = field(default_factory=list)
+    absent: list[str] = field(default_factory=list)  # columns whose empty cells the source leaves out
     head_rows: int = 1
     transpose: bool = False
     also: bool = False
@@ -183,7 +184,7 @@ class _Reader:
             if key in tree:
                 setattr(made, key, self.regex(tree[key], tree.at(key)))
         made.keep = {c: self.regex(text, tree["keep"].at(c)) for c, text in (tree.get("keep") or {}).items()}
-        for key in ("join", "fill", "glue", "ignore"):
+        for key in ("join", "fill", "glue", "ignore", "absent"):
             getattr(made, key).extend(str(text) for text in tree.get(key, ()))
         self.together(made, tree)
         self.belongs(made)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from collections import Counter
 from dataclasses import dataclass, field
+from itertools import pairwise, zip_longest
 
+from icdgen.importer.document import SourceTable
 from icdgen.importer.rules.language import normalised
 from icdgen.importer.rules.rule import Rule
-from icdgen.importer.source_tables import SourceTable
 
 SEARCHED = 6  # rows in which the headings are looked for: titles and notes stand above them
 NO_HEAD = "none"
@@ -33,12 +34,24 @@ def texts_of(table: SourceTable, transpose: bool) -> list[list[str]]:
     return [list(column) for column in zip(*padded, strict=True)]
 
 
-def heading_row(rule: Rule, texts: list[list[str]]) -> int | None:
-    """The index of the heading row; -1 for a rule without one, None if no row fits."""
+def heading_rows(rule: Rule, texts: list[list[str]]) -> range | None:
+    """The indices of the heading rows; none for a rule without headings, None if no row fits.
+
+    Some sources print headings in two lines as two rows. Such rows are joined if no single row fits.
+    """
     if rule.head in ("", NO_HEAD):
-        return -1
+        return range(0)
     wanted = titles_wanted(rule)
-    return next((index for index, row in enumerate(texts[:SEARCHED]) if _first_difference(wanted, row) is None), None)
+    for index, row in enumerate(texts[:SEARCHED]):
+        if _first_difference(wanted, row) is None:
+            return range(index, index + rule.head_rows)
+    if rule.head_rows > 1 or rule.transpose:
+        return None
+    for index, pair in enumerate(pairwise(texts[:SEARCHED])):
+        both = [" ".join(filter(None, cells)) for cells in zip_longest(*pair, fillvalue="")]
+        if _first_difference(wanted, both) is None:
+            return range(index, index + 2)
+    return None
 
 
 def titles_wanted(rule: Rule) -> list[str]:
@@ -71,7 +84,7 @@ def why_not(rule: Rule, table: SourceTable) -> str:
             shown = f": `{normalised(texts[-1])[:50]}`" if texts and texts[-1] else "; there is none"
             return f"`{source}` does not match{shown}"
     texts_by_row = texts_of(table, rule.transpose)
-    if heading_row(rule, texts_by_row) is not None:
+    if heading_rows(rule, texts_by_row) is not None:
         return ""
     wanted = titles_wanted(rule)
     nearest = max(texts_by_row[:SEARCHED], key=lambda row: _agreement(wanted, row), default=[])

@@ -10,7 +10,7 @@ from icdgen.icd.located import Map, Seq
 
 ORDER = (
     "rule", "like", "tables", "what", "message", "columns", "lines", "melt", "each", "map", "set", "skip", "stop", "keep", "join",
-    "fill", "glue", "ignore", "head_rows", "group_rows", "transpose", "also", "width", "origin", "base",
+    "fill", "glue", "ignore", "absent", "head_rows", "group_rows", "transpose", "also", "width", "origin", "base",
 )  # fmt: skip
 NEW = "profile: 1\nnode: {byte_order: little, bit_order: lsb0}\nrules: []\n"
 _PLAIN = re.compile(r"[A-Za-z_(][\w (|)./+-]*[\w)]|[A-Za-z]")

@@ -13,11 +13,11 @@ from icdgen.errors import UserError
 from icdgen.icd import source
 from icdgen.import_results import report, targets
 from icdgen.importer import profile, run
-from icdgen.importer.document import Document, Trouble
+from icdgen.importer.document import Document, SourceTable, Trouble
 from icdgen.importer.rules.language import ROLES
 from icdgen.importer.rules.parts import Part
-from icdgen.importer.rules.selection import heading_row, texts_of
-from icdgen.importer.source_tables import SourceTable, kinds
+from icdgen.importer.rules.selection import heading_rows, texts_of
+from icdgen.importer.source_tables import kinds
 from icdgen.importer.workbench import rule_text
 
 RESOLUTION = 100  # dots per inch of a page's picture
@@ -44,7 +44,6 @@ class Session:
         except Findings as error:
             self.errors = [{"message": f.message, "help": f.help, "line": f.place.line} for f in error.findings]
             return
-        words.has_rules = True
         self.errors = []
         self.result, self.trees = run.apply_rules(self.document, self.tables, words)
 
@@ -78,7 +77,7 @@ class Session:
 
     def rules_by_table(self) -> dict[int, list[int]]:
         """Number of a table -> the indices of the rules that apply to it."""
-        if self.result is None or self.result.interpretation is None:
+        if self.result is None:
             return {}
         lines = [rule.place.line for rule in self.words_rules()]
         return {
@@ -88,7 +87,7 @@ class Session:
 
     def words_rules(self) -> list[Any]:
         """The rules as they were applied, in the order of the profile."""
-        assert self.result is not None and self.result.interpretation is not None
+        assert self.result is not None
         return self.result.interpretation.rules
 
     def summary(self, table: SourceTable, applied: dict[int, list[int]], troubles: list[Trouble]) -> dict[str, Any]:
@@ -105,7 +104,7 @@ class Session:
 
     def parts(self, table: SourceTable) -> list[Part]:
         """What rules read from a table."""
-        if self.result is None or self.result.interpretation is None:
+        if self.result is None:
             return []
         return [part for part in self.result.interpretation.parts if part.table.number == table.number]
 
@@ -116,7 +115,7 @@ class Session:
                 raise KeyError(number)
             table = self.tables[number - 1]
             troubles = self.result.troubles if self.result else []
-            choices = self.result.interpretation.choices if self.result and self.result.interpretation else []
+            choices = self.result.interpretation.choices if self.result else []
             reasons = [(rule.name, reason) for c in choices if c.table.number == number for rule, reason in c.reasons]
             return {
                 "number": number, "title": table.title, "page": table.page, "caption": table.caption, "headings": table.headings,
@@ -130,12 +129,12 @@ class Session:
 
     def head(self, table: SourceTable) -> int:
         """The index of the heading row: by the rule of the table, else the first row of several filled cells."""
-        if self.result is not None and self.result.interpretation is not None:
+        if self.result is not None:
             for choice in self.result.interpretation.choices:
                 if choice.table.number == table.number and choice.rules:
-                    found = heading_row(choice.rules[-1], texts_of(table, choice.rules[-1].transpose))
+                    found = heading_rows(choice.rules[-1], texts_of(table, choice.rules[-1].transpose))
                     if found is not None and not choice.rules[-1].transpose:
-                        return found
+                        return found.start if found else -1
         return next((i for i, row in enumerate(table.rows) if sum(bool(c.text.strip()) for c in row.cells) > 1), 0)
 
     def picture(self, number: int) -> bytes:

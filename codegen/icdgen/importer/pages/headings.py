@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-from icdgen.importer.document import Header
+from icdgen.importer.pages.draft import Header
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import folded, number
 

@@ -4,27 +4,13 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
+from icdgen.importer import formulas
 from icdgen.importer.profile import Profile
-from icdgen.importer.understand import formulas
 from icdgen.importer.words import plain, table_number, tidy_unit
 
 _TABLE = re.compile(r"[0-9]+(?:[-.][0-9]+)*\Z")
 _FORMULA_WORD = re.compile(r"\bformula\b", re.I)
-_PART = re.compile(
-    r"\b(?:bits?\s*|[bD](?=[0-9]))\[?(?P<a>[0-9]{1,2})(?:\s*(?:-|–|:|~|\.\.+|to)\s*(?:bit\s*|[bD])?(?P<b>[0-9]{1,2}))?\]?\s*"
-    r"[:=–-]\s*(?P<name>[^;,.:=\n]+?)\s*(?=[;,.]|\Z|\b(?:bits?\s*|[bD])\[?[0-9])",
-    re.I,
-)  # fmt: skip
-
-
-class Bits(NamedTuple):
-    """Bits of a value, counted from its lowest one."""
-
-    at: int
-    bits: int
-    name: str
 
 
 @dataclass(slots=True)
@@ -105,12 +91,12 @@ def _enumeration(text: str, profile: Profile, made: Described, spans: list[tuple
         made.enum_title = (groups.get("title") or "").strip()
         spans.append(match.span())
         return
-    loose = profile_caption_in(text, profile)
+    loose = _caption_in(text, profile)
     if loose:
         made.enum_table, made.enum_title = loose
 
 
-def profile_caption_in(text: str, profile: Profile) -> tuple[int, str] | None:
+def _caption_in(text: str, profile: Profile) -> tuple[int, str] | None:
     """A table that the text names, whatever the words around it."""
     words = "|".join(re.escape(word) for word in profile.data["captions"])
     match = re.search(
@@ -142,17 +128,3 @@ def _without(text: str, spans: list[tuple[int, int]]) -> str:
     kept += text[at:]
     kept = re.sub(r"\s+([.,:;])", r"\1", " ".join(kept.split()))
     return re.sub(r"[.:;,\s]*\Z", "", re.sub(r"(?:\s*[:.]){2,}", ".", kept))
-
-
-def bits(text: str, width: int) -> list[Bits] | None:
-    """The bits that a description names; empty if it names none, None if they overlap or do not fit into ``width``."""
-    made: list[Bits] = []
-    taken = 0
-    for match in _PART.finditer(text):
-        first, last = sorted((int(match["a"]), int(match["b"] or match["a"])))
-        mask = ((1 << (last - first + 1)) - 1) << first
-        if last >= width or taken & mask:
-            return None
-        taken |= mask
-        made.append(Bits(first, last - first + 1, match["name"].strip()))
-    return sorted(made)

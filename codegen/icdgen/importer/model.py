@@ -1,13 +1,13 @@
-"""What was read of a manual, and what of it belongs to each node."""
+"""What rules read from the tables of a document, and what of it belongs to each node."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeVar
 
-from icdgen.importer.document import Spot, Table
+from icdgen.importer.descriptions import Described
+from icdgen.importer.document import SourceTable, Spot, Trouble
 from icdgen.importer.profile import NodeWords
-from icdgen.importer.understand.descriptions import Bits, Described
 
 
 @dataclass(slots=True)
@@ -22,7 +22,6 @@ class ReadField:
     spot: Spot
     count: int = 0  # elements of an array
     enum: str = ""
-    bitfields: list[Bits] = field(default_factory=list)
     facts: dict[str, Any] = field(default_factory=dict)  # further keys of the field in the ICD
 
     @property
@@ -44,25 +43,21 @@ class ReadStruct:
 
 @dataclass(slots=True)
 class ReadMessage:
-    """A message as its own table describes it."""
+    """A message as its own tables describe it."""
 
     name: str
     kind: str
-    table: Table
+    table: SourceTable
     id: int | None = None
     set_id: int | None = None
     get_id: int | None = None
     length: int | None = None
     fields: list[ReadField] = field(default_factory=list)
-    names: list[str] = field(default_factory=list)  # what its name may be, by the caption
     group: str = ""
     listed: dict[str, object] = field(default_factory=dict)
     summary: str = ""
-    lacks: str = ""  # why it cannot be held; "-" where a finding says so already
     reserved: list[tuple[int, int]] = field(default_factory=list)  # first bit and size of what is printed as reserved
     structs: list[ReadStruct] = field(default_factory=list)
-    is_by_rule: bool = False
-    register_bits: int | None = None  # bits of each register whose bit 0 is the lowest one; 0: the whole message is one
 
     def extents(self) -> list[tuple[int, int]]:
         """The first bit and the bit behind of each field and of each run of reserved bits."""
@@ -87,8 +82,8 @@ class ReadEnum:
 
     name: str
     members: list[ReadMember]
-    table: Table
-    also: list[Table] = field(default_factory=list)
+    table: SourceTable
+    also: list[SourceTable] = field(default_factory=list)
 
 
 @dataclass(slots=True)
@@ -103,7 +98,6 @@ class Listed:
     get_id: int | None
     group: str
     spot: Spot
-    table_number: int | None = None  # of the detail table it names
     used: bool = False
 
 
@@ -129,6 +123,29 @@ class ReadLog:
 
 
 Thing = ReadMessage | ReadEnum | ReadList | ReadLog
+T = TypeVar("T", ReadEnum, ReadList, ReadLog, ReadMessage)
+BACKGROUND, UNKNOWN = "background", "not understood"
+
+
+@dataclass(slots=True)
+class Found:
+    """What a table is and gives, in the order of the document."""
+
+    table: SourceTable
+    what: str  # "message" | "enumeration" | "list" | "loggable frames" | BACKGROUND | UNKNOWN
+    thing: Thing | None
+
+
+@dataclass(slots=True)
+class Survey:
+    """All tables of a document in order, and the findings about them."""
+
+    found: list[Found] = field(default_factory=list)
+    troubles: list[Trouble] = field(default_factory=list)
+
+    def of(self, kind: type[T]) -> list[tuple[Found, T]]:
+        """The tables that gave a thing of this class, each with it."""
+        return [(one, one.thing) for one in self.found if isinstance(one.thing, kind)]
 
 
 @dataclass

@@ -1,0 +1,140 @@
+"""Tables in the making: rows as the page prints them, and the table that they become."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from icdgen.importer.document import Box, Cell, SourceRow, SourceTable
+
+SNAP = 3.0  # points: edges of cells that are nearer than this are one
+SAME_WIDTH = 8.0  # points: by so much may the parts of a table differ that stand on several pages
+
+
+@dataclass(slots=True)
+class PrintedRow:
+    """A row exactly as the page shows it.
+
+    ``texts``: one text per cell, lines separated by line breaks; ``edges``: the x coordinates between which the cells
+    stand, one more than cells, or none where nothing on the page separates them; ``continues``: whether a cell has no rule
+    above it, so that it belongs to the cell above.
+    """
+
+    texts: list[str]
+    edges: tuple[float, ...] = ()
+    continues: tuple[bool, ...] = ()
+    page: int | None = None
+
+    def slice(self, start: int, width: int) -> PrintedRow:
+        """Return the cells of some columns."""
+        end = start + width
+        return PrintedRow(self.texts[start:end], self.edges[start : end + 1], self.continues[start:end], self.page)
+
+    @property
+    def lines(self) -> list[str]:
+        """The texts of the cells, each in one line."""
+        return [" ".join(text.split()) for text in self.texts]
+
+
+@dataclass(slots=True)
+class Header:
+    """The heading row of a table: what kind of table has such headings, and the role of each cell ("" if unknown)."""
+
+    kind: str  # "fields" | "enumeration" | "list" | "loggable", or a rule of the profile
+    roles: list[str]
+    titles: list[str]
+    printed: list[PrintedRow] = field(default_factory=list, compare=False)
+
+    @property
+    def known(self) -> int:
+        """How many cells have a role."""
+        return sum(map(bool, self.roles))
+
+    @property
+    def known_words(self) -> int:
+        """How many words these cells have."""
+        return sum(len(title.split()) for title, role in zip(self.titles, self.roles, strict=True) if role)
+
+    @property
+    def has_offsets(self) -> bool:
+        """Whether a column says where fields stand."""
+        return "at" in self.roles or "at_bytes" in self.roles
+
+
+@dataclass(slots=True)
+class Draft:
+    """A table in the making. ``head`` are the rows above the headings, ``rows`` those below."""
+
+    boxes: list[Box]
+    header: Header | None = None
+    head: list[PrintedRow] = field(default_factory=list)
+    rows: list[PrintedRow] = field(default_factory=list)
+    edges: list[float] | None = None
+
+    @property
+    def last_page(self) -> int:
+        """The page on which the last part stands."""
+        return self.boxes[-1].page
+
+    def table(self) -> SourceTable:
+        """Return the table."""
+        titles = (self.header.printed or [PrintedRow(self.header.titles)]) if self.header else []
+        return SourceTable(rows=_rows([*self.head, *titles, *self.rows], self.boxes[0].page), boxes=self.boxes)
+
+
+def _rows(printed: list[PrintedRow], page: int) -> list[SourceRow]:
+    """The rows with the spans of their cells; ``page`` is that of rows that state none."""
+    edges = _columns(printed)
+    made: list[SourceRow] = []
+    above: dict[int, Cell] = {}  # first column of a cell of the row above -> the cell
+    for row in printed:
+        placed = _placed(row, edges)
+        is_open = row.continues if len(row.continues) == len(placed) else (False,) * len(placed)
+        cells: list[Cell] = []
+        here: dict[int, Cell] = {}
+        for (cell, column), goes_on in zip(placed, is_open, strict=True):
+            upper = above.get(column)
+            if goes_on and upper is not None and upper.columns == cell.columns:
+                upper.text = f"{upper.text}\n{cell.text}".strip("\n")
+                upper.rows += 1
+                here[column] = upper
+            else:
+                cells.append(cell)
+                here[column] = cell
+        above = here
+        made.append(SourceRow(cells, row.page or page))
+    return made
+
+
+def _shift(row: PrintedRow, first: Sequence[float]) -> float:
+    """How far the row stands to the left of the rows of the first page: margins of facing pages differ."""
+    if not first or not row.edges or abs((row.edges[-1] - row.edges[0]) - (first[-1] - first[0])) > SAME_WIDTH:
+        return 0.0
+    return first[0] - row.edges[0]
+
+
+def _columns(rows: list[PrintedRow]) -> list[float]:
+    """The edges between which the columns of the whole table stand; none if no row has any."""
+    first = max((row.edges for row in rows), key=lambda edges: edges[-1] - edges[0] if edges else 0.0, default=())
+    edges: list[float] = []
+    for x in sorted(x + _shift(row, first) for row in rows for x in row.edges):
+        if not edges or x - edges[-1] > SNAP:
+            edges.append(x)
+    return edges
+
+
+def _placed(row: PrintedRow, edges: list[float]) -> list[tuple[Cell, int]]:
+    """The cells of a row with the column in which each begins."""
+    if not row.edges or len(edges) < 2:
+        if len(row.texts) == 1 and len(edges) > 2:
+            return [(Cell(row.texts[0], len(edges) - 1), 0)]
+        return [(Cell(text), index) for index, text in enumerate(row.texts)]
+    shift = _shift(row, edges)
+    places = [min(range(len(edges)), key=lambda i: abs(edges[i] - x - shift)) for x in row.edges]
+    made: list[tuple[Cell, int]] = [(Cell(""), column) for column in range(places[0])]
+    for text, start, end in zip(row.texts, places, places[1:], strict=False):
+        if end > start:
+            made.append((Cell(text, end - start), start))
+        elif text and made:
+            made[-1][0].text = f"{made[-1][0].text}\n{text}".strip("\n")
+    return made

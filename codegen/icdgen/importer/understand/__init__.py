@@ -1,1 +1,0 @@
-"""Tables -> what they say about messages, enumerations, lists and logs."""
