@@ -83,7 +83,7 @@ def test_equal_findings_of_one_place_are_counted_and_not_merged(tmp_path):
     text = MESSAGE.replace("\t16\t8\tMode", "\tx\t8\tMode\tUINT\tx\n\tx\t8\tMode") + ENUM
     result, _ = read(tmp_path, text)
     assert found(result, "IMP023") == 2 * [
-        "table 1 (`Pump State Telemetry Format`), field `Mode`: `bit` is `x`, which is no number"
+        "table 1 (`Pump State Telemetry Format`), field `Mode`: `bit` is `x`, which is not a number"
     ]
 
 
@@ -137,4 +137,4 @@ def test_words_that_stand_on_their_side_are_said_to_be_left_out(tmp_path):
     canvas.showPage()
     canvas.save()
     shown = icdgen("import", "turned.pdf", cwd=tmp_path).stdout
-    assert re.search(r"note\[IMP014\] page 1: [0-9]+ words stand on their side", shown)
+    assert re.search(r"note\[IMP014\] page 1: [0-9]+ words are rotated", shown)

@@ -108,7 +108,7 @@ def test_what_cannot_be_read_is_reported_and_not_invented(tmp_path):
     result, tree = read(tmp_path, text)
     assert fields(tree) == [(0, 16, "Pressure", "int")]
     assert "formula" not in tree["messages"][0]["fields"][0]
-    assert "field `Mode`: `bit` is `l6`, which is no number" in found(result, "IMP023")[0]
+    assert "field `Mode`: `bit` is `l6`, which is not a number" in found(result, "IMP023")[0]
     assert "a formula is there and cannot be read" in found(result, "IMP040")[0]
     assert "the type `WORD` is unknown" in found(result, "IMP026")[0]
     assert "no field covers bit 16 to 31" in found(result, "IMP035")[0]
@@ -192,7 +192,7 @@ def test_a_text_without_anything_to_import_is_a_finding(tmp_path, data, message)
 def test_a_field_that_names_no_table_has_no_enumeration(tmp_path):
     tables = MESSAGE.replace(" Possible values are in Table 8: PumpMode Enumeration Values", "")
     result, tree = read(tmp_path, tables + ENUM)
-    assert "field `Mode`: nothing gives its values" in found(result, "IMP050")[0]
+    assert "field `Mode`: its values are not given" in found(result, "IMP050")[0]
     assert tree["messages"][0]["fields"][1]["type"] == "uint"
 
 

@@ -129,9 +129,11 @@ def import_(
         with progress.pages("reading") as show:
             result, trees = run.run(manual, vocabulary, show, jobs, descriptions, pages)
         if folder is not None:
+            from icdgen.icd.rules.wording import count
+
             paths = table_files.write(result.tables, folder, result.document)
             say(
-                f"{folder}: {len(paths)} tables written; correct them, then `icdgen import {folder}`",
+                f"{folder}: {count(len(paths), 'table')} written; correct them, then `icdgen import {folder}`",
                 err=form == "json",
             )
         if table is not None:

@@ -24,7 +24,7 @@ def test_a_correction_of_a_table_file_changes_the_result(folder):
     result = icdgen("import", "state.txt", "--tables", "tables", cwd=folder)
     assert (result.returncode, result.stdout) == (
         0,
-        "tables: 1 tables written; correct them, then `icdgen import tables`\n",
+        "tables: 1 table written; correct them, then `icdgen import tables`\n",
     )
     path = folder / "tables" / "001.table.yaml"
     path.write_text(path.read_text(encoding="utf-8").replace('"Level", "32"', '"Charge", "40"'), encoding="utf-8")

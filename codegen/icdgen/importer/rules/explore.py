@@ -10,6 +10,7 @@ import json
 import re
 from typing import Any
 
+from icdgen.icd.rules.wording import count
 from icdgen.importer.document import SourceTable
 from icdgen.importer.source_tables import kinds, name_of
 from icdgen.importer.words import plain
@@ -21,8 +22,9 @@ MOST_NUMBERS = 12
 def report(tables: list[SourceTable], document: str) -> str:
     """Return a profile to be completed: a block for each kind with its tables, sample cells, and a rule."""
     groups = kinds(tables)
+    counted = f"{count(len(tables), 'table')} of {count(len(groups), 'kind')}"
     lines = [
-        f"# {document}: {len(tables)} tables of {len(groups)} kinds, a rule for each. A table without a rule is not imported.",
+        f"# {document}: {counted}, a rule for each. A table without a rule is not imported.",
         "# Give each column a role or a pattern (docs/reference/import-rules.md), or put its heading under `ignore`.",
         "profile: 1",
         "node: {byte_order: little, bit_order: lsb0}  # state both: little or big, lsb0 or msb0",
