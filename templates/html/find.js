@@ -17,6 +17,9 @@ const icdgenFind = (() => {
   // Words that generated code puts around names; they say nothing about which one is meant.
   const AROUND = new Set("h t id ids set get const init encode decode from to bytes length len raw physical value is min max try new struct enum class icd messages default unchecked telemetry telecommand limits misfit client send request receive fields".split(" "));
 
+  // Words of a question that say nothing about its subject.
+  const QUESTION = new Set("a an and are can do does for from have how i if in is it me mean means my of on or our send sends that the there this to use want we what when where which why with".split(" "));
+
   // What follows names another message, which the one that is meant repeats.
   const PART = /(?<=\w)_part_\w+$/;
 
@@ -100,11 +103,13 @@ const icdgenFind = (() => {
     function find(text, most = 24) {
       const plain = text.trim().toLowerCase().replace(/\s+/g, " ");
       const identifier = /[\p{L}\p{N}](?:_|::|->|\.)[\p{L}_]|\p{Ll}\p{Lu}/u.test(text);
-      const asked = [...new Set(identifier ? wordsOf(text.replace(PART, "")) : plainWords(plain))].slice(0, 16);
-      const query = { plain, squashed: squashed(plain), optional: asked.map((word) => identifier && AROUND.has(word)) };
-      find.sure = true;
+      const every = [...new Set(identifier ? wordsOf(text.replace(PART, "")) : plainWords(plain))].slice(0, 16);
+      const subject = every.filter((word) => !QUESTION.has(word));
+      find.sure = !plain;
       if (!plain) return [];
-      for (const guess of [false, true]) {
+      const passes = [[every, false], ...(subject.length && subject.length < every.length ? [[subject, false]] : []), [every, true]];
+      for (const [asked, guess] of passes) {
+        const query = { plain, squashed: squashed(asked === every ? plain : asked.join(" ")), optional: asked.map((word) => identifier && AROUND.has(word)) };
         const fitting = asked.map((word) => fits(word, guess));
         const found = [];
         for (const entry of entries) {
@@ -112,8 +117,9 @@ const icdgenFind = (() => {
           const points = Math.max((asked.length && score(entry, asked, fitting, query)) || exactness(entry, query), together);
           if (points) found.push([points, entry]);
         }
-        if (found.length) return found.sort((a, b) => b[0] - a[0]).slice(0, most).map(([, entry]) => entry);
-        find.sure = false;
+        if (!found.length) continue;
+        find.sure = !guess;
+        return found.sort((a, b) => b[0] - a[0]).slice(0, most).map(([, entry]) => entry);
       }
       return [];
     }

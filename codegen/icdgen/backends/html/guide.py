@@ -44,6 +44,7 @@ class Page:
     name: str
     html: str
     sections: list[Section] = field(default_factory=list)
+    topics: tuple[str, ...] = ()  # words for the search, from the line of the index
 
     @property
     def title(self) -> str:
@@ -67,9 +68,21 @@ def pages() -> tuple[Page, ...]:
     paths = {path.relative_to(folder).with_suffix("").as_posix(): path for path in sorted(folder.rglob("*.md"))}
     if INDEX not in paths:
         return ()
-    listed = re.findall(r"\]\(([^)#:]+)\.md\)", paths[INDEX].read_text("utf-8"))
-    names = dict.fromkeys([INDEX, *(name for name in listed if name in paths), *paths])
-    return tuple(_page(paths[name], name) for name in names)
+    topics = topics_of(paths[INDEX].read_text("utf-8"))
+    names = dict.fromkeys([INDEX, *(name for name in topics if name in paths), *paths])
+    made = [_page(paths[name], name) for name in names]
+    for page in made:
+        page.topics = topics.get(page.name, ())
+    return tuple(made)
+
+
+def topics_of(index: str) -> dict[str, tuple[str, ...]]:
+    """Pages in the order of the index, with the topics behind the link to each: ``[Link](link.md): SLIP, COBS; ...``."""
+    links = re.findall(r"\[([^\]]+)\]\(([^)#:]+)\.md\)(?::\s([^;\[\]]*?)(?=;|,?\s*\n-|,\s*\[|\n\n|\Z))?", index)
+    return {
+        name: (title, *(" ".join(topic.split()) for topic in topics.split(",") if topic.strip()))
+        for title, name, topics in links
+    }
 
 
 def groups() -> dict[str, list[Page]]:

@@ -58,10 +58,11 @@ def entries(relations: Relations) -> Iterator[Entry]:
             title = f"{erratum.id} {erratum.title}"
             yield Entry(erratum.label.lower(), title, node.title, "", about, (erratum.id,), links.erratum(erratum))
     for page in guide.pages():
-        for section in page.sections:
+        for section in page.sections[: 1 if page.name == guide.INDEX else None]:  # its sections are lists of pages
             url = page.url if section.level == 1 else f"{page.url}#{section.anchor}"
             context = "guide" if section.level == 1 else f"guide · {page.title}"
-            yield Entry("guide", section.title, context, "", section.text, (), url)
+            topics = page.topics if section.level == 1 else ()
+            yield Entry("guide", section.title, context, "", section.text, (), url, topics)
 
 
 def script(relations: Relations) -> str:
