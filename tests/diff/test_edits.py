@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from icdgen.diff.change import Change
 from icdgen.diff.compare import compare
 from icdgen.diff.layers import LAYERS
+from icdgen.icd.lines import Line
 from icdgen.icd.model import Icd
 from tests.conformance.icds import icd_of
 from tests.diff.edits import BEYOND, EDITS, TEXT
@@ -76,7 +77,10 @@ def as_it_is(change: Change) -> tuple:
 
 def subject(change: Change) -> tuple:
     """Old and new thing, by identity. An id that means another message is about neither of the two."""
-    return (None, None) if change.code == "DIF104" else (id(change.pair.before), id(change.pair.after))
+    if change.code == "DIF104":
+        return None, None
+    sides = change.pair.before, change.pair.after
+    return tuple(id(side.node if isinstance(side, Line) else side) for side in sides)
 
 
 @settings(deadline=None, max_examples=150)

@@ -14,6 +14,7 @@ from icdgen.diff.pairs import FieldPair, MessagePair, NodePair, kind
 from icdgen.diff.similar import other_senses
 from icdgen.diff.wording import read_as, some
 from icdgen.icd.formula import RAW
+from icdgen.icd.lines import lines
 from icdgen.icd.model import Message
 from icdgen.icd.rules.wording import quote
 
@@ -154,7 +155,7 @@ def _read(pair: MessagePair, sent: Message, reader: Message) -> tuple[str, tuple
     reasons = [*odd, *_together((p.any.name, why) for p, why in (*wrong, *derived))]
     if absent:
         reasons.append(f"not carried: {some([f.name for f in absent])}")
-    verdict = NO if len(absent) + len(wrong) == len(reader.lines) - len(reader.views) else PARTLY
+    verdict = NO if len(absent) + len(wrong) == sum(not line.view for line in lines(reader.layout)) else PARTLY
     return verdict, tuple(reasons)
 
 
@@ -185,11 +186,12 @@ def _misread(pair: FieldPair) -> str:
 
 def _lengths(sent: Message, reader: Message, verb: str) -> tuple[str, tuple[str, ...]]:
     """Whether frames that are sent have a length that is expected."""
-    fitting = sum(one in reader.lengths for one in sent.lengths)
-    if fitting == len(sent.lengths):
+    lengths, expected = sent.layout.lengths, reader.layout.lengths
+    fitting = sum(one in expected for one in lengths)
+    if fitting == len(lengths):
         return YES, ()
-    if len(sent.lengths) == len(reader.lengths) == 1:
-        return NO, (f"{sent.length} bytes {verb}, {reader.length} are expected",)
+    if len(lengths) == len(expected) == 1:
+        return NO, (f"{lengths[0]} bytes {verb}, {expected[0]} are expected",)
     text = f"{length_text(sent)} {verb}, {length_text(reader)} are expected"
     return (PARTLY if fitting else NO), (text,)
 

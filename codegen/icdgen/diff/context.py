@@ -9,6 +9,7 @@ from icdgen.diff.facts import differ, has_envelope
 from icdgen.diff.generated import Generated
 from icdgen.diff.moves import moves
 from icdgen.diff.pairs import DeclaredPair, FieldPair, Match, MessagePair, NodePair, Position, position
+from icdgen.icd.lines import lines
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.protocol.envelope import DIRECTIONS
 
@@ -36,7 +37,7 @@ class Context:
         """Fields that hold the values of an enumeration of the new ICD, by the enumeration's identity."""
         found: dict[int, list[str]] = {}
         for message in (m for node in self.match.new.nodes for m in node.messages):
-            for field in message.lines:
+            for field in lines(message.layout):
                 if field.enum is not None:
                     found.setdefault(id(field.enum), []).append(f"{message.name}: {field.name}")
         return found
@@ -89,7 +90,7 @@ def free_before(pair: FieldPair) -> bool:
     """Whether no field of the old frame lies on bits of the field that came."""
     message = pair.owner
     mine = _bits(position(message.new_node, pair.new))
-    return not any(mine & _bits(position(message.old_node, f)) for f in message.old.fields)
+    return not any(mine & _bits(position(message.old_node, f)) for f in lines(message.old.layout))
 
 
 def _bits(position: Position) -> set[tuple[int, int]]:

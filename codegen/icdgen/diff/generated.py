@@ -22,10 +22,11 @@ from icdgen.diff.pairs import (
     Thing,
 )
 from icdgen.icd.flat import message_with_lists
-from icdgen.icd.layout import Layout, Orders, Scalar, VariableNode, size_of
+from icdgen.icd.layout import Layout, LayoutNode, NodePlace, Scalar, VariableNode, size_of
 from icdgen.icd.layout_copies import with_attributes
+from icdgen.icd.lines import Line
 from icdgen.icd.located import Map
-from icdgen.icd.model import TELEMETRY, Enum, Field, Icd, Message, Node
+from icdgen.icd.model import TELEMETRY, Enum, Icd, Message, Node
 
 if TYPE_CHECKING:
     from icdgen.backends import Identifier
@@ -206,35 +207,19 @@ def _texts(samples: list[FieldPair], side: int) -> list[list[tuple[str, str]]]:
     return found
 
 
-def _sample(field: Field, name: str, source: Map) -> Scalar:
+def _sample(line: Line, name: str, source: Map) -> Scalar:
     """Return a scalar with what a field means, wherever the field stands."""
-    return Scalar(
-        name=name,
-        at=field.at,
-        bits=field.bits,
-        type=field.type,
-        enum=field.enum,
-        unit=field.unit,
-        formula=field.formula,
-        scale=field.scale,
-        curve=field.curve,
-        const=field.const,
-        special=field.special,
-        limits=field.limits,
-        display=field.display,
-        summary=field.summary,
-        orders=Orders(field.byte_order, field.bit_order),
-        present_if=field.when,
-        source=source,
+    return replace(
+        line.scalar, name=name, identifier=None, at=line.at, bits=line.bits, length=None, orders=line.declared_orders, source=source
     )
 
 
-def _decisive(field: Field) -> object:
+def _decisive(field: Line) -> object:
     raw = field.type, field.bits, field.count, field.enum.name if field.enum else None, field.const, bool(field.when)
     return raw, field.unit, field.scale, field.curve, field.special, field.limits
 
 
-def _is_sound(field: Field) -> bool:
+def _is_sound(field: NodePlace) -> bool:
     """Whether a backend can make anything of the field: an ICD that was not checked may hold what none can."""
     if field.is_bytes:
         return field.at % 8 == field.bits % 8 == 0
@@ -250,7 +235,7 @@ class _Cut:
         self.marks = Marks[IdentifiedPair]()
         self.enums: dict[int, Enum] = {}
         self.messages: dict[int, Message] = {}  # id(pair) -> what it has become
-        self.fields: dict[int, Field] = {}
+        self.nodes: dict[int, LayoutNode] = {}  # id(pair) -> what its node has become
         icd = match.new if side else match.old
         names = {one.name: self.name_of(pair) for pair in match.nodes if (one := self.side_of(pair)) is not None}
         nodes = [(node, tuple(self.enum(enum, names) for enum in node.enums)) for node in icd.nodes]
@@ -306,23 +291,22 @@ class _Cut:
     def layout(self, message: Message, pair: MessagePair) -> Layout:
         """The layout of a message with the lines that are kept, each with its mark; structs are left out."""
         layout = message.layout
-        parts = {_place(side): part for part in pair.parts if (side := self.side_of(part)) is not None}
-        members = [one for one in message.members if not one.implied]
+        parts = {id(side.node): part for part in pair.parts if (side := self.side_of(part)) is not None}
         nodes: dict[int, Any] = {}  # id(node) -> what is kept of it
-        for member, node in zip(members, layout.nodes, strict=True):
-            part = None if member.struct else parts[_place(member)]
-            if part is not None and id(part) in self.kept and _is_sound(member):
-                mark, enum = self.marks.of(part), self.enums.get(id(member.enum), member.enum)
-                nodes[id(node)] = with_attributes(node, source=mark, enum=enum)
-                self.fields[id(part)] = replace(member, source=mark, enum=enum)
-        known = {node.name for node in nodes.values()} | {one.name for one in message.fields if one.implied}
+        for place in layout.places:
+            part = parts.get(id(place.node))
+            if part is not None and id(part) in self.kept and place.struct is None and _is_sound(place):
+                mark, enum = self.marks.of(part), self.enums.get(id(place.enum), place.enum)
+                nodes[id(place.node)] = with_attributes(place.node, source=mark, enum=enum)
+                self.nodes[id(part)] = nodes[id(place.node)]
+        known = {node.name for node in nodes.values()} | {part.counter for part in layout.parts if part.is_rest}
         fixed = [nodes[id(node)] for node in layout.fixed if id(node) in nodes]
         derived = [nodes[id(node)] for node in layout.derived if id(node) in nodes]
         sequence: tuple[VariableNode, ...] = tuple(nodes[id(node)] for node in layout.sequence if id(node) in nodes)
         length = layout.length
-        if any(part.name not in known or part.counter not in known for part in message.open_parts):
-            at = {member.name: member.at for member in members}
-            fixed += [_of_full_size(node, at[node.name]) for node in sequence]
+        if any(part.name not in known or part.counter not in known for part in layout.parts):
+            begins = {part.name: part.begin for part in layout.parts}
+            fixed += [_of_full_size(node, 8 * begins[node.name]) for node in sequence]
             sequence, length = (), layout.longest
         return replace(
             layout,
@@ -358,11 +342,12 @@ class _Cut:
         from icdgen.backends.rust import names as rust
         from icdgen.describe import describe
 
-        message, field = self.messages[id(pair.owner)], self.fields[id(pair)]
+        message, node = self.messages[id(pair.owner)], self.nodes[id(pair)]
+        field = next(place for place in message.layout.places if place.node is node)
         if field.type == "enum" and field.enum is None:
             return f"u{field.bits}" if language == "rust" else "int"
         members = describe(self.icd).message(message).all_members
-        one = next(one for one in members if one.model.source is field.source)
+        one = next(one for one in members if one.model.source is node.source)
         if language == "rust":
             return rust.raw_type(one)
         if language == "c":
@@ -377,10 +362,6 @@ def _of_full_size(node: VariableNode, at: int) -> VariableNode:
     if isinstance(node, Scalar):
         return replace(node, at=at, bits=8 * most, length=None)
     return with_attributes(node, at=at, size=most)
-
-
-def _place(field: Field) -> tuple[str, int]:
-    return field.name, field.at
 
 
 def _sort(name: Name) -> tuple[str, bool]:

@@ -23,7 +23,8 @@ from icdgen.diff.pairs import (
     position,
 )
 from icdgen.diff.similar import letters, likeness, overlap
-from icdgen.icd.model import CONFIGURATION, Enum, Field, Icd, Member, Message, Node
+from icdgen.icd.lines import Line, lines
+from icdgen.icd.model import CONFIGURATION, Enum, Icd, Member, Message, Node
 
 SAME_NODE = 0.4  # from here on, nodes of different names are one
 SAME_MESSAGE = 0.55
@@ -144,11 +145,11 @@ class _Left(Generic[Declared]):
     @cached_property
     def shape(self: _Left[Message]) -> frozenset[tuple[int, int, str]]:
         """Of a message: where its fields lie, and how they are read."""
-        return frozenset((f.at, f.width, kind(f)) for f in self.one.lines)
+        return frozenset((f.at, f.width, kind(f)) for f in lines(self.one.layout))
 
     @cached_property
     def field_names(self: _Left[Message]) -> frozenset[str]:
-        return frozenset(f.name for f in self.one.lines)
+        return frozenset(f.name for f in lines(self.one.layout))
 
     @cached_property
     def members(self: _Left[Enum]) -> frozenset[tuple[str, str]]:
@@ -261,7 +262,7 @@ def _renamed_message(one: _Left[Message], other: _Left[Message]) -> float:
     if layout + 0.15 < SAME_MESSAGE:
         return 0.0  # no likeness of names, which takes long to tell, can make up for it
     alike = likeness(old.name, new.name)
-    if not same_id and min(len(old.lines), len(new.lines)) < 2 and alike < 0.6:
+    if not same_id and min(len(lines(old.layout)), len(lines(new.layout))) < 2 and alike < 0.6:
         return 0.0  # too little to go by
     return layout + 0.15 * alike
 
@@ -288,31 +289,33 @@ _MESSAGES_LIKELY = ((_moved_message, _name, SAME_MESSAGE), (_renamed_message, _m
 
 def _fields(pair: MessagePair) -> list[FieldPair]:
     """Those that the ICD has lines for, those of structs wherever they stand."""
-    lines = ([f for f in one.lines if not f.implied] if one else [] for one in (pair.before, pair.after))
-    old, new = (sorted(fields, key=_place) for fields in lines)
+    old, new = (
+        sorted((one for one in lines(message.layout) if not one.implied), key=_place) if message else []
+        for message in (pair.before, pair.after)
+    )
     pairs = _side_by_side(old, new, lambda known, *left: _renamed_fields(pair, known, *left))
     found = [FieldPair(*one, owner=pair) for one in pairs]
     return sorted(found, key=lambda p: _place(p.before or p.new))
 
 
-def _place(field: Field) -> tuple[int, str]:
+def _place(field: Line) -> tuple[int, str]:
     return field.at, field.name
 
 
-def _renamed_fields(pair: MessagePair, known: list[Two[Field]], old: list[Field], new: list[Field]) -> list[Two[Field]]:
+def _renamed_fields(pair: MessagePair, known: list[Two[Line]], old: list[Line], new: list[Line]) -> list[Two[Line]]:
     spans_old, spans_new = ([position(node, f) for f in rows] for node, rows in
                             ((pair.old_node, old), (pair.new_node, new)))  # fmt: skip
     spans = {id(f): span for f, span in zip((*old, *new), (*spans_old, *spans_new), strict=True)}
     shifts = _Shifts(known)
 
-    def sense(one: Field) -> object:
+    def sense(one: Line) -> object:
         return one.type, one.scale, one.curve, one.unit, one.limits
 
-    def keys(one: Field) -> Iterable[object]:
+    def keys(one: Line) -> Iterable[object]:
         """Where it lies, or what it holds."""
         return spans[id(one)], (one.bits, sense(one))
 
-    def score(one: Field, other: Field) -> float:
+    def score(one: Line, other: Line) -> float:
         same_kind, same_span = kind(one) == kind(other), spans[id(one)] == spans[id(other)]
         if not same_span and (one.bits != other.bits or not same_kind):
             return 0.0
@@ -334,7 +337,7 @@ def _renamed_fields(pair: MessagePair, known: list[Two[Field]], old: list[Field]
 class _Shifts:
     """By how much the nearest known field before a place has moved, as seen in the old frame and in the new one."""
 
-    def __init__(self, known: list[Two[Field]]) -> None:
+    def __init__(self, known: list[Two[Line]]) -> None:
         self.old = sorted((one.at, other.at - one.at) for one, other, _ in known)
         self.new = sorted((other.at, other.at - one.at) for one, other, _ in known)
 

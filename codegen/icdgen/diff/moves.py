@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from icdgen.diff.pairs import FieldPair, MessagePair
-from icdgen.icd.model import Field
+from icdgen.icd.lines import Line
 
 
 @dataclass
@@ -37,7 +37,7 @@ class Moves:
 class _Order:
     """The fields that are in both ICDs, as they stand in the frame of one."""
 
-    def __init__(self, kept: list[FieldPair], side: Callable[[FieldPair], Field]) -> None:
+    def __init__(self, kept: list[FieldPair], side: Callable[[FieldPair], Line]) -> None:
         self.rows = sorted(kept, key=lambda pair: (side(pair).at, side(pair).name))
         self.rank = {id(pair): number for number, pair in enumerate(self.rows)}
 
@@ -89,6 +89,6 @@ def _causes(message: MessagePair, move: Move, old: _Order, new: _Order) -> None:
     move.gained = [pair for pair in gained if start_new <= pair.new.at < first.new.at]
     if before_old is not None and before_old is before_new and before_old.old.width != before_old.new.width:
         move.resized = [before_old]
-    longer = (message.new.fixed - message.old.fixed) * 8
+    longer = (message.new.layout.length - message.old.layout.length) * 8
     at_the_end = last is old.rows[-1] or last is new.rows[-1]
     move.reserved = not move.is_shift and at_the_end and longer == move.by

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Generic, TypeVar
 
 from icdgen.diagnostics import Place
 from icdgen.diff.where import Places, Where
 from icdgen.icd.annex import Loggable
-from icdgen.icd.model import Enum, Erratum, Field, Icd, Member, Message, Node
-from icdgen.layout import Piece, byte_range, pieces
+from icdgen.icd.lines import Line
+from icdgen.icd.model import Enum, Erratum, Icd, Member, Message, Node
+from icdgen.layout import Piece, pieces_at
 
 # What a key of an ICD is called in the output of ``show``.
 _SHOWN = {
@@ -23,7 +24,7 @@ _SHOWN = {
 }
 
 
-Thing = TypeVar("Thing", bound=Node | Message | Field | Enum | Member)
+Thing = TypeVar("Thing", bound=Node | Message | Line | Enum | Member)
 Part = TypeVar("Part")
 Row = TypeVar("Row")
 
@@ -109,7 +110,7 @@ class MemberPair(SideBySide[Member]):
 
 
 @dataclass(eq=False)
-class FieldPair(SideBySide[Field]):
+class FieldPair(SideBySide[Line]):
     owner: MessagePair = field(kw_only=True)
 
     def where(self) -> Where:
@@ -117,25 +118,26 @@ class FieldPair(SideBySide[Field]):
 
     @property
     def changed(self) -> bool:
-        return self.before != self.after or self.owner.has_another_vocabulary
+        return not self.both or self.old.content != self.new.content or self.owner.has_another_vocabulary
 
     @cached_property
     def same_bits(self) -> bool:
-        """Whether both lie on the same bits, however these are numbered; of an open end, what they have in common."""
-        old, new = (_firsts_of(one) if self.is_open else (one,) for one in (self.old, self.new))
-        was = [position(self.owner.old_node, one) for one in old]
-        return was == [position(self.owner.new_node, one) for one in new]
+        """Whether both lie on the same bits, however these are numbered; of a variable-length part, those of one element."""
+        was, now = (
+            position(node, one, self.is_open)
+            for node, one in ((self.owner.old_node, self.old), (self.owner.new_node, self.new))
+        )
+        return was == now
 
-    @property
+    @cached_property
     def is_open(self) -> bool:
-        """Whether it is, or was, what ends a message of variable length."""
+        """Whether it is in a variable-length part of its message on one side."""
         sides = (self.owner.old, self.old), (self.owner.new, self.new)
-        names = ((message.open_parts, one.path[0].name if one.path else one.name) for message, one in sides)
-        return any(part.name == name for parts, name in names for part in parts)
+        return any(one.levels[0].node is node for message, one in sides for node in message.layout.sequence)
 
     @property
     def is_of_struct(self) -> bool:
-        return any(step.struct is not None for step in self.any.path)
+        return self.any.is_of_struct
 
     @property
     def moved(self) -> bool:
@@ -226,21 +228,22 @@ def orders(node: Node) -> tuple[str, str]:
     return node.byte_order, node.bit_order
 
 
-def _firsts_of(one: Field) -> tuple[Field, ...]:
-    """The first element, or byte; of a field of a struct, what the first struct has of it."""
-    if one.is_bytes and not one.path and not one.count:
-        return (replace(one, bits=8),)
-    return tuple(element for element in one.elements if not element.path or not element.path[0].index)
+def position(node: Node, line: Line, first_only: bool = False) -> Position:
+    """Return the bits that a field has, comparable between nodes of different byte and bit order.
+
+    With `first_only` those in the first element of a variable-length part.
+    """
+    if line.derived is not None:
+        return ()
+    starts = line.starts(first_only)
+    if line.is_bytes:
+        bits = 8 if first_only and line.scalar.length is not None else line.bits
+        return tuple(range(at // 8, (at + bits + 7) // 8) for at in starts)
+    own = line.orders_in_effect(node.orders)
+    return tuple(piece for at in starts for piece in pieces_at(at, line.bits, own.byte, own.bit))
 
 
-def position(node: Node, one: Field) -> Position:
-    """The bits that the field lies on, comparable between nodes of different byte and bit order."""
-    if one.is_bytes:
-        return tuple(map(byte_range, one.elements))
-    return tuple(piece for element in one.elements for piece in pieces(element, node))
-
-
-def kind(one: Field) -> str:
+def kind(one: Line) -> str:
     """How the bits are read: as an unsigned or signed number, as a float, as bytes."""
     if one.is_bytes:
         return "bytes"
@@ -260,7 +263,7 @@ def differing(
 
 
 def place_of(
-    thing: Node | Message | Field | Enum | Member | Loggable | Erratum | None, keys: tuple[str, ...]
+    thing: Node | Message | Line | Enum | Member | Loggable | Erratum | None, keys: tuple[str, ...]
 ) -> Place | None:
     """Where the first key stands that is there, of a node in its head; the thing itself if none is."""
     if thing is None:

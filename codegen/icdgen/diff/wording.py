@@ -9,7 +9,7 @@ from functools import lru_cache
 from icdgen.describe.numbers import bit_range, factor_text, points_text
 from icdgen.icd.curve import Curve
 from icdgen.icd.formula import Scale
-from icdgen.icd.model import Field
+from icdgen.icd.lines import Line
 from icdgen.icd.rules.wording import count, listing, quote
 
 MOST = 4  # things that are named before the rest is counted
@@ -28,7 +28,7 @@ def bits(number: int) -> str:
     return count(number // 8, "byte") if number and number % 8 == 0 else count(number, "bit")
 
 
-def span(field: Field) -> str:
+def span(field: Line) -> str:
     """``bits 16 to 31``"""
     return bit_range(field.at, field.width)
 
@@ -63,18 +63,18 @@ def _polynomial(curve: Curve) -> str:
     return text
 
 
-def type_of(field: Field) -> str:
+def type_of(field: Line) -> str:
     """``16-bit int``, ``4-bit enum Mode``, ``4-bit signed enum Mode``, ``6 elements, 16-bit int``"""
     return f"{count(field.count, 'element')}, {_type_of(field)}" if field.count else _type_of(field)
 
 
-def _type_of(field: Field) -> str:
+def _type_of(field: Line) -> str:
     if field.type == "enum":
         return f"{field.bits}-bit {'signed ' if field.signed else ''}enum {field.enum.name if field.enum else '?'}"
     return "bool" if field.type == "bool" and field.bits == 1 else f"{field.bits}-bit {field.type}"
 
 
-def read_as(field: Field) -> str:
+def read_as(field: Line) -> str:
     """``int``, ``enum``, ``signed enum``"""
     return f"signed {field.type}" if field.type == "enum" and field.signed else field.type
 

@@ -9,7 +9,8 @@ from icdgen.diff.context import Context, by_id
 from icdgen.diff.pairs import MessagePair, NodePair
 from icdgen.diff.rule import Found, rule
 from icdgen.diff.wording import ids, some
-from icdgen.icd.model import Field, Message, Tail
+from icdgen.icd.layout import VariablePart
+from icdgen.icd.model import Message
 from icdgen.icd.rules.wording import count, quote
 
 DIRECTIONS = {"telecommand": "telecommand_id", "telemetry": "telemetry_id"}
@@ -92,8 +93,8 @@ def kind_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
 @rule("DIF106", "message")
 def length_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     old, new = pair.old, pair.new
-    if old.tail is not None or new.tail is not None:
-        if old.tail is not None and new.tail is not None and old.fixed != new.fixed:
+    if old.layout.sequence or new.layout.sequence:
+        if old.layout.sequence and new.layout.sequence and old.layout.length != new.layout.length:
             text = f"{quote(new.name)} has {length_text(new)}, had {length_text(old)}"
             yield Found(text, ("length",), length_text(old), length_text(new))
         return
@@ -116,26 +117,27 @@ def length_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
 @rule("DIF119", "message")
 def open_end_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     old, new = pair.old, pair.new
-    was, now = _open_parts(old), _open_parts(new)
-    if was == now or (old.tail is None and new.tail is None):
+    was, now = _variable_parts(old), _variable_parts(new)
+    if was == now:
         return
-    details = [f"Frames have {length_text(new)}, had {length_text(old)}."] if old.lengths != new.lengths else []
-    if old.tail is not None and new.tail is not None and not new.inner and old.tail.most < new.tail.most:
-        details.append(f"Decoders of the other release refuse frames of more than {old.tail.most}.")
+    details = []
+    if old.layout.lengths != new.layout.lengths:
+        details.append(f"Frames have {length_text(new)}, had {length_text(old)}.")
+    old_parts, new_parts = old.layout.parts, new.layout.parts
+    if old_parts and len(new_parts) == 1 and old_parts[-1].most < new_parts[-1].most:
+        details.append(f"Decoders of the other release refuse frames of more than {old_parts[-1].most}.")
     text = f"what ends {quote(new.name)} is {now}, was {was}"
     yield Found(text, ("length",), was, now, tuple(details))
 
 
-def _open_parts(message: Message) -> str:
+def _variable_parts(message: Message) -> str:
     """``up to 12 of `Levels`, counted by `Levels Count` ``"""
-    fields = {field.name: field for field in message.fields}
-    found = [_open_part(part, fields[part.counter]) for part in message.open_parts if part.counter in fields]
-    return ", behind it ".join(found) or "of fixed size"
+    return ", behind it ".join(map(_variable_part, message.layout.parts)) or "of fixed size"
 
 
-def _open_part(part: Tail, counter: Field) -> str:
+def _variable_part(part: VariablePart) -> str:
     plus = f" {'+' if part.plus > 0 else '-'} {abs(part.plus):,}" if part.plus else ""
-    counted = "as many as come" if counter.implied else f"counted by {quote(counter.name)}{plus}"
+    counted = "as many as come" if part.is_rest else f"counted by {quote(part.counter)}{plus}"
     return f"up to {part.most} of {quote(part.name)}, {counted}"
 
 

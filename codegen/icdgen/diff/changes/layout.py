@@ -11,7 +11,8 @@ from icdgen.diff.pairs import FieldPair, MessagePair, NodePair, kind, orders
 from icdgen.diff.rule import Found, rule
 from icdgen.diff.where import Places
 from icdgen.diff.wording import bits, read_as, some, span, type_of
-from icdgen.icd.model import Field, Message
+from icdgen.icd.lines import Line
+from icdgen.icd.model import Message
 from icdgen.icd.rules.wording import count, listing, quote
 from icdgen.icd.wire_ids import size
 
@@ -79,7 +80,7 @@ def width_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
 @rule("DIF118", "field")
 def count_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     old, new = pair.old, pair.new
-    before, after = (one.path[-1].count if len(one.path) > 1 else one.count for one in (old, new))
+    before, after = old.own_count, new.own_count
     if before != after and (pair.is_of_struct or not pair.is_open):  # see DIF119; of structs DIF127
         was, now = (count(number, "element") if number else "one value" for number in (before, after))
         text = f"{quote(new.name)} is {_an_array(after)}, was {_an_array(before)}"
@@ -96,11 +97,11 @@ def condition_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
         )
 
 
-def _conditions(field: Field) -> set[tuple[str, frozenset[int]]]:
+def _conditions(field: Line) -> set[tuple[str, frozenset[int]]]:
     return {(one.field, frozenset(one.values)) for one in field.when}
 
 
-def _needs(field: Field, message: Message) -> str:
+def _needs(field: Line, message: Message) -> str:
     if not field.when:
         return "always there"
     return f"there if {' and '.join(condition_text(one, message) for one in field.when)}"

@@ -9,7 +9,7 @@ from icdgen.diff.context import Context
 from icdgen.diff.generated import Name, is_called_otherwise, may_rename
 from icdgen.diff.pairs import EnumPair, FieldPair, IdentifiedPair, MemberPair, MessagePair, NodePair, Pair
 from icdgen.diff.rule import Found, rule
-from icdgen.icd.model import Field
+from icdgen.icd.lines import Line
 from icdgen.icd.rules.wording import count, listing, quote
 
 MOST = 2  # names that are shown of one language
@@ -151,7 +151,7 @@ def became_a_view(pair: FieldPair, ctx: Context) -> Iterator[Found]:
         yield Found(f"{quote(pair.new.name)} is {now}, was {was}", ("view", "at", "name"), was, now, details)
 
 
-def _standing(one: Field) -> str:
+def _standing(one: Line) -> str:
     if one.derived is not None:
         return "derived from other fields"
     return "a view" if one.view else "a field with bits of its own"

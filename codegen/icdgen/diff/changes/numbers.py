@@ -15,7 +15,8 @@ from icdgen.diff.similar import same_sense
 from icdgen.diff.wording import MOST, formula, number
 from icdgen.icd.curve import Curve
 from icdgen.icd.formula import RAW, Scale
-from icdgen.icd.model import Field, Limits, Special
+from icdgen.icd.layout import Limits, Special
+from icdgen.icd.lines import Line
 from icdgen.icd.rules.wording import count, listing, quote
 
 
@@ -94,7 +95,7 @@ def const_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     yield Found(text, ("const",), was, now, severity=severity)
 
 
-def _specials(field: Field) -> list[Special]:
+def _specials(field: Line) -> list[Special]:
     """The values that have a meaning; of floats as numbers, for their bits are others where the width is."""
     return [replace(one, value=0) if one.number else one for one in field.special]
 
@@ -118,7 +119,7 @@ def special_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
         yield Found(text, ("special",), was, now, code=code)
 
 
-def _limits(field: Field) -> str:
+def _limits(field: Line) -> str:
     return " and ".join(f"{bound.kind.sign} {number(bound.value)}" for bound in bounds(field.limits))
 
 

@@ -18,7 +18,8 @@ from icdgen.diff.wording import bits
 from icdgen.icd.flat import with_flat_lists
 from icdgen.icd.layout import Layout
 from icdgen.icd.layout_copies import with_attributes, with_node, with_struct_layout
-from icdgen.icd.model import Field, Icd, Node
+from icdgen.icd.lines import Line
+from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.rules.wording import count, quote
 
 
@@ -37,22 +38,21 @@ def structs_repeated_otherwise(pair: MessagePair, ctx: Context) -> Iterator[Foun
     said = set()
     for part in pair.kept:
         was, now = (_repeated(one, part.is_open) for one in (part.old, part.new))
-        name = ".".join(step.name for step in part.new.path[:-1])
+        name = ".".join(level.node.name for level in part.new.levels[:-1])
         if was is None or now is None or was == now or name in said:
             continue
         said.add(name)
         before, after = _in_words(was), _in_words(now)
-        members = (one.path[-2].member for one in (part.old, part.new))
-        places = [one.source.at("struct") if one is not None else None for one in members]
+        places = [one.levels[-2].node.source.at("struct") for one in (part.old, part.new)]
         text = f"{quote(name)} is {after}, was {before}"
         yield Found(text, (), before, after, where=part.where(), places=(places[0], places[1]))
 
 
-def _repeated(line: Field, is_open: bool) -> tuple[tuple[int, int], ...] | None:
+def _repeated(line: Line, is_open: bool) -> tuple[tuple[int, int], ...] | None:
     """How often the structs stand in which a field is (0 of an open end: see DIF119), and how far apart; None if it is in none."""
-    if len(line.path) < 2:
+    if not line.is_of_struct:
         return None
-    found = [(step.count, step.stride) for step in line.path[:-1]]
+    found = [(level.count, level.stride) for level in line.levels[:-1]]
     return ((0, found[0][1]), *found[1:]) if is_open else tuple(found)
 
 
@@ -137,7 +137,7 @@ def _declared(icd: Icd, node: Node) -> dict[str, _Declared]:
 
 @rule("DIF314", "message")
 def struct_stands_otherwise(pair: MessagePair, ctx: Context) -> Iterator[Found]:
-    was, now = ([_standing(one) for one in side.members if one.struct] for side in (pair.old, pair.new))
+    was, now = (list(_standing(side)) for side in (pair.old, pair.new))
     gone, come = [one for one in was if one not in now], [one for one in now if one not in was]
     if not gone and not come:
         return
@@ -148,8 +148,9 @@ def struct_stands_otherwise(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     yield Found(text, ("fields",), ", ".join(gone), ", ".join(come), tuple(details), severity, addition)
 
 
-def _standing(member: Field) -> str:
-    """``Satellites: 4 x Satellite``"""
-    assert member.struct is not None
-    times = f"{member.count} x " if member.count else ""
-    return f"{member.identifier or member.name}: {times}{member.struct.name}"
+def _standing(message: Message) -> Iterator[str]:
+    """``Satellites: 4 x Satellite``, for each struct in a message."""
+    for place in message.layout.places:
+        if place.struct is not None:
+            times = f"{place.count} x " if place.count else ""
+            yield f"{place.identifier or place.name}: {times}{place.struct.name}"

@@ -10,7 +10,7 @@ from icdgen.diff.change import Change
 from icdgen.diff.layers import MEANING, SOURCE
 from icdgen.diff.pairs import FieldPair, MessagePair, kind
 from icdgen.diff.wording import formula, span, type_of
-from icdgen.icd.model import Field
+from icdgen.icd.lines import Line
 
 BITS = 64  # a row
 CELL = 14  # width of a bit
@@ -111,7 +111,7 @@ def _frame(rows: list[Row], size: int, y: int) -> None:
             row.frames.append(Box(LEFT, y, bits * CELL, "frame", "", "reserved", ""))
 
 
-def _boxes(rows: list[Row], one: Field, y: int, kind: str, key: str) -> dict[int, Box]:
+def _boxes(rows: list[Row], one: Line, y: int, kind: str, key: str) -> dict[int, Box]:
     """A box for each row that the field reaches into."""
     found = {}
     end = one.at + one.width
@@ -131,7 +131,7 @@ def _label(name: str, width: float) -> str:
     return f"{name[: room - 1]}…" if room >= 4 else ""
 
 
-def _title(one: Field) -> str:
+def _title(one: Line) -> str:
     words = [one.name, span(one), type_of(one)]
     if one.has_formula:
         words.append(formula(one.curve or one.scale))
