@@ -210,7 +210,14 @@ def _texts(samples: list[FieldPair], side: int) -> list[list[tuple[str, str]]]:
 def _sample(line: Line, name: str, source: Map) -> Scalar:
     """Return a scalar with what a field means, wherever the field stands."""
     return replace(
-        line.scalar, name=name, identifier=None, at=line.at, bits=line.bits, length=None, orders=line.declared_orders, source=source
+        line.scalar,
+        name=name,
+        identifier=None,
+        at=line.at,
+        bits=line.bits,
+        length=None,
+        orders=line.declared_orders,
+        source=source,
     )
 
 

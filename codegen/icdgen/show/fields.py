@@ -17,8 +17,9 @@ from icdgen.describe.numbers import (
     special_text,
     value_text,
 )
-from icdgen.icd.model import Field, Message, Node, Struct, Tail
-from icdgen.icd.places import AnyField
+from icdgen.icd.layout import NodePlace, VariablePart
+from icdgen.icd.lines import Line, lines
+from icdgen.icd.model import Message, Node, Struct
 from icdgen.tables import Column, render
 
 _COLUMNS = [
@@ -31,19 +32,19 @@ _COLUMNS = [
 
 def field_table(message: Message | Struct, node: Node, width: int | None = None) -> str:
     """Fields and reserved bits in the order of the frame; empty for a message without any."""
-    rows = [(field.at, _row(field, message)) for field in message.lines if not field.implied]
+    rows = [(field.at, _row(field, message)) for field in lines(message.layout) if not field.implied]
     reserved = ("reserved", "", "", "", "", "", "")
     rows += [(gap.at, (str(gap.at), str(gap.bits), *reserved)) for gap in layout.gaps(message, node)]
     return render(_COLUMNS, [row for _, row in sorted(rows, key=lambda r: r[0])], width)
 
 
-def _row(field: Field, message: Message | Struct) -> tuple[str, ...]:
+def _row(field: Line, message: Message | Struct) -> tuple[str, ...]:
     low, high = ("" if bound is None else exact_text(bound) for bound in allowed_ends(field))
     resolution = factor_text(field.scale.factor) if field.scale else ""
     unit = field.unit_symbol
     kind = field.enum.name if field.enum else field.type
     bits = f"{field.count} x {field.bits}" if field.count else str(field.bits)
-    part = _open_part(message if isinstance(message, Message) else None, field)
+    part = _variable_part(message, field)
     if part is not None and part.name == field.name:
         bits = f"up to {part.most} x {8 * part.step}"
     place = ("", "", "derived") if field.derived else (str(field.at), bits, kind)
@@ -52,17 +53,16 @@ def _row(field: Field, message: Message | Struct) -> tuple[str, ...]:
 
 
 def remarks(
-    field: AnyField, number: Callable[[Fraction], str] = exact_text, message: Message | None = None
+    field: NodePlace, number: Callable[[Fraction], str] = exact_text, message: Message | None = None
 ) -> Iterator[str]:
     """What is constant, exclusive limits, and what special values mean, that it is a view; ``number`` writes numbers.
 
-    ``message`` is the one that has it, where it may be its open end.
+    ``message`` is the one that has it, if the field can be in a variable-length part.
     """
-    part = _open_part(message, field)
+    part = _variable_part(message, field)
     if part is not None and message is not None:
-        is_rest = part is message.tail and message.counter is not None and message.counter.implied
-        yield "up to the end of the frame" if is_rest else f"as many as {count_text(part.counter, part.plus)} says"
-        before = [one.name for one in message.inner if one.begin < field.at // 8 and one is not part]
+        yield "up to the end of the frame" if part.is_rest else f"as many as {count_text(part.counter, part.plus)} says"
+        before = [one.name for one in message.layout.parts[:-1] if one.begin < field.at // 8 and one is not part]
         if before:
             yield f"behind {before[-1]}"
     if field.when:
@@ -75,11 +75,11 @@ def remarks(
         yield "a view of bits that other fields have"
     if told := orders_text(field):
         yield told
-    for step in field.path if isinstance(field, Field) else ():
-        if step.struct is not None and step.is_open:
+    for level in field.levels if isinstance(field, Line) else ():
+        if level.struct is not None and level.count:
             most = "up to " if part is not None else ""
-            every = f", every {byte_count(step.struct.length)}"
-            yield f"{most}{step.count} times{every}" if step.count > 1 else f"{most}once"
+            every = f", every {byte_count(level.struct.length)}"
+            yield f"{most}{level.count} times{every}" if level.count > 1 else f"{most}once"
     if field.display is not None:
         yield field.display.words
     if field.curve is not None and field.curve.points:
@@ -93,10 +93,7 @@ def remarks(
         yield f"{special_text(special) if special.number else number(Fraction(special.value))}: {special.meaning}"
 
 
-def _open_part(message: Message | None, field: AnyField) -> Tail | None:
-    """The open part of its message that a line is, or stands in."""
-    if isinstance(field, Field):
-        name = field.path[0].name if field.path else field.name
-    else:
-        name = field.steps[0].node.name
-    return next((part for part in (message.open_parts if message else ()) if part.name == name), None)
+def _variable_part(message: Message | Struct | None, field: NodePlace) -> VariablePart | None:
+    """Return the part of variable length that a field is, or is in; None if it is in none."""
+    node = field.steps[0].node
+    return next((part for part in message.layout.parts if part.node is node), None) if message else None

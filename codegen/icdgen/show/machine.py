@@ -11,8 +11,9 @@ from typing import Any
 from icdgen.describe.bounds import bounds
 from icdgen.icd.annex import Loggable
 from icdgen.icd.erratum import Erratum
+from icdgen.icd.layout import NodePlace, VariablePart
 from icdgen.icd.located import plain
-from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node, Struct, Tail
+from icdgen.icd.model import Enum, Icd, Member, Message, Node, Struct
 
 FORMAT = 1
 SCHEMA = Path(__file__).parent.with_name("show.schema.json")
@@ -23,7 +24,6 @@ _PLAIN = ("str", "int", "str | None", "int | None")  # types, as the model's cla
 _OTHERWISE = {  # what is not shown, or not as it is
     Node: ("file",),
     Message: ("node",),
-    Field: ("at", "formula", "counts_from"),  # the last follows from the `tail` of its message
     Enum: ("node",),
     Struct: ("node",),
     Erratum: ("why",),
@@ -67,7 +67,7 @@ def _node(node: Node) -> _Object:
     ) | {
         "includes": list(node.includes),
         **(
-            {"structs": [_row(one) | {"fields": list(map(_field, one.members))} for one in node.structs]}
+            {"structs": [_row(one) | {"fields": list(map(_field, one.layout.places))} for one in node.structs]}
             if node.structs
             else {}
         ),
@@ -78,43 +78,46 @@ def _node(node: Node) -> _Object:
 
 
 def _message(message: Message) -> _Object:
+    parts = list(map(_variable_part, message.layout.parts))
+    places = [place for place in message.layout.places if not place.is_count]
     return _present(
         **_attributes(message),
         acknowledge=None if message.acknowledge else "reset" if message.expects_reset else False,
         aliases=list(message.aliases),
         contains=[{"message": part.message, "offset": part.at} for part in message.contains],
-        tail=_tail(message),
-        inner=[_open_part(one, one.counter, one.begin) for one in message.inner],
+        tail=parts[-1] if parts else None,
+        inner=parts[:-1],
         **_ids(message.errata),
     ) | {
-        "fields": [_field(f) for f in message.members if not f.implied and f.derived is None],
-        **_present(derived=[_derived(f) for f in message.views if f.derived is not None]),
+        "fields": [_field(place) for place in places if place.derived is None],
+        **_present(derived=[_derived(place) for place in places if place.derived is not None]),
     }
 
 
-def _tail(message: Message) -> _Object | None:
-    """The open end: what counts it is left out where only the length of a frame tells."""
-    tail, counter = message.tail, message.counter
-    if tail is None or counter is None:
-        return None
-    return _open_part(tail, None if counter.implied else counter.name, message.begin)
-
-
-def _open_part(tail: Tail, counter: str | None, begin: int) -> _Object:
+def _variable_part(part: VariablePart) -> _Object:
+    """A part of variable length; its counter is left out if only the length of a frame gives the number of elements."""
     return _present(
-        part=tail.name,
-        counter=counter,
-        least=begin,
-        step=tail.step,
-        most=tail.most,
-        plus=tail.plus or None,
+        part=part.name,
+        counter=None if part.is_rest else part.counter,
+        least=part.begin,
+        step=part.step,
+        most=part.most,
+        plus=part.plus or None,
     )
 
 
-def _field(field: Field) -> _Object:
+def _field(field: NodePlace) -> _Object:
     scale = field.scale
     return _present(
-        **_attributes(field),
+        name=field.name,
+        bits=field.bits,
+        type=field.type,
+        identifier=field.identifier,
+        const=field.const,
+        summary=field.summary,
+        byte_order=field.byte_order,
+        bit_order=field.bit_order,
+        count=field.count or None,
         aliases=list(field.aliases),
         offset=field.at,
         enum=field.enum.name if field.enum else None,
@@ -133,7 +136,7 @@ def _field(field: Field) -> _Object:
     )
 
 
-def _derived(field: Field) -> _Object:
+def _derived(field: NodePlace) -> _Object:
     found = {key: getattr(field, key) for key in ("name", "identifier", "formula", "summary")}
     display = field.display.plain if field.display else None
     return _present(**found, aliases=list(field.aliases), unit=field.unit_symbol or None, display=display)
@@ -169,8 +172,8 @@ def _places(node: Node) -> Iterator[tuple[_Object, tuple[Erratum, ...]]]:
     for what, owners in (("struct", node.structs), ("message", node.messages)):
         for owner in owners:
             yield {what: owner.name}, owner.errata
-            for field in owner.members:
-                yield {what: owner.name, "field": field.name}, field.errata
+            for line in owner.layout.nodes:
+                yield {what: owner.name, "field": line.name}, line.errata
     for enum in node.enums:
         yield {"enum": enum.name}, enum.errata
         for member in enum.members:

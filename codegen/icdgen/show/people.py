@@ -10,6 +10,7 @@ from icdgen.describe.ids import id_text, pair_bytes
 from icdgen.describe.numbers import length_text
 from icdgen.describe.shared_ids import sharing
 from icdgen.icd.erratum import Erratum
+from icdgen.icd.lines import lines as icd_lines
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Icd, Message, Node, Struct
 from icdgen.icd.rules.wording import count
 from icdgen.icd.variants import ids_of
@@ -60,7 +61,7 @@ def _nodes(icd: Icd, width: int | None) -> str:
             _number(node.node_type),
             _number(node.interface_version),
             *(str(sum(m.kind == kind for m in node.messages)) for kind in (TELECOMMAND, TELEMETRY, CONFIGURATION)),
-            str(sum(m.field_count for m in node.messages)),
+            str(sum(map(_field_count, node.messages))),
             str(sum(not e.is_note for e in node.errata)),
             str(sum(e.is_note for e in node.errata)),
             ", ".join(node.includes),
@@ -88,8 +89,8 @@ def _node(icd: Icd, node: Node, width: int | None, kind: str | None) -> str:
             "/".join(id_text(form, id) for id in m.ids),
             m.kind,
             m.name,
-            str(m.length) if len(m.lengths) == 1 else f"{m.least} to {m.length}",
-            str(m.field_count),
+            str(m.layout.longest) if len(m.layout.lengths) == 1 else f"{m.layout.shortest} to {m.layout.longest}",
+            str(_field_count(m)),
             _number(m.table),
             m.group,
             m.node if m.node != node.name else "",
@@ -119,6 +120,11 @@ def _one(icd: Icd, node: Node, name: str, width: int | None, kind: str | None) -
         if not found:
             raise
         return "\n".join(found)
+
+
+def _field_count(message: Message) -> int:
+    """Return the number of fields, each element of an array by itself."""
+    return sum(not field.is_count for field in message.layout.scalars)
 
 
 def _struct(struct: Struct, node: Node, width: int | None) -> str:
@@ -151,7 +157,7 @@ def _message(icd: Icd, asked: Node, message: Message, width: int | None) -> str:
     lines += filter(None, [sharing(ids_of(icd, node), message)])
     lines += [f"From bit {part.at} it repeats {part.message}." for part in message.contains]
     table = field_table(message, node, width)
-    enums = [_enum(one, width) for one in dict.fromkeys(f.enum for f in message.fields if f.enum)]
+    enums = [_enum(one, width) for one in dict.fromkeys(line.enum for line in icd_lines(message.layout) if line.enum)]
     errata = [_erratum(one, width) for one in errata_of_message(message)]
     return "\n".join([_lines(lines, width), *filter(None, [table]), *enums, *errata])
 
