@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from hypothesis import strategies as st
 
-from icdgen.icd.derived import EXPONENT_BITS, parse
+from icdgen.icd.derived import parse
+from icdgen.icd.derived_values import EXPONENT_BITS
 from icdgen.icd.formula import FormulaError
 
 _ALONE = ("count", "when", "bitfields", "struct", "up_to")
