@@ -10,8 +10,9 @@ from typing import Any, Generic, TypeVar
 from icdgen.diagnostics import Place
 from icdgen.diff.where import Places, Where
 from icdgen.icd.annex import Loggable
+from icdgen.icd.layout import LayoutNode
 from icdgen.icd.lines import Line
-from icdgen.icd.model import Enum, Erratum, Icd, Member, Message, Node
+from icdgen.icd.model import Enum, Erratum, Icd, Member, Message, Node, Struct
 from icdgen.layout import Piece, pieces_at
 
 # What a key of an ICD is called in the output of ``show``.
@@ -263,7 +264,8 @@ def differing(
 
 
 def place_of(
-    thing: Node | Message | Line | Enum | Member | Loggable | Erratum | None, keys: tuple[str, ...]
+    thing: Node | Message | Line | LayoutNode | Struct | Enum | Member | Loggable | Erratum | None,
+    keys: tuple[str, ...],
 ) -> Place | None:
     """Where the first key stands that is there, of a node in its head; the thing itself if none is."""
     if thing is None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TypeAlias
 
 from icdgen.diff.context import Context
 from icdgen.diff.generated import is_called_otherwise
@@ -18,21 +19,43 @@ from icdgen.diff.pairs import (
     place_of,
 )
 from icdgen.diff.rule import Found, rule
-from icdgen.diff.where import Places
+from icdgen.diff.where import Places, Where
+from icdgen.icd.layout import LayoutNode, struct_layout_of
+from icdgen.icd.lines import Line
+from icdgen.icd.model import Enum, Member, Message, Node, Struct
 from icdgen.icd.rules.wording import quote
+
+Described: TypeAlias = Node | Message | Line | Enum | Member | Struct | LayoutNode
+"""Things with a summary."""
 
 
 @rule("DIF401", "node", "message", "field", "enum", "member", severity="note")
 def summary_changed(pair: Pair, ctx: Context) -> Iterator[Found]:
+    yield from _words_changed(pair.old, pair.new, pair.where())
+    if isinstance(pair, NodePair):
+        structs = {struct.name: struct for struct in pair.old.structs}
+        for struct in pair.new.structs:
+            if struct.name in structs:
+                yield from _words_changed(structs[struct.name], struct, pair.where())
+    if isinstance(pair, MessagePair):  # lines with a struct are no fields
+        lines = {line.name: line for line in pair.old.layout.nodes if struct_layout_of(line)}
+        for line in pair.new.layout.nodes:
+            if struct_layout_of(line) and line.name in lines:
+                yield from _words_changed(lines[line.name], line, pair.where()._replace(field=line.name))
+
+
+def _words_changed(old: Described, new: Described, where: Where) -> Iterator[Found]:
     for key in ("summary", "title", "hazard"):
-        old, new = getattr(pair.old, key, ""), getattr(pair.new, key, "")
-        if old != new:
-            verb = "is new" if not old else "is gone" if not new else "says otherwise"
-            yield Found(f"the {key} of {quote(pair.new.name)} {verb}", (key,), old, new)
-    was, now = (", ".join(getattr(side, "aliases", ())) for side in (pair.old, pair.new))
+        was, now = getattr(old, key, ""), getattr(new, key, "")
+        if was != now:
+            verb = "is new" if not was else "is gone" if not now else "says otherwise"
+            places = place_of(old, (key,)), place_of(new, (key,))
+            yield Found(f"the {key} of {quote(new.name)} {verb}", (key,), was, now, where=where, places=places)
+    was, now = (", ".join(getattr(side, "aliases", ())) for side in (old, new))
     if was != now:
-        text = f"{quote(pair.new.name)} is also called {now or 'nothing else'}, was {was or 'nothing else'}"
-        yield Found(text, ("aliases",), was, now)
+        text = f"{quote(new.name)} is also called {now or 'nothing else'}, was {was or 'nothing else'}"
+        places = place_of(old, ("aliases",)), place_of(new, ("aliases",))
+        yield Found(text, ("aliases",), was, now, where=where, places=places)
 
 
 @rule("DIF402", "message", "enum", "node", severity="note")
