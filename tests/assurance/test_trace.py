@@ -312,3 +312,30 @@ def test_the_pack_is_the_same_each_time(demo_pack, tmp_path):
     elsewhere = tmp_path / "elsewhere"
     shutil.copytree(demo_pack.folder, elsewhere)
     assert again.files == demo_pack.files == Pack(elsewhere).files
+
+
+TWO_PARTS = """\
+icdgen: 1
+node: {name: demo, title: Demo, byte_order: little, bit_order: lsb0}
+messages:
+  - name: Status
+    id: 130
+    kind: telemetry
+    length: 2
+    fields:
+      - {at: 0, bits: 8, name: Keys Count, type: uint}
+      - {at: 8, bits: 8, name: Levels Count, type: uint}
+      - {at: 16, bits: 16, name: Keys, type: uint, count: Keys Count, up_to: 3}
+      - {at: 16, after: Keys, bits: 16, name: Levels, type: int, formula: raw*0.5, count: Levels Count, up_to: 2}
+"""
+
+
+def test_each_change_of_elements_behind_a_variable_part_fails_the_vectors_that_the_trace_names(tmp_path):
+    (tmp_path / "icd").mkdir()
+    (tmp_path / "icd" / "demo.yaml").write_text(TWO_PARTS, "utf-8")
+    pack = Pack(tmp_path / "icd")
+    behind = [change for change in pack.changes if change["name"] == "Levels"]
+    assert {change["kind"] for change in behind} == {"type", "formula"}
+    for number, change in enumerate(behind):
+        assert change["vectors"], change
+        hold(pack, change, tmp_path / str(number))

@@ -11,7 +11,7 @@ from dataclasses import replace
 from functools import cached_property
 from itertools import accumulate
 from operator import or_
-from typing import Any
+from typing import Any, NamedTuple
 
 from icdgen import codec
 from icdgen.backends.assurance.changes import with_layout
@@ -24,6 +24,15 @@ from icdgen.vectors.settings import NEVER, bits_of, float_of
 from icdgen.vectors.write import raw_json
 
 _REFUSED = object()
+
+
+class LongRow(NamedTuple):
+    """A row of the vectors with its frames in the form of the longest frame, zeros for the elements that they lack."""
+
+    row: Row
+    frame: bytes
+    encoded: bytes
+    sent: int  # bits of the longest frame that the encoded frame has
 
 
 class MessageWatch:
@@ -58,7 +67,7 @@ class MessageWatch:
         frame = message.layout.frame(self.node.orders)
         needed = {one.field for one in (*old.when, *now.when)}
         alone = self._alone(frame[index], *(one for one in frame if one.name in needed))
-        rows = zip(self.lines.rows, self.vectors.rows, self._of_others[index], strict=True)
+        rows = zip(self.lines.rows, self._long_rows, self._of_others[index], strict=True)
         return found + [number for number, row, others in rows if _notices(row, old, now, self.node, alone, others)]
 
     def enum(self, old: Enum, new: Enum) -> list[int]:
@@ -129,6 +138,30 @@ class MessageWatch:
         return len(codec.encode(self.node, self.message, self.message.fresh))
 
     @cached_property
+    def _long_rows(self) -> list[LongRow]:
+        """The rows of the vectors, in the form of the longest frame."""
+        return [
+            LongRow(
+                row,
+                self._in_longest(row.frame, row.raw),
+                self._in_longest(row.encoded, row.raw),
+                _number(self._in_longest(b"\xff" * len(row.encoded), row.raw)),
+            )
+            for row in self.vectors.rows
+        ]
+
+    def _in_longest(self, frame: bytes, raw: Raw) -> bytes:
+        """Return the longest frame, with the bytes of a frame of these values where they stand in it."""
+        layout = self.message.layout
+        longest, rest = frame[: layout.length].ljust(layout.length, b"\0"), frame[layout.length :]
+        for part in layout.parts:
+            count = raw[part.counter]
+            assert isinstance(count, int), "a counter is a number"
+            size = (count + part.plus) * part.step
+            longest, rest = longest + rest[:size].ljust(part.most * part.step, b"\0"), rest[size:]
+        return longest
+
+    @cached_property
     def _of_others(self) -> list[list[int]]:
         """Of each field, the bits that all other fields set in each row's frame."""
         columns = []
@@ -148,16 +181,19 @@ class MessageWatch:
         return [list(column) for column in zip(*by_row, strict=True)]
 
 
-def _notices(row: Row, old: Field, now: Field, node: Node, alone: Message, others: int) -> bool:
-    """Whether a row demands what is not so of a field. ``alone``: the message with ``now`` only; ``others``: bits of the rest."""
-    answer = _answer(node, alone, row.frame.ljust(alone.length, b"\0"))  # the rest of the longest frame
+def _notices(long: LongRow, old: Field, now: Field, node: Node, alone: Message, others: int) -> bool:
+    """Return whether a row of the vectors fails with another field.
+
+    `alone` is the message with this field only; `others` are the bits of all other fields.
+    """
+    answer = _answer(node, alone, long.frame)
     if answer is None:
         return True
-    raw, read, frame = row.raw.get(old.name), answer[0].get(now.name), answer[1]
+    raw, read, frame = long.row.raw.get(old.name), answer[0].get(now.name), answer[1]
     if raw is None or read is None:
         return raw is not read
     # a view is read from what the others are encoded to, too
-    if now.view and codec.decode(node, alone, row.encoded.ljust(alone.length, b"\0"))[now.name] != raw:
+    if now.view and codec.decode(node, alone, long.encoded)[now.name] != raw:
         return True
     if _shown(now, read) != _shown(old, raw) or _name(now, read) != _name(old, raw):
         return True
@@ -166,8 +202,7 @@ def _notices(row: Row, old: Field, now: Field, node: Node, alone: Message, other
             return True
         if old.leads_back and (not now.leads_back or _set_back(now, read) != _set_back(old, raw)):
             return True  # what does not lead back is not asked to
-    there = (1 << 8 * len(row.encoded)) - 1  # of a frame that ends early, elements that are not there do not tell
-    return (_number(frame) | others) & there != _number(row.encoded)
+    return (_number(frame) | others) & long.sent != _number(long.encoded)
 
 
 def _place(field: Field) -> tuple[object, ...]:
