@@ -11,12 +11,12 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
-from icdgen.icd.formula import MAX_DEGREE, MAX_DEPTH, MAX_DIGITS, MAX_EXPONENT, MAX_POWER_BITS, FormulaError, Tokens
+from icdgen.icd.expression import Arithmetic, FormulaError, Token, evaluate
+from icdgen.icd.formula import MAX_DEGREE, MAX_EXPONENT, power_of_number
 from icdgen.suggest import close_to
 
-_NUMBER = re.compile(r"[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]{1,2})?")
 _WORDS = re.compile(r"[^\W\d](?:[\w .\[\]]*[\w\]])?")  # what looks like a name
 
 
@@ -78,7 +78,8 @@ _OPERATORS = {
     "^": power,
 }
 
-_Node = Fraction | str | tuple[str, Any, Any]  # a number, a field, or an operator with what stands on both sides
+_Tree: TypeAlias = "Fraction | str | tuple[str, _Tree, _Tree]"
+"""A number, the name of a field, or an operator with its two operands."""
 
 
 def parse(text: str, names: Collection[str]) -> Derivation:
@@ -88,140 +89,83 @@ def parse(text: str, names: Collection[str]) -> Derivation:
 
 @lru_cache(maxsize=1024)
 def _parse_cached(text: str, names: frozenset[str]) -> Derivation:
-    parser = _Parser(_tokens(text, names))
-    found = parser.sum()
-    if parser.rest:
-        raise FormulaError(f"`{parser.rest[0]}` is not expected there")
-    if isinstance(found, Fraction):
+    tree = evaluate(text, _Trees(names))
+    if isinstance(tree, Fraction):
         raise FormulaError("it does not depend on a field")
-    return _in_steps(found)
+    return _in_steps(tree)
 
 
-class _Name(str):
-    """A token that is the name of a field."""
+class _Trees(Arithmetic[_Tree]):
+    """Arithmetic that keeps the operations on fields for later and computes the others at once, exactly."""
+
+    def __init__(self, names: frozenset[str]) -> None:
+        self.names = sorted(sorted(names), key=len, reverse=True)
+
+    def name_at(self, text: str, at: int) -> str:
+        """Return the longest name of a field, whatever characters it has."""
+        matches = (name for name in self.names if text.startswith(name, at))
+        return next((name for name in matches if not _continues(text, at + len(name), name)), "")
+
+    def unreadable(self, text: str, at: int) -> FormulaError:
+        """Return the error for a word that is no name of a field, or for a character that no formula has."""
+        words = _WORDS.match(text, at)
+        if words is None:
+            return FormulaError(f"`{text[at]}` is not part of a formula")
+        close = close_to(words.group(), sorted(self.names))
+        return FormulaError(f"there is no field `{words.group()}`" + (f"; did you mean `{close}`?" if close else ""))
+
+    def number(self, number: Fraction) -> _Tree:
+        """Return the number."""
+        return number
+
+    def variable(self, name: str) -> _Tree:
+        """Return the name of the field."""
+        return name
+
+    def operation(self, operator: str, left: _Tree, right: _Tree) -> _Tree:
+        """Return the operation, or its result if no field has part in it."""
+        if operator == "/" and isinstance(right, Fraction) and not right:
+            raise FormulaError("it divides by zero")
+        if not isinstance(left, Fraction) or not isinstance(right, Fraction):
+            return operator, left, right
+        match operator:
+            case "+":
+                return left + right
+            case "-":
+                return left - right
+            case "*":
+                return left * right
+        return left / right
+
+    def power(self, base: _Tree, exponent: Token, is_negative: bool) -> _Tree:
+        """Return a power; the exponent is a whole number or a field."""
+        if exponent.is_name:
+            if is_negative:
+                raise FormulaError(f"`^-{exponent.text}` has a sign before a field; divide by the power instead")
+            return "^", base, exponent.text
+        most = MAX_EXPONENT if isinstance(base, Fraction) else MAX_DEGREE
+        if not exponent.text.isdigit() or int(exponent.text) > most:
+            raise FormulaError(f"what stands behind `^` is neither a field nor a whole number up to {most}")
+        number = -int(exponent.text) if is_negative else int(exponent.text)
+        return power_of_number(base, number) if isinstance(base, Fraction) else ("^", base, Fraction(number))
 
 
-def _tokens(text: str, names: frozenset[str]) -> list[str]:
-    """Numbers, operators, and the names of fields: of several the longest, whatever characters it has."""
-    tokens: list[str] = []
-    known, at, text = sorted(names, key=len, reverse=True), 0, text.rstrip()
-    while at < len(text):
-        if text[at].isspace():
-            at += 1
-            continue
-        number = _NUMBER.match(text, at)
-        plain = number.group() if number else text[at] if text[at] in "+-*/^()" else ""
-        name = next((one for one in known if text.startswith(one, at) and not _goes_on(text, at + len(one), one)), "")
-        token: str = _Name(name) if len(name) > len(plain) else plain
-        if not token:
-            raise FormulaError(_unknown(text, at, names))
-        if token is plain and len(plain) > MAX_DIGITS:
-            raise FormulaError(f"a number has more than {MAX_DIGITS} digits")
-        tokens.append(token)
-        at += len(token)
-    return tokens
+def _continues(text: str, end: int, name: str) -> bool:
+    """Return whether the word in which a name ends continues behind it."""
+    return _is_of_word(name[-1]) and end < len(text) and (_is_of_word(text[end]) or text[end] == "[")
 
 
-def _goes_on(text: str, end: int, name: str) -> bool:
-    """Whether the word in which a name ends goes on behind it."""
-    return _is_word(name[-1]) and end < len(text) and (_is_word(text[end]) or text[end] == "[")
-
-
-def _is_word(letter: str) -> bool:
+def _is_of_word(letter: str) -> bool:
     return letter.isalnum() or letter == "_"
 
 
-def _unknown(text: str, at: int, names: frozenset[str]) -> str:
-    words = _WORDS.match(text, at)
-    if words is None:
-        return f"`{text[at]}` is not part of a formula"
-    close = close_to(words.group(), names)
-    return f"there is no field `{words.group()}`" + (f"; did you mean `{close}`?" if close else "")
-
-
-class _Parser(Tokens):
-    """Recursive descent. What no field has part in is computed at once, exactly."""
-
-    def sum(self) -> _Node:
-        left = self.product()
-        while self.rest and _is_operator(self.rest[0], "+-"):
-            left = _joined(self.take(), left, self.product())
-        return left
-
-    def product(self) -> _Node:
-        left = self.unary()
-        while self.rest and _is_operator(self.rest[0], "*/"):
-            left = _joined(self.take(), left, self.unary())
-        return left
-
-    def unary(self) -> _Node:
-        self.depth += 1
-        if self.depth > MAX_DEPTH:
-            raise FormulaError(f"more than {MAX_DEPTH} parentheses or signs are open at once")
-        token = self.take()
-        if _is_operator(token, "-"):
-            found = _joined("-", Fraction(0), self.unary())
-        else:
-            found = self.power(self.primary(token))
-        self.depth -= 1
-        return found
-
-    def power(self, base: _Node) -> _Node:
-        if not self.rest or not _is_operator(self.rest[0], "^"):
-            return base
-        self.take()
-        is_negative = bool(self.rest) and _is_operator(self.rest[0], "-")
-        token = self.take() if not is_negative else (self.take(), self.take())[1]
-        if self.rest and _is_operator(self.rest[0], "^"):
-            raise FormulaError("`^` stands twice in a row; use parentheses")
-        if isinstance(token, _Name) and not is_negative:
-            return "^", base, str(token)
-        if isinstance(token, _Name):
-            raise FormulaError(f"`^-{token}` has a sign before a field; divide by the power instead")
-        most = MAX_EXPONENT if isinstance(base, Fraction) else MAX_DEGREE
-        if not token.isdigit() or int(token) > most:
-            raise FormulaError(f"what stands behind `^` is neither a field nor a whole number up to {most}")
-        return _joined("^", base, Fraction(-int(token) if is_negative else int(token)))
-
-    def primary(self, token: str) -> _Node:
-        if isinstance(token, _Name):
-            return str(token)
-        if token == "(":
-            inner = self.sum()
-            if self.take() != ")":
-                raise FormulaError("a parenthesis is not closed")
-            return inner
-        if token[0].isdigit():
-            return Fraction(token)
-        raise FormulaError(f"`{token}` is not expected there")
-
-
-def _is_operator(token: str, which: str) -> bool:
-    return not isinstance(token, _Name) and token in which
-
-
-def _joined(operator: str, left: _Node, right: _Node) -> _Node:
-    if operator == "/" and isinstance(right, Fraction) and not right:
-        raise FormulaError("it divides by zero")
-    if not isinstance(left, Fraction) or not isinstance(right, Fraction):
-        return operator, left, right
-    if operator == "^":
-        if right < 0 and not left:
-            raise FormulaError("it divides by zero")
-        if max(abs(left.numerator), left.denominator).bit_length() * abs(right) > MAX_POWER_BITS:
-            raise FormulaError("a power is too large to be meant")
-        return left ** int(right)
-    found = {"+": left + right, "-": left - right, "*": left * right}.get(operator)
-    return left / right if found is None else found
-
-
-def _in_steps(tree: _Node) -> Derivation:
-    """The row of values, and the steps in the order in which they stand: what is left of an operator comes first."""
+def _in_steps(tree: _Tree) -> Derivation:
+    """Return the steps that compute a tree; those of the left operand of an operator come first."""
     fields: dict[str, int] = {}
     numbers: dict[float, int] = {}
     steps: list[tuple[str, Any, Any]] = []
 
-    def place(node: _Node) -> tuple[str, Any]:
+    def place(node: _Tree) -> tuple[str, int]:
         if isinstance(node, str):
             return "field", fields.setdefault(node, len(fields))
         if isinstance(node, Fraction):
@@ -237,10 +181,11 @@ def _in_steps(tree: _Node) -> Derivation:
 
 
 def _double(number: Fraction) -> float:
+    """Return the nearest double."""
     try:
-        found = number.numerator / number.denominator
+        double = number.numerator / number.denominator
     except OverflowError:
-        found = math.inf
-    if math.isinf(found) or (number and not found):
+        double = math.inf
+    if math.isinf(double) or (number and not double):
         raise FormulaError("a number is too large or too small for a double")
-    return found
+    return double
