@@ -114,9 +114,9 @@ def test_beyond_its_points_a_table_is_as_it_says(one):
     ("points", "why"),
     [
         ([[0, 1]], "at least two"),
-        ([[1, 1], [0, 2]], "0 stands behind 1"),
-        ([[0, 1], [0, 2]], "raw value 0 is there twice"),
-        ([[2**53, 1], [2**53 + 1, 2]], "is there twice"),
+        ([[1, 1], [0, 2]], "0 follows 1"),
+        ([[0, 1], [0, 2]], "raw value 0 occurs twice"),
+        ([[2**53, 1], [2**53 + 1, 2]], "occurs twice"),
         ([[0, "1e400"], [1, 2]], "too large"),
         ([[10**400, 1], [1, 2]], "too large"),
         ([[0, "-1e308"], [0.5, "1e308"]], "too steep"),

@@ -97,7 +97,7 @@ def test_a_file_that_is_not_there(tmp_path):
 
 def test_a_nul_written_as_an_escape(check):
     (found,) = check(HEAD + 'include: ["a\\0b.yaml"]\n')[:1]
-    assert found == ("ICD001", "the text holds a NUL character")
+    assert found == ("ICD001", "the text contains a NUL character")
 
 
 def test_an_overlay_that_is_no_file_is_not_passed_over(tmp_path):

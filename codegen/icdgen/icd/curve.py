@@ -118,8 +118,8 @@ def table(points: Sequence[tuple[float, float]], outside: str) -> Curve:
     for (before, _), (raw, _) in pairwise(points):
         if not before < raw:
             one, other = (repr(number).removesuffix(".0") for number in (raw, before))
-            what = f"raw value {one} is there twice" if one == other else f"{one} stands behind {other}"
-            raise formula.FormulaError(f"{what}: points are in the order of their raw values, each once")
+            what = f"raw value {one} occurs twice" if one == other else f"{one} follows {other}"
+            raise formula.FormulaError(f"{what}: list points in the order of their raw values, each once")
     lines = [Piece(x0, (y0, _slope(x0, y0, x1, y1))) for (x0, y0), (x1, y1) in pairwise(points)]
     (first, low), (last, high) = points[0], points[-1]
     before_first: dict[str, list[Piece]] = {CLAMP: [Piece(first, (low,))], REFUSE: [Piece(first, ())]}

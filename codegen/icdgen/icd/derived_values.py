@@ -42,7 +42,7 @@ def check_operands(derivation: Derivation, nodes: Iterable[LayoutNode]) -> None:
 def _reason_against(node: LayoutNode) -> str:
     """Return why no value can be derived from a node, as the end of a sentence; empty if one can."""
     if node.present_if:
-        return "is not always there"
+        return "is optional"
     scalar = scalar_of(node)
     if scalar is None:
         return "is a struct"

@@ -11,6 +11,8 @@ from icdgen.icd.trees import mappings
 OF_A_WHOLE = ("unit", "formula", "points", "outside", "const", "special", "min", "max", "above", "below", "display")
 """Keys for the meaning of a value; the parts of a split field have them instead of the field."""
 
+_WITHIN = "correct `at` or `bits`: `at` counts from the start of the split field"
+
 
 def parts_of(field: Map) -> list[Map]:
     """The parts that can be read."""
@@ -36,7 +38,8 @@ def obstacles(field: Map, byte_order: str, bit_order: str) -> Iterator[Fault]:
             message = f"{name} is divided, so its value has no `{key}`: its parts have"
             yield Fault.at(field, key, message, "move it to the parts; an erratum removes what is printed")
     if field.get("view"):
-        yield Fault.at(field, "view", f"{name} is divided, so it is no view", "make the parts views of the message")
+        message = f"{name} is a split field, so it cannot be an overlay field"
+        yield Fault.at(field, "view", message, "write each part as an overlay field of the message")
     taken: dict[int, str] = {}
     for part in parts_of(field):
         at, size, title = part.get("at"), part.get("bits"), f"`{part.get('name')}`"
@@ -44,18 +47,18 @@ def obstacles(field: Map, byte_order: str, bit_order: str) -> Iterator[Fault]:
             continue  # the schema's business
         if at + size > bits:
             message = f"{title} ends at bit {at + size} of {name}, which has {bits} bit{'s' * (bits != 1)}"
-            yield Fault.at(part, "bits", message, "`at` counts within the field")
+            yield Fault.at(part, "bits", message, _WITHIN)
         elif not lies_together(field, part, byte_order, bit_order):
-            message = f"the bits of {title} do not lie together in the frame"
+            message = f"the bits of {title} are not contiguous in the frame"
             yield Fault.at(part, "at", message, "make the parts fields of the message")
         clash = next((taken[bit] for bit in range(at, at + size) if bit in taken), None)
         if clash:
-            yield Fault.at(part, "at", f"{title} overlaps {clash}", "`at` counts within the field")
+            yield Fault.at(part, "at", f"{title} overlaps {clash}", _WITHIN)
         taken.update((bit, title) for bit in range(at, at + size))
     left = [bit for bit in range(bits) if bit not in taken]
     if left:
-        message = f"bit {left[0]} of {name} belongs to none of its parts"
-        yield Fault.at(field, "bitfields", message, "name what it is, or that it is reserved")
+        message = f"bit {left[0]} of {name} belongs to no part"
+        yield Fault.at(field, "bitfields", message, "describe it as a part, or mark it as reserved")
 
 
 def place(field: Map, part: Map, byte_order: str, bit_order: str) -> int:

@@ -153,7 +153,7 @@ class _Parser(Generic[Value]):
             self.take()
         exponent = self.take()
         if self.is_next("^"):
-            raise FormulaError("`^` stands twice in a row; use parentheses")
+            raise FormulaError("`^` follows `^`; use parentheses")
         return self.arithmetic.power(base, exponent, is_negative)
 
     def primary(self, token: Token) -> Value:

@@ -199,10 +199,10 @@ class _Loader:
         target = _resolved(path.parent / item)
         folder = _resolved(path.parent)
         if not target.is_relative_to(folder):
-            return f"`{item}` lies outside the folder of this file", "move it to the folder of this file or below"
+            return f"`{item}` is outside the folder of this file", "move it to the folder of this file or below"
         if target in stack:
             names = " -> ".join(p.name for p in (*stack[stack.index(target) :], target))
-            return f"files include each other in a circle: {names}", "take one `include` out"
+            return f"files include each other in a circle: {names}", "remove one `include`"
         if target not in self.unsaved and not os.path.isfile(target):
             return f"there is no file `{item}` beside this one", "check the name"
         return None

@@ -59,11 +59,11 @@ def of_syntax(problem: str, line: str, column: int) -> str:
     """What to do where the YAML breaks off, at a column (from 0) of a line; nothing if there is no telling."""
     character = line[column : column + 1]
     if "tab character" in problem or character == "\t":
-        return "indent with spaces: YAML takes no tabs"
+        return "indent with spaces: YAML does not allow tabs"
     if "cannot start any token" in problem and character:
         return f"a text cannot begin with {character}: {_QUOTES}"
     if "mapping values are not allowed" in problem:
-        return f"a colon and a space begin a value: {_QUOTES} if they belong to it, or correct the indentation"
+        return f"a colon followed by a space begins a value: {_QUOTES} if they belong to it, or correct the indentation"
     if "expected ',' or" in problem:
         if character in ("[", "{", "]"):
             return f"within {{ }}, a text with brackets needs quotes: {_QUOTES}"

@@ -126,7 +126,7 @@ class Builder:
 
         if "\0" in self.text:
             place = _after(self.name, self.text[: self.text.index("\0")])
-            return None, [Finding("ICD001", "the file holds a NUL character", place, "remove it")]
+            return None, [Finding("ICD001", "the file contains a NUL character", place, "remove it")]
         roots = Seq(Place(self.name))
         container: Any = roots  # what is being filled
         key: str | None = None  # of a mapping, whose value comes next
@@ -228,7 +228,7 @@ class Builder:
         return str(value)
 
     def refuse_twin(self, key: str, place: Place, first: Place) -> None:
-        message = f"the key `{key}` stands twice in this mapping, first in line {first.line}"
+        message = f"the key `{key}` is twice in this mapping, first in line {first.line}"
         self.findings.append(Finding("ICD002", message, place, "remove one of them"))
 
     def scalar(self, event: Event) -> object:
@@ -242,7 +242,7 @@ class Builder:
         if not event.style:
             return self.plain(text, event)
         if "\0" in text:
-            self.add("ICD001", "the text holds a NUL character", event, "remove it")
+            self.add("ICD001", "the text contains a NUL character", event, "remove it")
         return text
 
     def plain(self, text: str, event: Event) -> object:

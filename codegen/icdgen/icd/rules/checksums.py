@@ -64,4 +64,4 @@ def checksums_are_heeded(ctx: Context) -> Iterator[Fault]:
             crc8 = node.source["protocol"]["crc8"]
             place = telemetry.at("buses") if "buses" in telemetry else crc8.key_at("telemetry")
             message = "frames on CAN have no checksum, so this one has no effect there"
-            yield Fault(telemetry, place, message, "name in `buses` the others that have it: uart, i2c")
+            yield Fault(telemetry, place, message, "list the other links in `buses`: uart, i2c")

@@ -89,7 +89,7 @@ def part_matches(ctx: Context) -> Iterator[Fault]:
                 reported.add(id(source))
                 text = f"{quote(frame.name)} has no field at bit {field.at - start:,}, where {quote(field.name)} begins"
                 if field.at < start:
-                    text = f"{quote(field.name)} lies across bit {start:,}, where {quote(frame.name)} begins"
+                    text = f"{quote(field.name)} crosses bit {start:,}, where {quote(frame.name)} begins"
                 yield Fault.at(source, "at", text, _compare(frame, source.at("at")))
             else:
                 differences = list(_differences(field, twin, frame))
@@ -128,7 +128,7 @@ def _differences(field: NodePlace, twin: NodePlace, frame: Message) -> Iterator[
         place = mine.at(key) if key in mine else mine.place
         values = "; ".join(f"{k} {_quoted_value(mine, k)} here, {_quoted_value(other, k)} there" for k in keys)
         there = f"{quote(twin.name)} in {quote(frame.name)} ({line_of(other.place, place)})"
-        yield Fault(mine, place, f"{quote(field.name)} differs from {there}: {values}", "one of the two is wrong")
+        yield Fault(mine, place, f"{quote(field.name)} differs from {there}: {values}", "correct the wrong one")
 
 
 @rule("ICD048")
@@ -146,5 +146,5 @@ def list_agrees(ctx: Context) -> Iterator[Fault]:
                 ]
                 what = f"the {key.replace('_', ' ')} {values[0]}"
                 text = f"the list table gives {quote(message.name)} {what}, the detail table {values[1]}"
-                help = f"decide in the errata: hold the other `{key}`, or hold `listed: null`"
+                help = f"decide in an erratum: `held` has the other `{key}`, or `listed: null` to ignore the list table"
                 yield Fault(message.source, listed.at(key), text, help)

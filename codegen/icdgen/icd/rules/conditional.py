@@ -56,9 +56,9 @@ def carried(ctx: Context) -> Iterator[Fault]:
     for node in filter(ctx.is_linked, ctx.icd.nodes):
         for message in ctx.messages_of(node):
             if id(message.source) in optional:
-                absent = f"fields of {quote(message.name)} are not always there"
+                absent = f"{quote(message.name)} has optional fields"
                 help = "leave `when` or `protocol` out of this ICD, or describe the link as a `stream`"
-                yield Fault.at(message.source, "name", f"{absent}, which the links of `protocol` do not carry", help)
+                yield Fault.at(message.source, "name", f"{absent}, which the links in `protocol` do not support", help)
     for message, node in ctx.messages if optional else ():
         names = {other.name for other in ctx.messages_of(node) if id(other.source) in optional}
         for part in mappings(message.source.get("contains")):

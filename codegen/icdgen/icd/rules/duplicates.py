@@ -55,7 +55,7 @@ def names_twice(
         for (n1, first), (n2, second) in _twice(in_scope(ctx, node, items), lambda pair: pair[1].name):
             if is_news(ctx, node, n1, n2):
                 there = line_of(first.source.at("name"), second.source.at("name"))
-                message = f"there is already {what} called {quote(second.name)}, in {there}{together(node, n2)}"
+                message = f"there is already {what} named {quote(second.name)}, in {there}{together(node, n2)}"
                 related = Related(first.source.at("name"), "the first of this name")
                 yield Fault.at(second.source, "name", message, help, related=related)
 
@@ -199,7 +199,7 @@ def unit_symbols(ctx: Context) -> Iterator[Fault]:
                 there = line_of(first.at("symbol"), second.at("symbol"))
                 message = f"the unit {quote(second['symbol'])} is already declared, in {there}{together(node, n2)}"
                 related = Related(first.at("symbol"), "the first declaration")
-                yield Fault.at(second, "symbol", message, "declare it once", related=related)
+                yield Fault.at(second, "symbol", message, "remove one of the declarations", related=related)
         for unit in _declared_units(node):
             if unit["symbol"] in STANDARD:
                 message = f"the unit {quote(unit['symbol'])} is built in: {STANDARD[unit['symbol']].quantity}"

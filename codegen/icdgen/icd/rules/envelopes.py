@@ -99,7 +99,7 @@ def roles_that_are_needed(ctx: Context) -> Iterator[Fault]:
                 yield Fault.at_key(row, "value", message, "remove `value`, or make the field a `constant`")
             for key, owner in ONLY_WITH.items():
                 if key in row and role != owner:
-                    message = f"`{key}` says something of a field of the role `{owner}`, not of a `{role}`"
+                    message = f"`{key}` applies to a field of the role `{owner}`, not of a `{role}`"
                     yield Fault.at_key(row, key, message, "remove it, or correct `role`")
         yield from _missing(ctx, link)
 
@@ -112,8 +112,8 @@ def _missing(ctx: Context, link: Link) -> Iterator[Fault]:
             message = "no field has the role `length`, which delimits messages"
             yield Fault.at(link.section, "delimited_by", message, help)
         elif any(part == "trailer" for part, row in link.rows if row["role"] == "length"):
-            message = "the length that delimits messages stands behind their data"
-            yield Fault.at(lengths[0], "role", message, "it stands in `header`")
+            message = "the length that delimits messages is behind their data"
+            yield Fault.at(lengths[0], "role", message, "move it to `header`")
     for direction in DIRECTIONS:
         if len({id for id, _ in _ids(ctx, link.node, direction)}) > 1 and not link.of("id"):
             message = f"no field has the role `id`, and there are several messages in one direction ({direction})"
@@ -142,12 +142,14 @@ def _places(link: Link) -> Iterator[Fault]:
         bits = range(row["at"], row["at"] + row["bits"])
         size = bits[-1] // 8 - bits[0] // 8 + 1
         if size > MOST_SPAN:
-            message = f"the {row['role']} has part in {count(size, 'byte')}, more than {MOST_SPAN}"
+            message = f"the {row['role']} spans {count(size, 'byte')}, more than {MOST_SPAN}"
             yield Fault.at(row, "bits", message, "make it narrower, or begin it at a whole byte")
         order = row.get("byte_order", link.node.byte_order)
         if size > 1 and row["bits"] % 8 + row["at"] % 8 and (order == "big") != (link.node.bit_order == "msb0"):
             message = f"the {row['role']} crosses bytes in {order} order, though bits are {link.node.bit_order}"
-            yield Fault.at(row, "at", message, "only whole bytes can have an order that is not that of the bits")
+            yield Fault.at(
+                row, "at", message, "use whole bytes: only these can have a byte order that differs from the bit order"
+            )
 
 
 def _values(link: Link) -> Iterator[Fault]:
@@ -167,7 +169,7 @@ def _contents(ctx: Context, link: Link) -> Iterator[Fault]:
     for row in link.of("id"):
         id, one = max(messages, key=lambda pair: pair[0], default=(0, None))
         if one is not None and id >> row["bits"]:
-            message = f"an id of {count(row['bits'], 'bit')} does not hold 0x{id:X}, that of {quote(one.name)}"
+            message = f"an id of {count(row['bits'], 'bit')} cannot represent 0x{id:X}, that of {quote(one.name)}"
             yield Fault.at(row, "bits", message, "make the field wider, or correct the id")
     around = sum(
         -(-max((row["at"] + row["bits"] for where, row in link.rows if where == part), default=0) // 8)
@@ -209,12 +211,12 @@ def checksums_of_links(ctx: Context) -> Iterator[Fault]:
             if known is None:
                 message = f"no checksum is called {quote(name)}" if name else "the field names no checksum"
                 names = listing(f"`{key}`" for key in checksums) if checksums else "there are none"
-                yield Fault.at(row, "role", message, f"say in `checksum:` which of `checksums` it is: {names}")
+                yield Fault.at(row, "role", message, f"name one of `checksums` in `checksum:`: {names}")
             elif _is_known(known):
                 yield from _checksum(ctx, link, part, row, known)
         for name in checksums:
             if name not in used:
-                message = f"no field of the envelope holds the checksum {quote(name)}"
+                message = f"no field of the frame has the checksum {quote(name)}"
                 help = "add a field of the role `checksum`, or remove it"
                 yield Fault(section_of(link.node), checksums.key_at(name), message, help)
 
@@ -251,7 +253,7 @@ def _checksum(ctx: Context, link: Link, part: str, row: Map, known: Map) -> Iter
     if known["kind"] != "crc":
         for key in ("polynomial", "reflect_in", "reflect_out", "empty"):
             if key in known:
-                message = f"`{key}` says something of a CRC, not of a checksum of kind `{known['kind']}`"
+                message = f"`{key}` applies to a CRC, not to a checksum of kind `{known['kind']}`"
                 yield Fault.at_key(known, key, message, "remove it, or correct `kind`")
     yield from _covered(link, part, row, known)
     yield from _seeds(ctx, link, known)
@@ -266,7 +268,7 @@ def _covered(link: Link, part: str, row: Map, known: Map) -> Iterator[Fault]:
         found = [one for one in link.rows if one[1]["role"] == role]
         if role != DATA and not found:
             message = f"no field has the role `{role}`"
-            yield Fault.at(covers, key, message, "name the role of a field of the envelope, or `data`")
+            yield Fault.at(covers, key, message, "name the role of a field of the frame, or `data`")
             return
         if role != DATA and found[0][0] != where:
             message = f"a checksum covers the data, but `{key}: {role}` names a field of the {found[0][0]}"
@@ -282,7 +284,8 @@ def _covered(link: Link, part: str, row: Map, known: Map) -> Iterator[Fault]:
     inside = part == "header" and begin is not None and row["at"] + row["bits"] > begin // 8 * 8
     if inside or (part == "trailer" and row["at"] // 8 < -(-end // 8)):
         message = "the checksum covers itself"
-        yield Fault.at(covers, "from" if inside else "to", message, "cover what stands behind or before it")
+        help = "correct `covers`, so that it ends before the checksum or begins behind it"
+        yield Fault.at(covers, "from" if inside else "to", message, help)
 
 
 def _seeds(ctx: Context, link: Link, known: Map) -> Iterator[Fault]:
@@ -297,7 +300,7 @@ def _seeds(ctx: Context, link: Link, known: Map) -> Iterator[Fault]:
     lacking = [name for name in names if name not in seeds]
     if lacking:
         message = f"{quote(lacking[0])} has no seed" + (f", nor have {len(lacking) - 1} others" if lacking[1:] else "")
-        yield Fault.at_key(known, "seeds", message, "give every message one, or none")
+        yield Fault.at_key(known, "seeds", message, "give every message a seed, or remove `seeds`")
 
 
 @rule("ICD174")
@@ -315,10 +318,10 @@ def alike_under_an_id(ctx: Context) -> Iterator[Fault]:
                     message = (
                         f"zeros of {quote(whose.name)} may be omitted, but not the zeros of another message with its id"
                     )
-                    yield Fault.at(whose.source, "may_end_early", message, "let both end early, or none")
+                    yield Fault.at(whose.source, "may_end_early", message, "add `may_end_early` to both, or to neither")
                 for known in seeds:
                     if one.name in known and other.name in known and known[one.name] != known[other.name]:
-                        message = f"{quote(one.name)} has another seed than {quote(other.name)}, which has the same id"
+                        message = f"{quote(one.name)} has a seed different from that of {quote(other.name)}, which has the same id"
                         yield Fault.at(known, one.name, message, "give both the same seed, or other ids")
 
 

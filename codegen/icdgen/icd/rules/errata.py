@@ -23,7 +23,7 @@ def accept_answers(ctx: Context) -> Iterator[Fault]:
     for (code, place), targets in idle.items():
         more = f" and {count(len(targets) - 1, 'other place')}" if len(targets) > 1 else ""
         message = f"there is no finding {code} to accept in {line_of(targets[0], place)}{more}"
-        yield Fault(None, place, message, f"remove {code} here: what it answered is gone")
+        yield Fault(None, place, message, f"remove {code} here: the finding no longer exists")
 
 
 @rule("ICD085")

@@ -19,6 +19,7 @@ _BEYOND = (
     "add `outside: clamp` (the value of the last point), `outside: extrapolate` (the last line goes on) "
     "or `outside: refuse` (there is no number)"
 )
+_ONLY_RAW = "nothing to do if setting the raw value is enough; else correct the formula or the points"
 
 
 @rule("ICD060")
@@ -67,7 +68,9 @@ def outside_is_said(ctx: Context) -> Iterator[Fault]:
         if field.type == "float" or not line.holds(field.raw_min, field.raw_max):
             ends = "any number" if field.type == "float" else f"{field.raw_min:,} to {field.raw_max:,}"
             extent = " to ".join(f"{raw:g}" for raw in (line.points[0][0], line.points[-1][0]))
-            message = f"raw values of {quote(field.name)} are {ends}, its points go from {extent}: what is outside?"
+            message = (
+                f"raw values of {quote(field.name)} are {ends}, its points go from {extent}, and `outside` is missing"
+            )
             yield Fault.at(source, "points", message, _BEYOND)
     for field, _ in ctx.fields_with["outside"]:
         if "points" not in field.source:
@@ -99,12 +102,13 @@ def formula_direction(ctx: Context) -> Iterator[Fault]:
             message = f"{quote(field.name)} has `formula_for` and no formula"
             help = "add `formula` or remove it"
         elif stated != (gives := _gives(field)):
-            message = (
-                f"the formula of {quote(field.name)} is announced for the {stated} value and gives the {gives} one"
+            expected = f"should give the {stated} value according to the manual"
+            message = f"the formula of {quote(field.name)} {expected}, but gives the {gives} one"
+            help = (
+                "decide in an erratum: `held` has `formula_for: null` if the formula is right, else the right formula"
             )
-            help = "decide in the errata: hold `formula_for: null` if the formula is right, or hold the other formula"
         else:
-            message = f"the formula of {quote(field.name)} does give the {stated} value: nothing contradicts it"
+            message = f"the formula of {quote(field.name)} gives the {stated} value, as the manual says, so the key is not needed"
             help = "remove `formula_for`"
         yield Fault.at(source, "formula_for", message, help)
     for node in ctx.icd.nodes:
@@ -129,11 +133,11 @@ def _stated(stated: Map, node: Node) -> Iterator[Fault]:
             other = (
                 f"that of {quote(against[0].name)} gives the other one, as in {count(len(against), 'field')} altogether"
             )
-            message = f"the formulas of {kind} messages are announced for the {stated_for} value, and {other}"
-            help = f"decide in the errata: hold `{kind}: null` if the formulas are right"
+            message = f"the formulas of {kind} messages should give the {stated_for} value according to the manual, but {other}"
+            help = f"decide in an erratum: `held` has `{kind}: null` if the formulas are right"
         else:
             message = (
-                f"no formula of a {kind} message gives anything but the {stated_for} value: nothing contradicts it"
+                f"no formula of a {kind} message gives anything but the {stated_for} value, so the key is not needed"
             )
             help = f"remove `{kind}`"
         yield Fault.at(stated, kind, message, help)
@@ -159,7 +163,7 @@ def formula_computable(ctx: Context) -> Iterator[Fault]:
         line = field.curve
         if line is not None and field.type != "float" and not curve.is_finite(line, field.raw_min, field.raw_max):
             key, what = _calibration(field)
-            message = f"the {what} of {quote(field.name)} leads beyond what a double holds"
+            message = f"the {what} of {quote(field.name)} exceeds the range of a double"
             yield Fault.at(field.source, key, message, "correct an exponent, or `bits`")
         if scale is None:
             continue
@@ -185,17 +189,17 @@ def formula_leads_back(ctx: Context) -> Iterator[Fault]:
         if telecommand is None:
             continue
         if field.type == "float":
-            why = "of a float only a formula that is a line leads back"
+            why = "for a float, only a linear formula can be inverted"
         elif field.bits > curve.MOST_BITS:
             what = "table" if field.curve is not None and field.curve.points else "polynomial"
-            why = f"of a {what} this is only known for fields of up to {curve.MOST_BITS} bits"
+            why = f"for a {what}, this is only computed for fields of up to {curve.MOST_BITS} bits"
         elif field.settable_raws[0] >= field.settable_raws[1]:
             why = "no two raw values lie between its points"
         else:
-            why = "its values do not rise, or fall, from each raw value to the next"
+            why = "its values are not strictly increasing or decreasing"
         key, what = _calibration(field)
-        text = f"the {what} of {quote(field.name)} does not lead back, and {quote(telecommand.name)} is sent: {why}"
-        yield Fault.at(field.source, key, text, "its raw value can be set all the same")
+        text = f"the {what} of {quote(field.name)} cannot be inverted, but {quote(telecommand.name)} is sent: {why}"
+        yield Fault.at(field.source, key, text, _ONLY_RAW)
 
 
 def _senders(ctx: Context) -> dict[int, Message]:

@@ -107,5 +107,5 @@ def is_identifier(ctx: Context) -> Iterator[Fault]:
     for one, _, texts in found:
         each = ((quote(text) if text else "nothing", listing(langs)) for text, langs in texts.items())
         becomes = listing(f"{what} in {languages}" for what, languages in each)
-        message = f"{one.owner} becomes {becomes}, which is no name"
+        message = f"{one.owner} becomes {becomes}, which is not a valid name"
         yield Fault(one.source, _place(ctx, one), message, _help(one))

@@ -64,7 +64,8 @@ def limits_in_order(ctx: Context) -> Iterator[Fault]:
             yield Fault.at(source, key, f"`{key}` has no meaning for type `{field.type}`", f"remove `{key}`")
         elif bounds(field).is_empty:
             message = f"{_shown(field, *LIMITS)} leave no value for {quote(field.name)}"
-            yield Fault.at(source, _first(field, "max", "below"), message, "are they exchanged?")
+            help = "correct them: `min` and `above` are lower limits, `max` and `below` are upper limits"
+            yield Fault.at(source, _first(field, "max", "below"), message, help)
 
 
 @rule("ICD034")

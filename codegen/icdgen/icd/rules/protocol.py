@@ -39,7 +39,8 @@ def i2c_addresses(ctx: Context) -> Iterator[Fault]:
         one, other = (at_path(i2c, (key, "address_8bit")) for key in ("write", "read"))
         if _is_byte(one) and _is_byte(other) and not one & 1 and other != one | 1:
             message = f"the read address {_hex(other)} does not follow the write address {_hex(one)}"
-            yield Fault.at(i2c["read"], "address_8bit", message, f"the read address is {_hex(one | 1)}")
+            read = _hex(one | 1)
+            yield Fault.at(i2c["read"], "address_8bit", message, f"the read address is {read}", read)
 
 
 def _forms_agree(address: Map, key: str, bit: int) -> Iterator[Fault]:
@@ -47,14 +48,17 @@ def _forms_agree(address: Map, key: str, bit: int) -> Iterator[Fault]:
     if not _is_byte(eight):
         return
     if eight & 1 != bit:
-        message = f"{_hex(eight)} is no {key} address"
-        yield Fault.at(address, "address_8bit", message, f"its last bit is {bit}")
+        message = f"{_hex(eight)} cannot be a {key} address"
+        yield Fault.at(address, "address_8bit", message, f"correct it: the last bit of a {key} address is {bit}")
     elif isinstance(seven, int) and seven << 1 | bit != eight:
         message = f"the 7-bit address {_hex(seven)} gives the {key} address {_hex(seven << 1 | bit)}, not {_hex(eight)}"
-        yield Fault.at(address, "address_7bit", message, f"{_hex(eight)} is {_hex(eight >> 1)} with 7 bits")
+        right = _hex(eight >> 1)
+        yield Fault.at(address, "address_7bit", message, f"{_hex(eight)} is {right} with 7 bits", right)
     if isinstance(binary, str) and _binary(binary) != eight:
-        message = f"the binary form {quote(binary)} is {_hex(_binary(binary))}, not {_hex(eight)}"
-        yield Fault.at(address, "binary", message, f"{_hex(eight)} is 0b{eight:08b}")
+        value = _binary(binary)
+        states = f"states {_hex(value)}" if value is not None else "is not a binary number"
+        message = f"the binary form {quote(binary)} {states}, but the address is {_hex(eight)}"
+        yield Fault.at(address, "binary", message, f"{_hex(eight)} is 0b{eight:08b}", f'"0b{eight:08b}"')
 
 
 def _is_byte(value: object) -> TypeGuard[int]:
@@ -66,8 +70,8 @@ def _binary(text: str) -> int | None:
     return int(digits, 2) if digits and not digits.strip("01") else None
 
 
-def _hex(value: int | None) -> str:
-    return "no number" if value is None else f"0x{value:02X}"
+def _hex(value: int) -> str:
+    return f"0x{value:02X}"
 
 
 @rule("ICD091")

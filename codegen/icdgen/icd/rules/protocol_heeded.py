@@ -44,7 +44,7 @@ def _acknowledges(node: Node) -> Iterator[Fault]:
     for bus in ("uart", "i2c"):
         section = section_of(node, bus, "acknowledge")
         if section is not None and section.get("required_before_next") is False:
-            message = "a client waits for each acknowledge before it sends the next telecommand, whatever stands here"
+            message = "a client waits for each acknowledge before it sends the next telecommand, whatever this key says"
             help = "remove it; for a telecommand without acknowledge set `acknowledge: false`"
             yield Fault.at(section, "required_before_next", message, help)
 
@@ -56,7 +56,7 @@ def _can_data(node: Node) -> Iterator[Fault]:
     ):
         section = section_of(node, "can", direction)
         if section is not None and section.get(key, 0) != 0:
-            help = "correct it to 0, or leave `can` out: such a bus cannot be talked to"
+            help = "correct it to 0, or leave `can` out: such a bus is not supported"
             yield Fault.at(section, key, what, help)
 
 
@@ -65,12 +65,12 @@ def _unsolicited(node: Node) -> Iterator[Fault]:
     if log is None:
         return
     if log.get("framed") is False:
-        message = "a log that comes unasked is taken out of its framing like any message, whatever stands here"
+        message = "framing is removed from unsolicited logs as from other messages, whatever this key says"
         yield Fault.at(log, "framed", message, "remove it, or `unsolicited_log`")
     buses = log.get("buses")
     for bus, place in buses.placed() if isinstance(buses, Seq) else ():
         if bus in BUSES and bus != "uart":
-            yield Fault(log, place, "logs that come unasked are looked for on the UART only", f"remove `{bus}`")
+            yield Fault(log, place, "unsolicited logs are received on the UART only", f"remove `{bus}`")
 
 
 @rule("ICD116", whole=True)
@@ -103,11 +103,11 @@ def _fields(owner: Map, keys: Iterable[str], fields: Iterable[NodePlace]) -> Ite
 
 def _unfit(role: str, field: NodePlace) -> str:
     if role in AS_BYTES:
-        return "" if field.is_bytes else "it is taken as bytes, and is a number"
+        return "" if field.is_bytes else "it is read as bytes, but is a number"
     if field.is_bytes or field.type == "float":
-        return f"it is read as a number, and is {field.type}"
+        return f"it is read as a number, but is {field.type}"
     least = LEAST_BITS.get(role, 1)
-    return f"it has {count(field.bits, 'bit')}, and takes {least} at least" if field.bits < least else ""
+    return f"it has {count(field.bits, 'bit')}, but needs {least} at least" if field.bits < least else ""
 
 
 def _telecommands_once(node: Node) -> Iterator[Fault]:

@@ -104,7 +104,7 @@ def _fits(ctx: Context, owner: Map, key: str, bits: int | None, what: str) -> It
 
 def _codes(errors: Map) -> Iterator[Fault]:
     for first, role, code in of_one_number(errors, "none", "unknown_id", "length", "parameter", "checksum"):
-        yield Fault.at(errors, role, f"{code} means both `{first}` and `{role}`", "each has its own code")
+        yield Fault.at(errors, role, f"{code} stands for both `{first}` and `{role}`", "give each its own code")
 
 
 def _checksum(crc: Map) -> Iterator[Fault]:
@@ -146,7 +146,7 @@ def roles_stand_once(
         if not isinstance(role, str):  # it was refused, and nobody knows which one it is
             return
         if role in roles and role in seen:
-            yield Fault.at(row, named, f"a second {role}", "each role stands once")
+            yield Fault.at(row, named, f"a second {role}", "remove one of them, or correct its role")
         seen.add(role)
     missing = [f"`{role}`" for role in roles if role not in seen]
     if missing:
@@ -163,5 +163,5 @@ def identifier_is_whole(ctx: Context) -> Iterator[Fault]:
 @rule("ICD102")
 def times_are_whole(ctx: Context) -> Iterator[Fault]:
     for time in ctx.sections("msdos_time"):
-        help = "it has all parts from `year` to `second`"
-        yield from roles_stand_once(time, "parts", TIME_PARTS, "the packed time has no", help)
+        help = "add all parts from `year` to `second`"
+        yield from roles_stand_once(time, "parts", TIME_PARTS, "the packed time lacks", help)

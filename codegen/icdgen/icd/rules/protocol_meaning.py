@@ -57,7 +57,7 @@ def _overlap(one: Map, other: Map) -> Iterator[Fault]:
     if least <= most:
         which = f"ids {least} to {most} are" if least < most else f"id {least} is"
         message = f"{which} in the range of telecommands, too"
-        yield Fault.at(other, "first", message, "the ranges of the two directions have no id in common")
+        yield Fault.at(other, "first", message, "correct the ranges: they must not overlap")
 
 
 @rule("ICD104")
@@ -82,7 +82,7 @@ def acknowledge_is_whole(ctx: Context) -> Iterator[Fault]:
         for row in mappings(section.get("data")):
             role, size = row.get("role"), row.get("bytes")
             if role in ACKNOWLEDGE_ROLES and isinstance(size, int) and size > 1:
-                message = f"the {role} has {count(size, 'byte')}, but one is read"
+                message = f"the {role} has {count(size, 'byte')}, but icdgen reads one byte"
                 yield Fault.at(row, "bytes", message, "correct `bytes`, or leave the section out")
 
 
@@ -112,7 +112,7 @@ def messages_can_be_sent(ctx: Context) -> Iterator[Fault]:
             is_short = any(direction in short for _, direction in KEYS_OF_IDS[message.kind])
             if is_short and message.length > room and id(message.source) not in seen:
                 seen.add(id(message.source))
-                text = f"{quote(message.name)} has {count(message.length, 'byte')}, a packet up to {room}"
+                text = f"{quote(message.name)} has {count(message.length, 'byte')}, but a packet has up to {room}"
                 help = "correct `length`, or say how CAN sends several packets: `can.extended` and its message types"
                 yield Fault.at(message.source, "length", text, help)
 

@@ -35,12 +35,12 @@ def of_one_number(section: Map, *keys: str) -> Iterator[tuple[str, str, int]]:
 def markers_differ(ctx: Context) -> Iterator[Fault]:
     for framing in ctx.sections("uart", "framing"):
         for first, key, value in of_one_number(framing, "start_of_message", "end_of_message", "escaped_data"):
-            message = f"after the escape byte 0x{value:02X} means both `{first}` and `{key}`"
-            yield Fault.at(framing, key, message, "each has a byte of its own")
+            message = f"after the escape byte 0x{value:02X} stands for both `{first}` and `{key}`"
+            yield Fault.at(framing, key, message, "use a different byte for each")
         for _, key, value in of_one_number(framing, "escape", "start_of_message", "end_of_message"):
             if value == framing["escape"]:
                 message = f"the escape byte 0x{value:02X} is also `{key}`"
-                help = "with one byte lost, nothing would tell where a message begins or ends"
+                help = "choose another byte: after a lost byte, the start of a message could not be found"
                 yield Fault.at(framing, key, message, help)
 
 
@@ -84,7 +84,7 @@ def _packets_left(can: Map, extended: Map) -> Iterator[Fault]:
     data, left, room = extended.get("data_bytes"), extended.get("packets_left_byte"), can.get("max_data_bytes")
     if isinstance(data, int) and isinstance(left, int) and left < data:
         message = f"byte {left} counts packets, but the data take bytes 0 to {data - 1}"
-        yield Fault.at(extended, "packets_left_byte", message, f"the count stands behind the data: {data}")
+        yield Fault.at(extended, "packets_left_byte", message, f"correct it; behind the data the index is {data}")
     elif isinstance(left, int) and isinstance(room, int) and left >= room:
         message = f"byte {left} is outside a packet of {room} bytes"
         yield Fault.at(extended, "packets_left_byte", message, "correct it or `max_data_bytes`")

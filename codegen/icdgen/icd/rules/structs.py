@@ -51,8 +51,8 @@ def struct_in_itself(ctx: Context) -> Iterator[Fault]:
                 way = _way(row["struct"], name, within)
                 if way is not None:
                     there = " -> ".join((name, *way))
-                    message = f"the struct {quote(name)} would have itself in it: {there}"
-                    help = "a struct has an end: write what it holds in fields of its own"
+                    message = f"the struct {quote(name)} contains itself: {there}"
+                    help = "write the inner fields directly into the struct"
                     yield Fault.at(row, "struct", message, help)
 
 
@@ -85,7 +85,7 @@ def struct_says(ctx: Context) -> Iterator[Fault]:
     for row, _, _ in _uses(ctx):
         for key in row:
             if key not in _OF_MEMBERS:
-                message = f"{quote(row['name'])} is a struct, which has no `{key}`: its fields have"
+                message = f"{quote(row['name'])} is a struct, which cannot have `{key}`; its fields can"
                 yield Fault.at(row, key, message, f"move it to the fields of {quote(row['struct'])}, or remove it")
     for struct, _ in ctx.structs:
         for row in mappings(struct.source.get("fields")):

@@ -44,7 +44,7 @@ def range_has_more_than_one_value(ctx: Context) -> Iterator[Fault]:
         for member in enum.members:
             if member.to is None or member.to > member.value:
                 continue
-            what = "is no range" if member.to == member.value else "ends before it begins"
+            what = "is not a range" if member.to == member.value else "ends before it begins"
             message = f"{quote(member.name)}, {member.values}, {what}"
             help = "leave `to` out" if member.to == member.value else f"`value: {member.to}, to: {member.value}`?"
             yield Fault.at(member.source, "to", message, help)
@@ -71,8 +71,8 @@ def special_fits(ctx: Context) -> Iterator[Fault]:
             if problem:
                 yield Fault(field.source, item.at("value"), f"the special value {problem[0]}", problem[1])
             elif value is not None and value in seen:
-                message = f"{given} has two meanings in {quote(field.name)}"
-                yield Fault(field.source, item.at("value"), message, "join them into one entry")
+                message = f"{given} has two entries in {quote(field.name)}"
+                yield Fault(field.source, item.at("value"), message, "join the two entries")
             seen.add(value)
 
 
@@ -80,7 +80,7 @@ def _not_special(field: Scalar, given: int | float | str) -> tuple[str, str] | N
     """What keeps a value from having a meaning in the field, and what to do; None if it can."""
     if field.type == "float":
         if isinstance(given, str) and given not in floats.NAMED:
-            return f"{quote(given)} is no number", "a float has numbers, and nan, inf and -inf"
+            return f"{quote(given)} is not a number", "write a number, nan, inf or -inf"
         if field.bits in floats.WIDTHS and float_bits(given, field.bits) is None:
             return f"{given} does not fit {quote(field.name)}", f"it is beyond what a {field.bits}-bit float holds"
         return None
@@ -89,7 +89,7 @@ def _not_special(field: Scalar, given: int | float | str) -> tuple[str, str] | N
         return what, "only uint, int, enum and float fields have it"
     if isinstance(given, int):
         return _misfit(field, given)
-    return f"{quote(given)} of {quote(field.name)} is no whole number", f"`{field.type}` has whole raw values"
+    return f"{quote(given)} of {quote(field.name)} is not an integer", f"`{field.type}` has whole raw values"
 
 
 def _misfit(field: Scalar, value: int | None) -> tuple[str, str] | None:
