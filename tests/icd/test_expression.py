@@ -46,7 +46,7 @@ def test_a_derived_value_of_one_field_is_the_value_of_the_same_formula_of_the_fi
         ("raw*2)", "`)` is not expected there"),
         ("raw 2", "`2` is not expected there"),
         ("raw + *2", "`*` is not expected there"),
-        ("raw*2^3^2", "`^` stands twice in a row; use parentheses"),
+        ("raw*2^3^2", "`^` follows `^`; use parentheses"),
         ("raw/(1 - 1)", "it divides by zero"),
         ("raw*0^-1", "it divides by zero"),
         ("raw*(1e99^999)^999", "a power is too large to be meant"),

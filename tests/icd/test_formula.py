@@ -136,7 +136,7 @@ def test_what_is_too_large_to_compute_everywhere(factor, offset, large):
         ("raw*2^", "it ends too early"),
         ("raw*2^-", "it ends too early"),
         ("raw*2^(3)", "the exponent behind `^` is not a whole number up to 999"),
-        ("raw*2^3^2", "`^` stands twice in a row; use parentheses"),
+        ("raw*2^3^2", "`^` follows `^`; use parentheses"),
         ("raw*0^-1", "it divides by zero"),
         ("raw*(1e99^999)^999", "a power is too large to be meant"),
     ],
