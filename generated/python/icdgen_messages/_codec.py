@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import struct
 
-from . import _lazy
+from . import _types
 from ._errors import LengthError, RangeError
+from ._types import FieldInfo, MessageFacts
 
 REFUSED = (
     struct.error,
@@ -19,12 +20,12 @@ REFUSED = (
 """Exceptions of the encoders for a value that does not fit."""
 
 
-def is_there(info: _lazy.FieldInfo, message: _lazy.Any) -> bool:
+def is_there(info: FieldInfo, message: _types.Any) -> bool:
     """Whether the message has the field, by the values of those on which it depends."""
     return all(getattr(message, name) in values for name, values in info.when)
 
 
-def has_elements(info: _lazy.FieldInfo, values: _lazy.Any) -> bool:
+def has_elements(info: FieldInfo, values: _types.Any) -> bool:
     """Whether there are as many values as an array takes."""
     if not hasattr(values, "__getitem__") or not hasattr(values, "__len__"):
         return False
@@ -32,12 +33,12 @@ def has_elements(info: _lazy.FieldInfo, values: _lazy.Any) -> bool:
     return least <= len(values) <= info.elements
 
 
-def elements_of(info: _lazy.FieldInfo) -> str:
+def elements_of(info: FieldInfo) -> str:
     """``6 values``: how many an array takes."""
     return f"{_at_least(info)}{info.elements} values"
 
 
-def _at_least(info: _lazy.FieldInfo) -> str:
+def _at_least(info: FieldInfo) -> str:
     if not info.is_open:
         return ""
     return f"{info.fewest} to " if info.fewest else "up to "
@@ -52,7 +53,9 @@ def signed(value: int, bits: int) -> int:
     return value - (1 << bits) if value >> (bits - 1) else value
 
 
-def bit_table(parts: tuple[tuple[int, _lazy.FieldInfo], ...]) -> tuple[_lazy.Any, ...]:
+def bit_table(
+    parts: tuple[tuple[int, FieldInfo], ...],
+) -> tuple[_types.Any, ...]:
     """The values of the fields of a byte, each from its bit ``shift`` up, for each of its 256 values.
 
     One field gives a table of values, several a table of tuples.
@@ -60,12 +63,12 @@ def bit_table(parts: tuple[tuple[int, _lazy.FieldInfo], ...]) -> tuple[_lazy.Any
     columns = []
     for shift, info in parts:
         mask = (1 << info.bits) - 1
-        values: list[_lazy.Any] = [_value(info, bits) for bits in range(mask + 1)]
+        values: list[_types.Any] = [_value(info, bits) for bits in range(mask + 1)]
         columns.append([values[byte >> shift & mask] for byte in range(256)])
     return tuple(columns[0]) if len(columns) == 1 else tuple(zip(*columns))
 
 
-def _value(info: _lazy.FieldInfo, bits: int) -> _lazy.Any:
+def _value(info: FieldInfo, bits: int) -> _types.Any:
     number = signed(bits, info.bits) if info.signed else bits
     if info.enum is not None:
         return info.enum(number)
@@ -78,12 +81,12 @@ class Inverse(dict[object, int]):
     It is filled when it is first used.
     """
 
-    def __init__(self, table: tuple[_lazy.Any, ...]) -> None:
+    def __init__(self, table: tuple[_types.Any, ...]) -> None:
         super().__init__()
         self._table = table
         self._is_filled = False
 
-    def __missing__(self, values: _lazy.Any) -> int:
+    def __missing__(self, values: _types.Any) -> int:
         if self._is_filled:
             raise KeyError(values)
         self.update({self._table[byte]: byte for byte in range(255, -1, -1)})
@@ -91,14 +94,14 @@ class Inverse(dict[object, int]):
         return self[values]
 
 
-class Members(dict[int, "_lazy.OpenEnum"]):
+class Members(dict[int, "_types.OpenEnum"]):
     """The members of an enumeration by value."""
 
-    def __init__(self, enum: type[_lazy.OpenEnum]) -> None:
+    def __init__(self, enum: type[_types.OpenEnum]) -> None:
         super().__init__((member.value, member) for member in enum)
         self._enum = enum
 
-    def __missing__(self, value: int) -> _lazy.OpenEnum:
+    def __missing__(self, value: int) -> _types.OpenEnum:
         return self._enum(value)
 
 
@@ -116,13 +119,13 @@ def signed_bits(value: int, bits: int) -> int:
     return value & ((1 << bits) - 1)
 
 
-def counted(values: _lazy.Any, count: int) -> None:
+def counted(values: _types.Any, count: int) -> None:
     """Raises `ValueError` unless there are so many values."""
     if len(values) != count:
         raise ValueError
 
 
-def sized(value: _lazy.Buffer, size: int) -> bytes:
+def sized(value: _types.Buffer, size: int) -> bytes:
     """``value``, if it has that many bytes."""
     data = memoryview(value).tobytes()
     if len(data) != size:
@@ -130,7 +133,7 @@ def sized(value: _lazy.Buffer, size: int) -> bytes:
     return data
 
 
-def text(value: _lazy.Buffer) -> str:
+def text(value: _types.Buffer) -> str:
     """What stands before the first NUL; U+FFFD for each byte that is not ASCII.
 
     >>> text(bytes([0x31, 0x2E, 0x32, 0, 0]))
@@ -154,12 +157,12 @@ def text_bytes(value: str, field: str, size: int) -> bytes:
     return value.encode("ascii").ljust(size, b"\0")
 
 
-def texts_of(info: _lazy.FieldInfo, value: _lazy.Any) -> _lazy.Any:
+def texts_of(info: FieldInfo, value: _types.Any) -> _types.Any:
     """The text of a field of characters, of an array those of its elements."""
     return tuple(map(text, value)) if info.elements else text(value)
 
 
-def bytes_of_texts(info: _lazy.FieldInfo, said: _lazy.Any) -> _lazy.Any:
+def bytes_of_texts(info: FieldInfo, said: _types.Any) -> _types.Any:
     """What such a field has for a text, or an array for texts. Raises `RangeError`."""
     size = info.bits // 8
     if not info.elements:
@@ -173,12 +176,12 @@ def bytes_of_texts(info: _lazy.FieldInfo, said: _lazy.Any) -> _lazy.Any:
     )
 
 
-def length_error(message: type[_lazy.Message], data: _lazy.Buffer) -> LengthError:
+def length_error(message: type[MessageFacts], data: _types.Buffer) -> LengthError:
     """What to raise for a frame that does not have the length of the message."""
     return LengthError(message.NAME, message.LENGTH, memoryview(data).nbytes)
 
 
-def range_error(message: _lazy.Message) -> RangeError:
+def range_error(message: MessageFacts) -> RangeError:
     """What to raise for a message that has a value that does not fit."""
     for info in message.FIELDS:
         if info.when and not is_there(info, message):
@@ -189,7 +192,7 @@ def range_error(message: _lazy.Message) -> RangeError:
     return RangeError("a field", "a value of its type", None)
 
 
-def _misfit(info: _lazy.FieldInfo, value: _lazy.Any) -> _lazy.Optional[RangeError]:
+def _misfit(info: FieldInfo, value: _types.Any) -> _types.Optional[RangeError]:
     if info.elements and not has_elements(info, value):
         return RangeError(info.attribute, elements_of(info), value)
     for one, each in zip(info.parts, value if info.elements else (value,)):
@@ -206,22 +209,25 @@ def _misfit(info: _lazy.FieldInfo, value: _lazy.Any) -> _lazy.Optional[RangeErro
     return None
 
 
-def seen(message: _lazy.Message, attribute: str, kind: _lazy.Any) -> _lazy.Any:
-    """The value of a view as ``kind`` has it. Raises `RangeError`."""
+def value_of_bits(
+    info: FieldInfo,
+    message: type[MessageFacts],
+    frame: bytes,
+    kind: _types.Any,
+) -> _types.Any:
+    """The value of an overlay field in a frame, as an object of type ``kind``."""
     from ._floats import float32, float64
     from ._layout import pieces
 
-    frame = message.to_bytes()
-    info = next(one for one in message.VIEWS if one.attribute == attribute)
     value = 0
-    for piece in pieces(info, type(message)):
+    for piece in pieces(info, message):
         value |= (frame[piece.byte] >> piece.shift & (1 << piece.bits) - 1) << piece.at
     if kind is float:
         return float32(value) if info.bits == 32 else float64(value)
     return kind(signed(value, info.bits) if info.signed else value)
 
 
-def _fits_integer(info: _lazy.FieldInfo, value: _lazy.Any) -> tuple[str, bool]:
+def _fits_integer(info: FieldInfo, value: _types.Any) -> tuple[str, bool]:
     low, high = info.raw_range
     named = "" if info.enum is None else f"members of {info.enum.__name__} or "
     meant = info.physical if isinstance(value, float) and info.leads_back else ""
@@ -229,18 +235,18 @@ def _fits_integer(info: _lazy.FieldInfo, value: _lazy.Any) -> tuple[str, bool]:
     return f"{named}integers from {low} to {high}{hint}", _is_within(value, low, high)
 
 
-def _fits_bool(info: _lazy.FieldInfo, value: _lazy.Any) -> tuple[str, bool]:
+def _fits_bool(info: FieldInfo, value: _types.Any) -> tuple[str, bool]:
     return "True or False", _is_within(value, 0, 1)
 
 
-def _is_within(value: _lazy.Any, low: int, high: int) -> bool:
+def _is_within(value: _types.Any, low: int, high: int) -> bool:
     try:
         return bool(low <= value.__index__() <= high)
     except (AttributeError, TypeError):
         return False
 
 
-def _fits_float(info: _lazy.FieldInfo, value: _lazy.Any) -> tuple[str, bool]:
+def _fits_float(info: FieldInfo, value: _types.Any) -> tuple[str, bool]:
     try:
         struct.pack("<f" if info.bits == 32 else "<d", value)
     except REFUSED:
@@ -248,7 +254,7 @@ def _fits_float(info: _lazy.FieldInfo, value: _lazy.Any) -> tuple[str, bool]:
     return "", True
 
 
-def _fits_bytes(info: _lazy.FieldInfo, value: _lazy.Any) -> tuple[str, bool]:
+def _fits_bytes(info: FieldInfo, value: _types.Any) -> tuple[str, bool]:
     try:
         size, most = memoryview(value).nbytes, info.bits // 8
         fits = (info.fewest if info.is_open else most) <= size <= most
@@ -257,7 +263,7 @@ def _fits_bytes(info: _lazy.FieldInfo, value: _lazy.Any) -> tuple[str, bool]:
     return f"{_at_least(info)}{info.bits // 8} bytes", fits
 
 
-_FITS: dict[str, _lazy.Callable[[_lazy.FieldInfo, _lazy.Any], tuple[str, bool]]] = {
+_FITS: dict[str, _types.Callable[[FieldInfo, _types.Any], tuple[str, bool]]] = {
     "uint": _fits_integer,
     "int": _fits_integer,
     "enum": _fits_integer,

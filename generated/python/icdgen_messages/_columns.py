@@ -4,30 +4,33 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from importlib import import_module
 from typing import Any, NamedTuple
 
-from ._base import Message
 from ._codec import text
 from ._conditions import absent
 from ._curves import columns_on_curve
 from ._derived import column as derived_column
 from ._dicts import OCTETS
 from ._errors import IcdError, LengthError
-from ._fields import FieldInfo
 from ._hints import Buffer, Frames
 from ._layout import Piece, byte_order, pieces
 from ._tails import padded
+from ._types import FieldInfo, MessageFacts
 
 _EXACT = 1 << 53  # integers below this are exact as 64-bit floats
 
 
 def decode_many(
-    message: type[Message], frames: Frames, physical: bool
+    message: type[MessageFacts],
+    decode: Callable[[Buffer], Any],
+    frames: Frames,
+    physical: bool,
 ) -> dict[str, Any]:
-    """See `Message.decode_many`."""
+    """See `Message.decode_many`. ``decode`` is `Message.from_bytes`."""
     numpy: Any = import_module("numpy")
-    columns, counts = _columns(numpy, message, frames, physical)
+    columns, counts = _columns(numpy, message, decode, frames, physical)
     for (info, parts), (name, column) in zip(_lines(message), columns.items()):
         if info.is_open and column.ndim > 1:
             is_octets = info.type in OCTETS and not info.elements
@@ -39,10 +42,14 @@ def decode_many(
 
 
 def _columns(
-    numpy: Any, message: type[Message], frames: Frames, physical: bool
+    numpy: Any,
+    message: type[MessageFacts],
+    decode: Callable[[Buffer], Any],
+    frames: Frames,
+    physical: bool,
 ) -> tuple[dict[str, Any], Any]:
     """Columns by name, and how many elements the end of each frame has; its others are 0."""
-    joined, counts = _together(message, frames)
+    joined, counts = _together(message, decode, frames)
     decoder = _Decoder(numpy, message, joined)
     columns: dict[str, Any] = {}
     known = {info.attribute: info for info in message.FIELDS}
@@ -70,13 +77,15 @@ def _columns(
     return columns, numpy.array(counts, numpy.int32)
 
 
-def _together(message: type[Message], frames: Frames) -> tuple[Buffer, list[int]]:
+def _together(
+    message: type[MessageFacts], decode: Callable[[Buffer], Any], frames: Frames
+) -> tuple[Buffer, list[int]]:
     """Frames that follow each other; where they differ in length, the longest, and the elements of each."""
     is_one = isinstance(frames, (bytes, bytearray, memoryview))
     if message.ENDS_EARLY and not is_one:
         given: list[Any] = list(frames)
         for frame in given:
-            message.from_bytes(frame)  # if it is one
+            decode(frame)  # if it is one
         return b"".join(padded(message, frame) for frame in given), []
     if message.TAIL is None:
         return (frames if is_one else b"".join(frames)), []  # type: ignore[return-value, arg-type]
@@ -85,16 +94,21 @@ def _together(message: type[Message], frames: Frames) -> tuple[Buffer, list[int]
             f"frames of {message.NAME} differ in length: give them as a list"
         )
     kept: list[Any] = list(frames)
-    made = [message.from_bytes(frame) for frame in kept]  # if it is one
+    made = [decode(frame) for frame in kept]  # if it is one
     counts = [len(getattr(one, message.TAIL.part)) for one in made]
     return b"".join(padded(message, frame) for frame in kept), counts
 
 
-def decode_table(message: type[Message], frames: Frames, physical: bool) -> Any:
+def decode_table(
+    message: type[MessageFacts],
+    decode: Callable[[Buffer], Any],
+    frames: Frames,
+    physical: bool,
+) -> Any:
     """See `Message.decode_table`."""
     numpy: Any = import_module("numpy")
     pyarrow: Any = import_module("pyarrow")
-    columns, counts = _columns(numpy, message, frames, physical)
+    columns, counts = _columns(numpy, message, decode, frames, physical)
     fields, arrays = [], []
     for (info, parts), (name, column) in zip(_lines(message), columns.items()):
         if info.when:
@@ -132,7 +146,7 @@ _Line = tuple[FieldInfo, tuple[FieldInfo, ...]]
 """An item with a column, and the fields of it in each frame."""
 
 
-def _lines(message: type[Message]) -> list[_Line]:
+def _lines(message: type[MessageFacts]) -> list[_Line]:
     """What has a column: fields, views, arrays, and the fields of each struct, of an open end all of them together."""
     found: list[_Line] = []
     for info in message.FIELDS:
@@ -226,7 +240,7 @@ class _Decoder:
     What stands on whole bytes is a view; frames that can change are copied before.
     """
 
-    def __init__(self, numpy: Any, message: type[Message], frames: Buffer) -> None:
+    def __init__(self, numpy: Any, message: type[MessageFacts], frames: Buffer) -> None:
         view = memoryview(frames)
         size = message.LENGTH
         count, rest = divmod(view.nbytes, size) if size else (0, view.nbytes)
@@ -361,10 +375,10 @@ class _Plan(NamedTuple):
     """Their attributes, in this order."""
 
 
-_plans: dict[type[Message], _Plan] = {}
+_plans: dict[type[MessageFacts], _Plan] = {}
 
 
-def _plan(message: type[Message]) -> _Plan:
+def _plan(message: type[MessageFacts]) -> _Plan:
     needed: set[int] = set()
     flags: dict[int, list[int]] = {}
     names: dict[int, list[str]] = {}

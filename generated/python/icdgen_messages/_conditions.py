@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
-from . import _lazy
+from . import _types
 from ._codec import REFUSED, is_there, range_error, signed, signed_bits, unsigned_bits
 from ._floats import float32, float32_bits, float64, float64_bits
 from ._layout import pieces
+from ._types import FieldInfo, MessageFacts
 
 
-def settle(message: _lazy.Message, given: _lazy.Any) -> None:
+def settle(message: MessageFacts, given: _types.Any) -> None:
     """Makes what is not there None, unless it was given."""
     for info in message.FIELDS:
         is_given = info.attribute in given or info.physical in given
@@ -17,11 +18,11 @@ def settle(message: _lazy.Message, given: _lazy.Any) -> None:
             setattr(message, info.attribute, None)
 
 
-def decoder(owner: _lazy.Any, steady: _lazy.Any) -> _lazy.Any:
+def decoder(owner: _types.Any, steady: _types.Any) -> _types.Any:
     """``from_bytes`` of a class of which ``steady`` decodes the fields that are always there."""
     found = [(info, pieces(info, owner)) for info in owner.FIELDS if info.when]
 
-    def from_bytes(cls: _lazy.Any, data: _lazy.Buffer) -> _lazy.Any:
+    def from_bytes(cls: _types.Any, data: _types.Buffer) -> _types.Any:
         self = steady(cls, data)
         frame = memoryview(data).tobytes()
         for info, runs in found:
@@ -38,11 +39,11 @@ def decoder(owner: _lazy.Any, steady: _lazy.Any) -> _lazy.Any:
     return from_bytes
 
 
-def encoder(owner: _lazy.Any, steady: _lazy.Any) -> _lazy.Any:
+def encoder(owner: _types.Any, steady: _types.Any) -> _types.Any:
     """``to_bytes`` of a class of which ``steady`` encodes the fields that are always there."""
     found = [(info, pieces(info, owner)) for info in owner.FIELDS if info.when]
 
-    def to_bytes(self: _lazy.Any) -> bytes:
+    def to_bytes(self: _types.Any) -> bytes:
         frame = bytearray(steady(self))
         for info, runs in found:
             if is_there(info, self):
@@ -58,7 +59,7 @@ def encoder(owner: _lazy.Any, steady: _lazy.Any) -> _lazy.Any:
     return to_bytes
 
 
-def _value(info: _lazy.FieldInfo, bits: int) -> _lazy.Any:
+def _value(info: FieldInfo, bits: int) -> _types.Any:
     if info.type == "float":
         return float32(bits) if info.bits == 32 else float64(bits)
     if info.type == "bool":
@@ -67,14 +68,14 @@ def _value(info: _lazy.FieldInfo, bits: int) -> _lazy.Any:
     return number if info.enum is None else info.enum(number)
 
 
-def _bits(info: _lazy.FieldInfo, value: _lazy.Any) -> int:
+def _bits(info: FieldInfo, value: _types.Any) -> int:
     """What of a value goes into the frame, if it fits."""
     if info.type == "float":
         return float32_bits(value) if info.bits == 32 else float64_bits(value)
     return (signed_bits if info.signed else unsigned_bits)(value, info.bits)
 
 
-def absent(numpy: _lazy.Any, info: _lazy.FieldInfo, columns: _lazy.Any) -> _lazy.Any:
+def absent(numpy: _types.Any, info: FieldInfo, columns: _types.Any) -> _types.Any:
     """Of each frame, whether a field is not there; ``columns`` are the raw values of the others."""
     there = numpy.ones((), bool)
     for name, values in info.when:

@@ -12,12 +12,12 @@ import struct
 from bisect import bisect_right
 from functools import lru_cache
 
-from . import _lazy
-from ._errors import RangeError
-from ._scales import span_of
+from . import _types
+from ._errors import RangeError, span_of
+from ._types import FieldInfo
 
 
-def on_curve(curve: _lazy.Curve, raw: float) -> float:
+def on_curve(curve: _types.Curve, raw: float) -> float:
     """The physical value of a raw one: of the last piece that begins there or below.
 
     >>> on_curve(((0.0, (-40.0, 0.5, 0.25)),), 2)
@@ -37,11 +37,13 @@ def on_curve(curve: _lazy.Curve, raw: float) -> float:
 
 
 @lru_cache(maxsize=256)
-def _starts(curve: _lazy.Curve) -> tuple[float, ...]:
+def _starts(curve: _types.Curve) -> tuple[float, ...]:
     return tuple(start for start, _ in curve)
 
 
-def columns_on_curve(numpy: _lazy.Any, curve: _lazy.Curve, raw: _lazy.Any) -> _lazy.Any:
+def columns_on_curve(
+    numpy: _types.Any, curve: _types.Curve, raw: _types.Any
+) -> _types.Any:
     """The physical values of a whole column."""
     with numpy.errstate(all="ignore"):  # that a float is a signalling NaN, too
         x = raw.astype(numpy.float64)
@@ -61,7 +63,7 @@ def columns_on_curve(numpy: _lazy.Any, curve: _lazy.Curve, raw: _lazy.Any) -> _l
     return column
 
 
-def from_curve(value: _lazy.Any, info: _lazy.FieldInfo, field: str) -> _lazy.Any:
+def from_curve(value: _types.Any, info: FieldInfo, field: str) -> _types.Any:
     """The nearest raw value, of two the even one. Raises `RangeError` that names ``field``, the attribute that is set."""
     try:
         top, bottom = value.as_integer_ratio()
@@ -79,7 +81,7 @@ def from_curve(value: _lazy.Any, info: _lazy.FieldInfo, field: str) -> _lazy.Any
     return _nearest(wanted, info, field)
 
 
-def _number(value: float, info: _lazy.FieldInfo, field: str) -> float:
+def _number(value: float, info: FieldInfo, field: str) -> float:
     ((_, (constant, slope)),) = info.curve
     inverse = (value - constant) / slope
     try:
@@ -92,7 +94,7 @@ def _number(value: float, info: _lazy.FieldInfo, field: str) -> float:
     return float(narrow)
 
 
-def _nearest(value: float, info: _lazy.FieldInfo, field: str) -> int:
+def _nearest(value: float, info: FieldInfo, field: str) -> int:
     low, high = info.ends or info.raw_range
     first, last = on_curve(info.curve, low), on_curve(info.curve, high)
     rises = first < last

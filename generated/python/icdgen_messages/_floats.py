@@ -10,7 +10,8 @@ from __future__ import annotations
 import math
 import struct
 
-from . import _lazy
+from . import _types
+from ._types import MessageFacts
 
 _FLOAT32, _FLOAT64 = struct.Struct("<f"), struct.Struct("<d")
 _BITS32, _BITS64 = struct.Struct("<I"), struct.Struct("<Q")
@@ -54,7 +55,7 @@ def float64_bits(value: float) -> int:
     return int(bits)
 
 
-def keep_nans(message: _lazy.Message, data: _lazy.Buffer) -> None:
+def keep_nans(message: MessageFacts, data: _types.Buffer) -> None:
     """Sets the aligned 32-bit floats of ``message`` again, exactly as in ``data``."""
     frame = memoryview(data).tobytes()
     for name, byte in _aligned(message):
@@ -62,7 +63,7 @@ def keep_nans(message: _lazy.Message, data: _lazy.Buffer) -> None:
         setattr(message, name, float32(bits))
 
 
-def with_nans(message: _lazy.Message, frame: bytes) -> bytes:
+def with_nans(message: MessageFacts, frame: bytes) -> bytes:
     """``frame`` with the exact bits of the aligned 32-bit floats of ``message``."""
     exact = bytearray(frame)
     for name, byte in _aligned(message):
@@ -71,7 +72,7 @@ def with_nans(message: _lazy.Message, frame: bytes) -> bytes:
     return bytes(exact)
 
 
-def _aligned(message: _lazy.Message) -> _lazy.Iterator[tuple[str, int]]:
+def _aligned(message: MessageFacts) -> _types.Iterator[tuple[str, int]]:
     for info in message.FIELDS:
         if info.type != "float" or info.bits != 32 or info.at % 8:
             continue

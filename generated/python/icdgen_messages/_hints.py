@@ -4,9 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar, Union, cast
-
-from . import _lazy
+from typing import TYPE_CHECKING, Any, TypeVar, Union
 
 if TYPE_CHECKING:
     from typing_extensions import TypeVar as TypeVarWithDefault
@@ -27,42 +25,7 @@ Derivation = tuple[tuple[str, ...], tuple[float, ...], tuple[tuple[str, int, int
 Curve = tuple[tuple[float, tuple[float, ...]], ...]
 """From a raw value on, the terms of a polynomial in what is above that."""
 
-M = TypeVar("M", bound="_lazy.Message")
-M2 = TypeVar("M2", bound="_lazy.Message")
-M3 = TypeVar("M3", bound="_lazy.Message")
-S = TypeVar("S", bound="_lazy.Struct")
 T = TypeVar("T")
-M_co = TypeVar("M_co", covariant=True)
-N_contra = TypeVar("N_contra", contravariant=True)
-
-
-class SpokenBy(Protocol[N_contra]):
-    """A message that a node speaks, its own or one of a node that it includes."""
-
-    def to_bytes(self) -> bytes: ...
-
-    def _spoken_by(self, node: N_contra, /) -> None: ...
-
-
-class KindOf(Protocol[N_contra, M_co]):
-    """The class of such a message."""
-
-    def __call__(self) -> object: ...
-
-    def _made(self) -> M_co: ...
-
-    def _spoken_by(self, node: N_contra, /) -> None: ...
-
-
-def class_of(message: KindOf[Any, M]) -> type[M]:
-    """The class that it is."""
-    return cast("type[M]", message)
-
-
-def message_of(message: SpokenBy[Any]) -> _lazy.Message:
-    """The message that it is."""
-    return cast("_lazy.Message", message)
-
 
 Candidate = tuple[str, range, tuple[tuple[int, int, int], ...]]
 """A message of an id that several have: its name, its lengths, and byte, mask and value of its constants."""

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from . import _lazy
+from ._types import FieldInfo, MessageFacts
 
 
 class Piece:
@@ -15,12 +15,12 @@ class Piece:
         self.byte, self.shift, self.bits, self.at = byte, shift, bits, at
 
 
-def byte_order(info: _lazy.FieldInfo, message: type[_lazy.Message]) -> str:
+def byte_order(info: FieldInfo, message: type[MessageFacts]) -> str:
     """``little`` or ``big``: the field's own, or the message's."""
     return info.byte_order or message.BYTE_ORDER
 
 
-def pieces(info: _lazy.FieldInfo, message: type[_lazy.Message]) -> list[Piece]:
+def pieces(info: FieldInfo, message: type[MessageFacts]) -> list[Piece]:
     """The runs of bits of a field's number, in the order of their bytes."""
     found = []
     at, end, below = info.at, info.at + info.bits, 0

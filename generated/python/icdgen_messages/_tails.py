@@ -3,16 +3,16 @@
 
 from __future__ import annotations
 
-from . import _lazy
+from . import _types
 from ._codec import range_error
 from ._errors import LengthError, RangeError
 
 
-def decoder(owner: _lazy.Any, longest: _lazy.Any) -> _lazy.Any:
+def decoder(owner: _types.Any, longest: _types.Any) -> _types.Any:
     """``from_bytes`` of a class whose longest frames ``longest`` decodes."""
     tail = owner.TAIL
 
-    def from_bytes(cls: _lazy.Any, data: _lazy.Buffer) -> _lazy.Any:
+    def from_bytes(cls: _types.Any, data: _types.Buffer) -> _types.Any:
         frame, lacking = spread(cls, data)
         count = count_in(cls, frame, lacking)
         self = longest(cls, frame.ljust(cls.LENGTH, b"\0"))
@@ -26,10 +26,10 @@ def decoder(owner: _lazy.Any, longest: _lazy.Any) -> _lazy.Any:
     return from_bytes
 
 
-def filling_decoder(owner: _lazy.Any, whole: _lazy.Any) -> _lazy.Any:
+def filling_decoder(owner: _types.Any, whole: _types.Any) -> _types.Any:
     """``from_bytes`` of a class whose frames may lack the zeros that they end with; ``whole`` decodes those that do not."""
 
-    def from_bytes(cls: _lazy.Any, data: _lazy.Buffer) -> _lazy.Any:
+    def from_bytes(cls: _types.Any, data: _types.Buffer) -> _types.Any:
         actual = memoryview(data).nbytes
         if actual == owner.LENGTH:
             return whole(cls, data)
@@ -40,20 +40,17 @@ def filling_decoder(owner: _lazy.Any, whole: _lazy.Any) -> _lazy.Any:
     return from_bytes
 
 
-def encoder(owner: _lazy.Any, longest: _lazy.Any) -> _lazy.Any:
-    """``to_bytes`` of a class whose longest frames ``longest`` encodes."""
+def encoder(owner: _types.Any, longest: _types.Any, padding: _types.Any) -> _types.Any:
+    """``to_bytes`` of a class whose longest frames ``longest`` encodes.
+
+    ``padding`` are as many elements as the end can have, all of them 0.
+    """
     tail = owner.TAIL
     info = next(one for one in owner.FIELDS if one.attribute == tail.part)
     is_array = info.elements > 0
     least = owner.LENGTH - tail.most * tail.step
-    rest: _lazy.Any = bytes(tail.most)
-    if is_array:
-        from . import _compiled
 
-        zeros = _compiled.longest(owner, "from_bytes")(owner, bytes(owner.LENGTH))
-        rest = getattr(zeros, tail.part)
-
-    def to_bytes(self: _lazy.Any) -> bytes:
+    def to_bytes(self: _types.Any) -> bytes:
         gaps = [_gap(self, *one) for one in owner.INNER]
         values = getattr(self, tail.part)
         try:
@@ -70,7 +67,7 @@ def encoder(owner: _lazy.Any, longest: _lazy.Any) -> _lazy.Any:
         whole = object.__new__(type(self))
         for one in self.FIELDS:
             setattr(whole, one.attribute, getattr(self, one.attribute))
-        setattr(whole, tail.part, values + rest[count:])
+        setattr(whole, tail.part, values + padding[count:])
         frame: bytes = longest(whole)
         frame = frame[: least + count * tail.step]
         for place, lacking in reversed(gaps):
@@ -80,7 +77,9 @@ def encoder(owner: _lazy.Any, longest: _lazy.Any) -> _lazy.Any:
     return to_bytes
 
 
-def _gap(self: _lazy.Any, part: _lazy.Any, begin: int, _: _lazy.Any) -> tuple[int, int]:
+def _gap(
+    self: _types.Any, part: _types.Any, begin: int, _: _types.Any
+) -> tuple[int, int]:
     """Where the longest frame has bytes of a part that this one has not, and how many. Raises `RangeError`."""
     told = getattr(self, part.counter)
     low, high = max(0, -part.plus), part.most - part.plus
@@ -90,7 +89,7 @@ def _gap(self: _lazy.Any, part: _lazy.Any, begin: int, _: _lazy.Any) -> tuple[in
     return begin + count * part.step, (part.most - count) * part.step
 
 
-def spread(message: _lazy.Any, data: _lazy.Buffer) -> tuple[bytes, int]:
+def spread(message: _types.Any, data: _types.Buffer) -> tuple[bytes, int]:
     """The beginning of the longest frame, and how many of its bytes are not in ``data``: elements in front of the end.
 
     Raises `LengthError` for a frame that is shorter than any, or says that it has more elements than there can be.
@@ -118,7 +117,7 @@ def spread(message: _lazy.Any, data: _lazy.Buffer) -> tuple[bytes, int]:
     return frame, len(frame) - actual
 
 
-def count_in(message: _lazy.Any, frame: bytes, lacking: int) -> int:
+def count_in(message: _types.Any, frame: bytes, lacking: int) -> int:
     """How many elements the end of a frame has, which lacks so many bytes in front of it. Raises `LengthError`."""
     tail, actual = message.TAIL, len(frame)
     begin: int = message.LENGTH - tail.most * tail.step
@@ -131,6 +130,6 @@ def count_in(message: _lazy.Any, frame: bytes, lacking: int) -> int:
     return count
 
 
-def padded(message: _lazy.Any, data: _lazy.Buffer) -> bytes:
+def padded(message: _types.Any, data: _types.Buffer) -> bytes:
     """The longest frame, of which the rest is 0."""
     return spread(message, data)[0].ljust(message.LENGTH, b"\0")

@@ -1,13 +1,11 @@
-"""What all messages have in common."""
+"""Base classes of structs and messages."""
 
 from __future__ import annotations
 
-# Itself: what annotations name is loaded when they are evaluated.
-from . import _lazy
+# The module: its names in annotations are loaded when they are evaluated.
+from . import _types
 from ._fields import (
-    FieldInfo,
     Form,
-    Tail,
     curve,
     curve_only,
     field,
@@ -16,6 +14,7 @@ from ._fields import (
     text,
     whole,
 )
+from ._types import FieldInfo, MessageFacts, StructFacts, Tail
 
 __all__ = [
     "FieldInfo",
@@ -38,11 +37,9 @@ __all__ = [
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from inspect import Signature
-    from typing import Any, Callable, ClassVar, Generic, Literal
+    from typing import Any, Callable, Generic
 
     from typing_extensions import ParamSpec, Self, TypeVar, dataclass_transform
-
-    from ._hints import S
 
     P = ParamSpec("P")
     N_contra = TypeVar("N_contra", contravariant=True, default=Any)
@@ -84,8 +81,8 @@ class MessageType(type):
     """
 
     def __new__(
-        mcls, name: str, bases: tuple[type, ...], namespace: dict[str, _lazy.Any]
-    ) -> _lazy.Any:
+        mcls, name: str, bases: tuple[type, ...], namespace: dict[str, _types.Any]
+    ) -> _types.Any:
         """The class. Values of fields stand in slots, so their declarations go."""
         if "LENGTH" in namespace:
             infos: list[FieldInfo] = []
@@ -107,13 +104,13 @@ class MessageType(type):
         """The keywords that it is made with, for `inspect.signature`."""
         from ._dataclass import signature
 
-        return signature(cls)
+        return signature(cls, Struct.__init__)
 
 
 class _DataclassFields:
     """``__dataclass_fields__``, which the functions of `dataclasses` look at."""
 
-    def __get__(self, message: object, owner: _lazy.Any) -> dict[str, _lazy.Any]:
+    def __get__(self, message: object, owner: _types.Any) -> dict[str, _types.Any]:
         from ._dataclass import dataclass_fields
 
         return dataclass_fields(owner)
@@ -122,13 +119,13 @@ class _DataclassFields:
 class _DataclassParams:
     """``__dataclass_params__``, as `dataclasses.dataclass` leaves it."""
 
-    def __get__(self, message: object, owner: object) -> _lazy.Any:
+    def __get__(self, message: object, owner: object) -> _types.Any:
         from ._dataclass import PARAMS
 
         return PARAMS
 
 
-class Struct(metaclass=MessageType):
+class Struct(StructFacts, metaclass=MessageType):
     """Fields that stand together: a message, or what stands in messages once or several times.
 
     Its attributes hold raw values, just as they are on the wire. It is made with
@@ -139,22 +136,7 @@ class Struct(metaclass=MessageType):
     __slots__ = ()
     __dataclass_params__ = _DataclassParams()
 
-    if TYPE_CHECKING:
-        NODE: ClassVar[str]
-        """The node whose ICD declares it."""
-        NAME: ClassVar[str]
-        """The manual's name, verbatim."""
-        LENGTH: ClassVar[int]
-        """Length of a frame in bytes, without the id; of the longest frame, if they differ."""
-        FIELDS: ClassVar[tuple[FieldInfo, ...]]
-        """The fields in the order of the manual."""
-        VIEWS: ClassVar[tuple[FieldInfo, ...]]
-        """Overlay fields and derived values, which are computed from the fields and not set."""
-        CONDITIONAL: ClassVar[bool]
-        """Whether a field is not always there: see `FieldInfo.when`."""
-    else:
-        FIELDS = VIEWS = ()
-        CONDITIONAL = False
+    if not TYPE_CHECKING:
         __dataclass_fields__ = _DataclassFields()
 
         def __init__(self, /, **values):
@@ -175,7 +157,9 @@ class Struct(metaclass=MessageType):
     if TYPE_CHECKING:
 
         @classmethod  # pyright: ignore[reportArgumentType]
-        def from_physical(cls: Callable[P, S], *args: P.args, **values: P.kwargs) -> S:
+        def from_physical(
+            cls: Callable[P, _types.S], *args: P.args, **values: P.kwargs
+        ) -> _types.S:
             """From physical values, raw ones where there is no scale or text; those of views are not looked at.
 
             Raises `RangeError`, and `TypeError` for a raw value that has a physical one.
@@ -200,7 +184,7 @@ class Struct(metaclass=MessageType):
                 values.pop(info.physical, None)
             return cls(**values)
 
-    def as_dict(self, physical: bool = False) -> dict[str, _lazy.Any]:
+    def as_dict(self, physical: bool = False) -> dict[str, _types.Any]:
         """All values by attribute: raw, or physical where there is such a value; then those of views.
 
         What is a struct is a dictionary itself.
@@ -221,36 +205,48 @@ class Struct(metaclass=MessageType):
                 )
         return values
 
-    def _own(self) -> dict[str, _lazy.Any]:
+    def _own(self) -> dict[str, _types.Any]:
         """What it is made of: views follow from that."""
         return {info.attribute: getattr(self, info.attribute) for info in self.FIELDS}
 
     @classmethod
-    def from_dict(cls: type[_lazy.S], values: _lazy.Mapping[str, _lazy.Any]) -> _lazy.S:
+    def from_dict(
+        cls: type[_types.S], values: _types.Mapping[str, _types.Any]
+    ) -> _types.S:
         """The reverse of `as_dict`, of raw or physical values; what is not there is as in a new message.
 
         Bytes may be hexadecimal digits. Raises `RangeError` for a value that does not
         fit, and `IcdError` for a name that is none.
         """
-        from ._dicts import from_dict
+        from ._dicts import filled
 
-        return from_dict(cls, values)
+        made: _types.Any = filled(cls, values)
+        checked: _types.S = made._checked()
+        return checked
+
+    def _checked(self) -> _types.Any:
+        """Return an equal object that holds values of the types that decoding gives. Raises `RangeError`."""
+        return self
 
     def to_json(self, physical: bool = False) -> str:
         """`as_dict` as JSON; bytes are hexadecimal digits."""
         from ._dicts import to_json
 
-        return to_json(self, physical)
+        return to_json(self.as_dict(physical))
 
     @classmethod
-    def from_json(cls: type[_lazy.S], data: str) -> _lazy.S:
+    def from_json(cls: type[_types.S], data: str) -> _types.S:
         """The reverse of `to_json`. Raises like `from_dict`, and `IcdError` for what is no JSON."""
-        from ._dicts import from_json
+        from ._dicts import values_of_json
 
-        return from_json(cls, data)
+        struct: _types.Any = cls
+        made: _types.S = struct.from_dict(values_of_json(data))
+        return made
 
-    def __replace__(self: _lazy.S, **changes: _lazy.Any) -> _lazy.S:
-        return type(self)(**{**self._own(), **changes})
+    def __replace__(self: _types.S, **changes: _types.Any) -> _types.S:
+        message: _types.Any = self
+        made: _types.S = type(message)(**{**message._own(), **changes})
+        return made
 
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
@@ -262,48 +258,21 @@ class Struct(metaclass=MessageType):
         return f"{type(self).__name__}({', '.join(values)})"
 
 
-class Message(Spoken[N_contra], Struct):
+class Message(Spoken[N_contra], MessageFacts, Struct):
     """A message that travels: a frame of ``LENGTH`` bytes, under an id."""
 
     __slots__ = ()
 
-    if TYPE_CHECKING:
-        KIND: ClassVar[str]
-        """``telecommand``, ``telemetry`` or ``configuration`` (which is both)."""
-        IDS: ClassVar[tuple[int, ...]]
-        """Its ids: one, or the id to set it and the id to get it."""
-        TABLE: ClassVar[int | None]
-        """The manual's table."""
-        ACKNOWLEDGED: ClassVar[bool]
-        """Whether the node acknowledges it, where it is a telecommand."""
-        PARTS: ClassVar[tuple[tuple[str, str, int], ...]]
-        """The messages that it repeats: their nodes, their classes, and from which bit."""
-        TAIL: ClassVar[Tail | None]
-        """The end of frames that differ in length."""
-        INNER: ClassVar[
-            tuple[tuple[Tail, int, tuple[tuple[int, int, int, int], ...]], ...]
-        ]
-        """Variable-length fields in front of `TAIL`: where each begins in the longest frame, and the bits that count it."""
-        ENDS_EARLY: ClassVar[bool]
-        """Whether frames may lack the zeros that they end with."""
-        BYTE_ORDER: ClassVar[Literal["little", "big"]]
-        BIT_ORDER: ClassVar[Literal["lsb0", "msb0"]]
-    else:
-        IDS = PARTS = INNER = ()
-        TABLE = TAIL = None
-        ENDS_EARLY, ACKNOWLEDGED = False, True
-        BYTE_ORDER, BIT_ORDER = "little", "lsb0"
-
     @classmethod
-    def from_bytes(cls: type[_lazy.M], data: _lazy.Buffer) -> _lazy.M:
+    def from_bytes(cls: type[_types.M], data: _types.Buffer) -> _types.M:
         """The message in a frame of a length that it has. Raises `LengthError`."""
         from ._compiled import compiled
 
-        made: _lazy.M = compiled(cls, "from_bytes")(cls, data)
+        made: _types.M = compiled(cls, "from_bytes")(cls, data)
         return made
 
     @classmethod
-    def from_part(cls: type[_lazy.M], message: Message, index: int = 0) -> _lazy.M:
+    def from_part(cls: type[_types.M], message: Message, index: int = 0) -> _types.M:
         """The message as another one repeats it, of several times the one with this index.
 
         Raises `IcdError` if it does not.
@@ -312,7 +281,10 @@ class Message(Spoken[N_contra], Struct):
 
         return part(cls, message, index)
 
-    def iter_parts(self) -> _lazy.Iterator[Message]:
+    def _checked(self) -> _types.Any:
+        return type(self).from_bytes(self.to_bytes())
+
+    def iter_parts(self) -> _types.Iterator[Message]:
         """The messages that it repeats, one after the other, each of its own class."""
         from ._parts import parts
 
@@ -327,8 +299,8 @@ class Message(Spoken[N_contra], Struct):
 
     @classmethod
     def decode_many(
-        cls, frames: _lazy.Frames, physical: bool = False
-    ) -> dict[str, _lazy.Any]:
+        cls, frames: _types.Frames, physical: bool = False
+    ) -> dict[str, _types.Any]:
         """Frames that follow each other, as one numpy array a field.
 
         The names are those of `as_dict`. What stands on whole bytes is a view of the
@@ -339,10 +311,10 @@ class Message(Spoken[N_contra], Struct):
         """
         from . import _columns
 
-        return _columns.decode_many(cls, frames, physical)
+        return _columns.decode_many(cls, cls.from_bytes, frames, physical)
 
     @classmethod
-    def decode_table(cls, frames: _lazy.Frames, physical: bool = True) -> _lazy.Any:
+    def decode_table(cls, frames: _types.Frames, physical: bool = True) -> _types.Any:
         """Frames that follow each other, as a `pyarrow.Table`.
 
         Units, the manual's names and those of enumerations are metadata of its fields:
@@ -351,29 +323,30 @@ class Message(Spoken[N_contra], Struct):
         """
         from . import _columns
 
-        return _columns.decode_table(cls, frames, physical)
+        return _columns.decode_table(cls, cls.from_bytes, frames, physical)
 
 
-def view(message: Message, attribute: str, kind: type[_lazy.T]) -> _lazy.T:
+def view(message: Message, attribute: str, kind: type[_types.T]) -> _types.T:
     """The value of a view, of the frame that the message makes. Raises `RangeError`."""
-    from ._codec import seen
+    from ._codec import value_of_bits
 
-    value: _lazy.T = seen(message, attribute, kind)
+    (info,) = (one for one in message.VIEWS if one.attribute == attribute)
+    value: _types.T = value_of_bits(info, type(message), message.to_bytes(), kind)
     return value
 
 
 def derived(message: Message, attribute: str) -> float:
     """What is derived from fields. Raises `RangeError`."""
-    from ._derived import derived as found
+    from ._derived import derived as result_of
 
     views = (one for one in message.VIEWS if one.attribute == attribute)
-    (how,) = (one.derived for one in views if one.derived)
-    return found(how, [getattr(message, name) for name in how[0]])
+    (derivation,) = (one.derived for one in views if one.derived)
+    return result_of(derivation, [getattr(message, name) for name in derivation[0]])
 
 
 def on_curve(message: Message, attribute: str) -> float:
     """The physical value of a view that has a curve. Raises `RangeError`."""
-    from ._curves import on_curve as found
+    from ._curves import on_curve as value_on
 
     (curve,) = (one.curve for one in message.VIEWS if one.attribute == attribute)
-    return found(curve, getattr(message, attribute))
+    return value_on(curve, getattr(message, attribute))

@@ -9,8 +9,9 @@ from __future__ import annotations
 import struct
 from itertools import groupby
 
-from . import _codec, _floats, _lazy
+from . import _codec, _floats, _types
 from ._layout import byte_order, pieces
+from ._types import FieldInfo, MessageFacts, StructFacts
 
 _INTEGERS = {8: "B", 16: "H", 32: "I", 64: "Q"}
 _FLOATS = {32: "f", 64: "d"}
@@ -35,10 +36,10 @@ def to_bytes(self):
         raise range_error(self) from None
 """
 
-_functions: dict[tuple[type, str], _lazy.Any] = {}
+_functions: dict[tuple[type, str], _types.Any] = {}
 
 
-def compiled(message: type[_lazy.Message], name: str) -> _lazy.Any:
+def compiled(message: type[MessageFacts], name: str) -> _types.Any:
     """The function ``name`` of the class that declares the fields, which from now on has it as its method."""
     owner = next(one for one in message.__mro__ if "FIELDS" in vars(one))
     if (owner, name) not in _functions:
@@ -53,16 +54,17 @@ def compiled(message: type[_lazy.Message], name: str) -> _lazy.Any:
         if message.TAIL is not None:
             from . import _tails
 
-            function = {"from_bytes": _tails.decoder, "to_bytes": _tails.encoder}[name](
-                owner, function
-            )
+            if name == "from_bytes":
+                function = _tails.decoder(owner, function)
+            else:
+                function = _tails.encoder(owner, function, _padding(owner))
         elif message.ENDS_EARLY and name == "from_bytes":
             from . import _tails
 
             function = _tails.filling_decoder(owner, function)
         _functions[owner, name] = function
-        told = getattr(_lazy.Message, name)
-        function.__doc__, function.__module__ = told.__doc__, owner.__module__
+        inherited = getattr(super(owner, owner), name)
+        function.__doc__, function.__module__ = inherited.__doc__, owner.__module__
         function.__qualname__ = f"{owner.__qualname__}.{name}"
         if name not in vars(owner):
             setattr(
@@ -71,7 +73,7 @@ def compiled(message: type[_lazy.Message], name: str) -> _lazy.Any:
     return _functions[owner, name]
 
 
-def longest(owner: type[_lazy.Message], name: str) -> _lazy.Any:
+def longest(owner: type[MessageFacts], name: str) -> _types.Any:
     """The function ``name`` of the class, for frames of exactly ``LENGTH`` bytes."""
     codec = Codec(owner)
     source = {"from_bytes": codec.decoder, "to_bytes": codec.encoder}[name]()
@@ -79,6 +81,16 @@ def longest(owner: type[_lazy.Message], name: str) -> _lazy.Any:
     code = compile(source, f"<{owner.__qualname__}.{name}>", "exec")
     exec(code, codec.names)  # noqa: S102
     return codec.names[name]
+
+
+def _padding(owner: type[MessageFacts]) -> _types.Any:
+    """The greatest number of elements that the end of the frame can have, all of them 0."""
+    tail: _types.Any = owner.TAIL
+    info = next(one for one in owner.FIELDS if one.attribute == tail.part)
+    if not info.elements:
+        return bytes(tail.most)
+    zeros = longest(owner, "from_bytes")(owner, bytes(owner.LENGTH))
+    return getattr(zeros, tail.part)
 
 
 class _Item:
@@ -99,10 +111,10 @@ class _Item:
 class Codec:
     """The sources of a message's decoder and encoder, and what they name."""
 
-    def __init__(self, message: type[_lazy.Message]) -> None:
+    def __init__(self, message: type[MessageFacts]) -> None:
         self.message, self.order = message, message.BYTE_ORDER
         self.fields = [one for one in message.FIELDS if not one.when]
-        self.names: dict[str, _lazy.Any] = {
+        self.names: dict[str, _types.Any] = {
             "new": object.__new__,
             "error": struct.error,
             "length_error": _codec.length_error,
@@ -112,7 +124,7 @@ class Codec:
         self._items: list[_Item] = []
         self._assign: list[str] = []
         self._prepare: list[str] = []
-        self._parts: dict[int, list[tuple[int, _lazy.FieldInfo]]] = (
+        self._parts: dict[int, list[tuple[int, FieldInfo]]] = (
             {}
         )  # byte -> fields within it, from bit `shift` up
         self._terms: dict[int, list[str]] = {}  # byte -> what crossing fields add to it
@@ -120,7 +132,7 @@ class Codec:
         self._holders: dict[str, str] = {}  # attribute of a struct -> its variable
         self._made: list[str] = []  # statements that make the structs
         self._placed: list[str] = []  # statements that put them where they stand
-        self._arrays: list[_lazy.FieldInfo] = []  # whose elements are read one by one
+        self._arrays: list[FieldInfo] = []  # whose elements are read one by one
         self._plan()
 
     def decoder(self) -> str:
@@ -182,12 +194,12 @@ class Codec:
         self.form = struct.Struct(self._format())
         self.names |= {"unpack": self.form.unpack, "pack": self.form.pack}
 
-    def _units(self) -> _lazy.Iterator[_lazy.FieldInfo]:
+    def _units(self) -> _types.Iterator[FieldInfo]:
         """What is packed by itself: fields, arrays of words, and each element of other arrays."""
         for info in self.fields:
             yield from self._units_of(info)
 
-    def _units_of(self, info: _lazy.FieldInfo) -> _lazy.Iterator[_lazy.FieldInfo]:
+    def _units_of(self, info: FieldInfo) -> _types.Iterator[FieldInfo]:
         if not info.attribute.rpartition(".")[2].isidentifier():
             raise ValueError(f"{info.attribute!r} is no name of an attribute")
         if info.struct is not None:
@@ -201,8 +213,8 @@ class Codec:
             yield info
 
     def _within(
-        self, info: _lazy.FieldInfo, struct: type[_lazy.Struct]
-    ) -> _lazy.Iterator[_lazy.FieldInfo]:
+        self, info: FieldInfo, struct: type[StructFacts]
+    ) -> _types.Iterator[FieldInfo]:
         """The fields of a struct, wherever it stands. Each is a variable while a frame is read or written."""
         own, parts = self._own(info), info.parts
         kind = self._named("struct", struct)
@@ -218,17 +230,17 @@ class Codec:
             for inner in struct.FIELDS:
                 yield from self._units_of(inner.within(part))
 
-    def _own(self, info: _lazy.FieldInfo) -> str:
+    def _own(self, info: FieldInfo) -> str:
         """The attribute as an expression: of a message, or of a struct in it."""
         holder, _, name = info.attribute.rpartition(".")
         return f"{self._holders[holder] if holder else 'self'}.{name}"
 
-    def _target(self, info: _lazy.FieldInfo) -> str:
+    def _target(self, info: FieldInfo) -> str:
         """What decoding assigns a value to: the attribute; of an element a variable."""
         is_element = info.attribute.endswith("]")
         return f"e{info.at}" if is_element else self._own(info)
 
-    def _run(self, info: _lazy.FieldInfo, byte: int) -> None:
+    def _run(self, info: FieldInfo, byte: int) -> None:
         """An array of words: one item of the struct, which a struct of its own takes apart."""
         own, local = self._own(info), f"v{byte}"
         is_single = info.type == "float" and info.bits == 32  # a struct changes NaNs
@@ -269,16 +281,16 @@ class Codec:
             once.update(span)
         return more
 
-    def _is_in_order(self, info: _lazy.FieldInfo) -> bool:
+    def _is_in_order(self, info: FieldInfo) -> bool:
         return byte_order(info, self.message) == self.order
 
-    def _named(self, stem: str, value: _lazy.Any) -> str:
+    def _named(self, stem: str, value: _types.Any) -> str:
         """A name for something that the sources refer to."""
         name = f"{stem}{len(self.names)}"
         self.names[name] = value
         return name
 
-    def _whole(self, info: _lazy.FieldInfo, byte: int, size: int) -> None:
+    def _whole(self, info: FieldInfo, byte: int, size: int) -> None:
         """A field of whole bytes: one item of the struct."""
         own, local, target = self._own(info), f"v{byte}", self._target(info)
         code = _INTEGERS.get(info.bits, "")
@@ -311,7 +323,7 @@ class Codec:
             elif info.enum is not None:
                 self._store(info, local)
 
-    def _store(self, info: _lazy.FieldInfo, value: str) -> None:
+    def _store(self, info: FieldInfo, value: str) -> None:
         """Assigns an integer's value as its type needs it."""
         if info.enum is not None:
             value = f"{self._named('members', _codec.Members(info.enum))}[{value}]"
@@ -334,7 +346,7 @@ class Codec:
         for number, term in enumerate(self._terms.get(byte, [])):
             self._prepare.append(f"{local} {'|=' if number or parts else '='} {term}")
 
-    def _take_apart(self, info: _lazy.FieldInfo) -> None:
+    def _take_apart(self, info: FieldInfo) -> None:
         """Encoding of a field that crosses bytes: its bits as an integer, and its pieces for the bytes."""
         own, local = self._own(info), f"n{info.at}"
         if info.type == "float":
@@ -352,7 +364,7 @@ class Codec:
             term = f"({local} >> {piece.at} & {(1 << piece.bits) - 1}) << {piece.shift}"
             self._terms.setdefault(piece.byte, []).append(term)
 
-    def _put_together(self, info: _lazy.FieldInfo) -> None:
+    def _put_together(self, info: FieldInfo) -> None:
         """Decoding of a field that crosses bytes."""
         runs = pieces(info, self.message)
         value = " | ".join(
@@ -380,13 +392,13 @@ class Codec:
         return order + "".join(f"{n}{c}" if len(c) == 1 else c * n for c, n in runs)
 
 
-def _is_run(info: _lazy.FieldInfo) -> bool:
+def _is_run(info: FieldInfo) -> bool:
     """Whether it is an array of words, which are taken apart at once."""
     is_word = info.at % 8 == 0 and info.bits in _INTEGERS
     return bool(info.elements) and is_word and info.type not in _NO_WORDS
 
 
-def _bytes_of(info: _lazy.FieldInfo) -> range:
+def _bytes_of(info: FieldInfo) -> range:
     """The bytes that a field touches."""
     return range(info.at // 8, (info.at + info.bits + 7) // 8)
 

@@ -7,7 +7,7 @@ import sys
 from inspect import Parameter, Signature
 from typing import Any
 
-from ._fields import FieldInfo
+from ._types import FieldInfo
 
 _KEYWORDS: dict[str, Any] = {"kw_only": True} if sys.version_info >= (3, 10) else {}
 
@@ -34,11 +34,9 @@ def _field(one: FieldInfo) -> Any:
     return dataclasses.field(default=one.default)
 
 
-def signature(message: Any) -> Signature:
-    """The keywords that a class of messages is made with."""
-    from ._base import Struct
-
-    if message.__init__ is not Struct.__init__:
+def signature(message: Any, shared: Any) -> Signature:
+    """The keywords that a class of messages is made with; ``shared`` is the constructor that takes its fields."""
+    if message.__init__ is not shared:
         own = Signature.from_callable(message.__init__)
         return own.replace(parameters=list(own.parameters.values())[1:])
     notes = message.__annotations__

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import math
 
-from . import _lazy
+from . import _types
 
 
-def derived(derivation: _lazy.Derivation, values: list[float]) -> float:
+def derived(derivation: _types.Derivation, values: list[float]) -> float:
     """The result for values of the fields.
 
     >>> derived((("volts", "amperes"), (1000.0,), (("*", 0, 1), ("/", 3, 2))), [2.0, 250.0])
@@ -54,8 +54,8 @@ _OPERATORS = {
 
 
 def column(
-    numpy: _lazy.Any, derivation: _lazy.Derivation, columns: list[_lazy.Any]
-) -> _lazy.Any:
+    numpy: _types.Any, derivation: _types.Derivation, columns: list[_types.Any]
+) -> _types.Any:
     """The results of whole columns of values."""
     _, numbers, steps = derivation
     with numpy.errstate(all="ignore"):
@@ -69,15 +69,15 @@ def column(
 
 
 def _on_columns(
-    numpy: _lazy.Any, operator: str, one: _lazy.Any, other: _lazy.Any
-) -> _lazy.Any:
+    numpy: _types.Any, operator: str, one: _types.Any, other: _types.Any
+) -> _types.Any:
     if operator == "^":
         return _powers(numpy, one, other)
     name = {"+": "add", "-": "subtract", "*": "multiply", "/": "divide"}[operator]
     return getattr(numpy, name)(one, other)
 
 
-def _powers(numpy: _lazy.Any, base: _lazy.Any, exponent: _lazy.Any) -> _lazy.Any:
+def _powers(numpy: _types.Any, base: _types.Any, exponent: _types.Any) -> _types.Any:
     left = numpy.abs(exponent).astype(numpy.int64)
     found = numpy.ones(len(base))
     while left.any():

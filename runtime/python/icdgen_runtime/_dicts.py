@@ -6,54 +6,45 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from ._base import Message, Struct
 from ._errors import IcdError, RangeError
-from ._fields import FieldInfo
-from ._hints import S
+from ._types import FieldInfo, S, StructFacts
 
 OCTETS = ("bytes", "text")  # types whose raw values are bytes
 
 
-def from_dict(struct: type[S], values: Mapping[str, Any]) -> S:
-    """See `Struct.from_dict`."""
-    made = _filled(struct, values)
-    if isinstance(made, Message):
-        return type(made).from_bytes(made.to_bytes())
-    return made
-
-
-def _filled(message: type[S], values: Mapping[str, Any]) -> S:
-    made, left = message(), dict(values)
-    for info in message.FIELDS:
+def filled(struct: type[S], values: Mapping[str, Any]) -> S:
+    """A struct or a message with the values, of which the rest is as in a new one. See `Struct.from_dict`."""
+    made, left = struct(), dict(values)
+    for info in struct.FIELDS:
         if info.when:  # what is not there is not looked at
             setattr(made, info.attribute, info.default)
-    for info in message.FIELDS:
+    for info in struct.FIELDS:
         if info.attribute in left:
             setattr(made, info.attribute, _raw(info, left.pop(info.attribute)))
         if info.physical in left:
             setattr(made, info.physical, left.pop(info.physical))
-    for info in message.VIEWS:  # they follow from the fields
+    for info in struct.VIEWS:  # they follow from the fields
         left.pop(info.attribute, None)
         left.pop(info.physical, None)
     for name in left:
-        raise IcdError(f"{message.NAME} has no field {name!r}")
+        raise IcdError(f"{struct.NAME} has no field {name!r}")
     return made
 
 
-def to_json(message: Struct, physical: bool) -> str:
+def to_json(values: Mapping[str, Any]) -> str:
     """See `Struct.to_json`."""
-    return json.dumps(message.as_dict(physical), default=bytes.hex)
+    return json.dumps(values, default=bytes.hex)
 
 
-def from_json(message: type[S], data: str) -> S:
-    """See `Struct.from_json`."""
+def values_of_json(data: str) -> dict[str, Any]:
+    """The values by name in a text. Raises `IcdError` for what is no object of JSON."""
     try:
         values = json.loads(data)
     except (ValueError, RecursionError) as error:
         raise IcdError(f"this is no JSON: {error}") from None
     if not isinstance(values, dict):
         raise IcdError("this is JSON, and no object of values by name")
-    return from_dict(message, values)
+    return values
 
 
 def _raw(info: FieldInfo, value: Any) -> Any:
@@ -81,11 +72,11 @@ def _member(info: FieldInfo, value: Any) -> Any:
         return value
 
 
-def _structs(info: FieldInfo, struct: type[Struct], value: Any) -> Any:
+def _structs(info: FieldInfo, struct: type[StructFacts], value: Any) -> Any:
     if not info.elements:
-        return _filled(struct, value) if isinstance(value, Mapping) else value
+        return filled(struct, value) if isinstance(value, Mapping) else value
     if isinstance(value, (str, bytes, Mapping)) or not hasattr(value, "__iter__"):
         raise RangeError(info.attribute, f"{info.elements} values", value)
     return tuple(
-        _filled(struct, one) if isinstance(one, Mapping) else one for one in value
+        filled(struct, one) if isinstance(one, Mapping) else one for one in value
     )

@@ -47,3 +47,13 @@ def _shortly(value: object) -> str:
     except ValueError:  # an integer of too many digits to print
         return "a very long number"
     return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def span_of(least: float, most: float, unit: str = "") -> str:
+    """What is allowed, in a unit.
+
+    >>> span_of(0.0, 6553.5, "m/s")
+    '0 to 6553.5 m/s'
+    """
+    ends = (repr(end).removesuffix(".0") for end in (least, most))
+    return f"{' to '.join(ends)} {unit}".rstrip()

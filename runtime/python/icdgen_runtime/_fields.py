@@ -1,244 +1,15 @@
-"""How the class of a message declares its fields, and what is told of them."""
+"""Declarations of fields in the class of a message, and the properties that they make."""
 
 from __future__ import annotations
 
-# Itself: what annotations name is loaded when they are evaluated.
-from . import _lazy
-from ._errors import RangeError
-from ._scales import nearest_raw
+# The module itself: names in annotations are loaded when they are evaluated.
+from . import _types
+from ._errors import RangeError, span_of
+from ._types import FieldInfo
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
-
-
-class FieldInfo:
-    """What the ICD says of a field. Not to be changed.
-
-    Limits are those of the physical value, or of the raw one if there is no scale.
-    """
-
-    __slots__ = (
-        "attribute", "name", "at", "bits", "type", "unit", "physical", "whole", "scale", "enum", "const",
-        "special", "minimum", "maximum", "above", "below", "byte_order", "bit_order", "default",
-        "elements", "is_open", "fewest", "struct", "curve", "ends", "leads_back", "when", "derived",
-    )  # fmt: skip
-
-    def __init__(
-        self,
-        attribute: str,
-        name: str,
-        at: int,
-        bits: int,
-        type: str,
-        unit: str = "",
-        physical: str = "",
-        scale: tuple[int, int, int] = (1, 0, 1),
-        enum: _lazy.Optional[type[_lazy.OpenEnum]] = None,
-        const: _lazy.Optional[int] = None,
-        special: tuple[tuple[float, str], ...] = (),
-        minimum: _lazy.Optional[float] = None,
-        maximum: _lazy.Optional[float] = None,
-        above: _lazy.Optional[float] = None,
-        below: _lazy.Optional[float] = None,
-        byte_order: str = "",
-        bit_order: str = "",
-        whole: str = "",
-        default: _lazy.Any = None,
-        elements: int = 0,
-        is_open: bool = False,
-        fewest: int = 0,
-        struct: _lazy.Optional[type[_lazy.Struct]] = None,
-        curve: _lazy.Curve = (),
-        ends: tuple[int, ...] = (),
-        leads_back: bool = True,
-        when: tuple[tuple[str, tuple[int, ...]], ...] = (),
-        derived: _lazy.Optional[_lazy.Derivation] = None,
-    ) -> None:
-        self.attribute = attribute
-        """The attribute that holds the raw value."""
-        self.name = name
-        """The manual's name, verbatim."""
-        self.at = at
-        """Offset in bits from the start of the frame."""
-        self.bits = bits
-        """Width in bits."""
-        self.type = type
-        """``uint``, ``int``, ``bool``, ``enum``, ``float``, ``bytes``, ``text`` or ``struct``."""
-        self.unit = unit
-        """Unit of the physical value, or of the raw one if there is no scale."""
-        self.physical = physical
-        """The attribute that holds the physical value, of ``text`` a `str`.
-
-        Empty if the field has neither a scale nor a text.
-        """
-        self.whole = whole
-        """The attribute that holds it exactly, as a whole number of parts of the unit."""
-        self.scale = scale
-        """``(p, c, q)``: the physical value is exactly ``(raw * p + c) / q``."""
-        self.enum = enum
-        """The enumeration of the values."""
-        self.const = const
-        """The only valid raw value."""
-        self.special = special
-        """Raw values with a meaning of their own."""
-        self.minimum, self.maximum = minimum, maximum
-        """The smallest and the largest value, or None."""
-        self.above, self.below = above, below
-        """Exclusive limits of the value, or None."""
-        self.byte_order = byte_order
-        """``little`` or ``big``; empty where it is the message's."""
-        self.bit_order = bit_order
-        """``lsb0`` or ``msb0``; empty where it is the message's."""
-        self.default = default
-        """The raw value in a new message."""
-        self.elements = elements
-        """Elements of an array, of so many bits each: its attributes hold tuples; else 0."""
-        self.is_open = is_open
-        """Whether frames hold up to so many elements, or bytes: see `Message.TAIL`."""
-        self.fewest = fewest
-        """How many of them every frame holds."""
-        self.struct = struct
-        """The class of what stands here, where that is a struct; the offsets in it begin at 0."""
-        self.curve = curve
-        """How it is computed in doubles, and no scale: from a raw value on, the terms of
-        a polynomial in what is above that, the constant first.
-
-        A table of points has several such pieces; without terms there is no number.
-        """
-        self.ends = ends
-        """The raw values between which a physical one leads back, where not all do."""
-        self.leads_back = leads_back
-        """Whether the physical value can be set."""
-        self.when = when
-        """The field is present only if each of these attributes has one of these values.
-
-        Otherwise its value is None after decoding, and is ignored when the message is encoded.
-        """
-        self.derived = derived
-        """For a derived value: attributes, numbers, and steps on the row of their values."""
-
-    @property
-    def signed(self) -> bool:
-        """Whether the raw value is in two's complement."""
-        if self.enum is not None:
-            from ._enumeration import is_signed
-
-            return is_signed(self.enum)
-        return self.type == "int"
-
-    def allows(self, value: float) -> bool:
-        """Whether a physical value (a raw one if there is no scale) keeps the limits; NaN keeps none."""
-        return (
-            (self.minimum is None or value >= self.minimum)
-            and (self.above is None or value > self.above)
-            and (self.maximum is None or value <= self.maximum)
-            and (self.below is None or value < self.below)
-        )
-
-    @property
-    def raw_range(self) -> tuple[int, int]:
-        """The smallest and the largest raw value of a field that holds integers."""
-        if self.signed:
-            return -(1 << (self.bits - 1)), (1 << (self.bits - 1)) - 1
-        return 0, (1 << self.bits) - 1
-
-    @property
-    def parts(self) -> tuple[FieldInfo, ...]:
-        """The elements of an array as fields, called ``temperatures[3]``; else the field."""
-        return tuple(map(self._part, range(self.elements))) or (self,)
-
-    def _part(self, index: int) -> FieldInfo:
-        told = {name: getattr(self, name) for name in self.__slots__}
-        for key in ("attribute", "name"):
-            told[key] += f"[{index}]"
-        told["at"] += index * self.bits
-        if self.is_open or self.default is None:
-            told.update(default=None, is_open=False, fewest=0)
-        else:
-            told["default"] = self.default[index]
-        return FieldInfo(**{**told, "elements": 0})
-
-    @property
-    def leaves(self) -> tuple[FieldInfo, ...]:
-        """The same, and of a struct the fields in it, called ``satellites[2].gnss``: no arrays, no structs."""
-        if self.struct is None:
-            return self.parts
-        return tuple(leaf for line in self.lines for leaf in line.parts)
-
-    @property
-    def lines(self) -> tuple[FieldInfo, ...]:
-        """The field; of a struct the fields in it, called ``satellites[2].gnss``, arrays as one."""
-        if self.struct is None:
-            return (self,)
-        return tuple(
-            line
-            for part in self.parts
-            for info in self.struct.FIELDS
-            for line in info.within(part).lines
-        )
-
-    def within(self, part: FieldInfo) -> FieldInfo:
-        """This field of a struct, where the struct stands as ``part`` of a message."""
-        told = {name: getattr(self, name) for name in self.__slots__}
-        for key in ("attribute", "name", "physical", "whole"):
-            if told[key]:
-                head = part.name if key == "name" else part.attribute
-                told[key] = f"{head}.{told[key]}"
-        told["at"] += part.at
-        told["byte_order"] = self.byte_order or part.byte_order
-        told["bit_order"] = self.bit_order or part.bit_order
-        return FieldInfo(**told)
-
-    @property
-    def fresh(self) -> _lazy.Any:
-        """The raw value in a new message: of a struct a new one."""
-        made = self.struct
-        if made is None:
-            return self.default
-        count = self.fewest if self.is_open else self.elements
-        return tuple(made() for _ in range(count)) if self.elements else made()
-
-    def _values(self) -> tuple[_lazy.Any, ...]:
-        return tuple(getattr(self, name) for name in self.__slots__)
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, FieldInfo):
-            return NotImplemented
-        return self._values() == other._values()
-
-    def __hash__(self) -> int:
-        return hash((self.attribute, self.name, self.at, self.bits, self.type))
-
-    def __repr__(self) -> str:
-        values = (f"{name}={getattr(self, name)!r}" for name in self.__slots__)
-        return f"FieldInfo({', '.join(values)})"
-
-
-class Tail:
-    """The end of a message whose frames differ in length.
-
-    A frame is the beginning of the longest one, which has ``LENGTH`` bytes.
-    """
-
-    __slots__ = ("part", "counter", "step", "most", "plus")
-
-    def __init__(
-        self, part: str, counter: str, step: int, most: int, plus: int = 0
-    ) -> None:
-        self.part = part
-        """The attribute that holds it: a tuple, or `bytes`."""
-        self.counter = counter
-        """The attribute that says how many elements it has.
-
-        Empty if only the length of the frame does.
-        """
-        self.step = step
-        """Bytes of an element."""
-        self.most = most
-        """The most elements."""
-        self.plus = plus
-        """There are so many more elements than the counter says."""
 
 
 class Form:
@@ -250,7 +21,7 @@ class Form:
         self,
         kind: str,
         terms: tuple[int, int, int] = (1, 0, 1),
-        curve: _lazy.Curve = (),
+        curve: _types.Curve = (),
         ends: tuple[int, ...] = (),
     ) -> None:
         self.kind, self.terms, self.curve, self.ends = kind, terms, curve, ends
@@ -380,8 +151,8 @@ def _text_property(info: FieldInfo) -> property:
 
 
 def field(
-    name: str, at: int, bits: int, type: str, *, default: _lazy.Any, **told: _lazy.Any
-) -> _lazy.Any:
+    name: str, at: int, bits: int, type: str, *, default: _types.Any, **told: _types.Any
+) -> _types.Any:
     """A field: the manual's name, offset and width in bits, type, and its first value.
 
     What else is told of it goes by the names of `FieldInfo`; the enumeration is that of
@@ -398,15 +169,15 @@ def part(
     at: int,
     bits: int,
     *,
-    factory: _lazy.Any,
-    **told: _lazy.Any,
-) -> _lazy.Any:
+    factory: _types.Any,
+    **told: _types.Any,
+) -> _types.Any:
     """A struct, or as many of them as there are elements: the class of one is ``factory``."""
     told.update(default=() if told.get("is_open") else None, struct=factory)
     return FieldInfo("", name, at, bits, "struct", **told)
 
 
-def scaled(p: int, c: int, q: int, *, default: _lazy.Any) -> _lazy.Any:
+def scaled(p: int, c: int, q: int, *, default: _types.Any) -> _types.Any:
     """The physical value ``(raw * p + c) / q`` of the field above, correctly rounded.
 
     Setting it takes the nearest raw value, of two the even one. Raises `RangeError`.
@@ -416,9 +187,9 @@ def scaled(p: int, c: int, q: int, *, default: _lazy.Any) -> _lazy.Any:
 
 def curve(
     *pieces: tuple[float, tuple[float, ...]],
-    default: _lazy.Any,
+    default: _types.Any,
     ends: tuple[int, ...] = (),
-) -> _lazy.Any:
+) -> _types.Any:
     """The physical value of the field above by a curve: see `FieldInfo.curve`.
 
     Setting it takes the nearest raw value, of two the even one, between ``ends`` where
@@ -429,21 +200,63 @@ def curve(
 
 def curve_only(
     *pieces: tuple[float, tuple[float, ...]],
-    default: _lazy.Any,
-    init: _lazy.Literal[False] = False,
-) -> _lazy.Any:
+    default: _types.Any,
+    init: _types.Literal[False] = False,
+) -> _types.Any:
     """The same where it does not lead back to a raw value: it is only read."""
     return Form("curve_only", curve=pieces)
 
 
-def whole(p: int, c: int, *, init: _lazy.Literal[False] = False) -> _lazy.Any:
+def whole(p: int, c: int, *, init: _types.Literal[False] = False) -> _types.Any:
     """The exact ``raw * p + c`` of the field above, in parts of its unit, set likewise."""
     return Form("whole", (p, c, 1))
 
 
-def text(*, default: _lazy.Any) -> _lazy.Any:
+def text(*, default: _types.Any) -> _types.Any:
     """The field above as a text, or texts: what stands before the first NUL.
 
     A byte that is not ASCII reads as U+FFFD. Setting it raises `RangeError`.
     """
     return Form("text")
+
+
+def nearest_raw(
+    value: float, info: FieldInfo, field: str, terms: tuple[int, int, int]
+) -> int:
+    """The raw value whose physical value is nearest; of two, the even one.
+
+    The physical value is ``(raw * p + c) / q``. ``value`` is taken exactly: a float,
+    an integer, or anything else that has ``as_integer_ratio``. Raises `RangeError`
+    that names ``field``, the attribute that is set.
+    """
+    (p, c, q), (low, high) = terms, info.raw_range
+    try:
+        over, under = value.as_integer_ratio()
+    except (ArithmeticError, AttributeError, TypeError, ValueError):
+        raise RangeError(field, _allowed(info, terms), value) from None
+    over, under = over * q - c * under, under * p
+    if under < 0:
+        over, under = -over, -under
+    raw, rest = divmod(over, under)
+    if 2 * rest > under or (2 * rest == under and raw % 2):
+        raw += 1
+    if not low <= raw <= high:
+        raise RangeError(field, _allowed(info, terms), value)
+    return raw
+
+
+def _allowed(info: FieldInfo, terms: tuple[int, int, int]) -> str:
+    """``0 to 6553.5 m/s``; of whole parts of the unit these, and then the same."""
+    least, most = _ends(info, info.scale)
+    span = span_of(least, most, info.unit)
+    if terms == info.scale:
+        return span
+    least, most = _ends(info, terms)
+    return f"{span_of(least, most)} ({span})"
+
+
+def _ends(info: FieldInfo, terms: tuple[int, int, int]) -> list[float]:
+    p, c, q = terms
+    return sorted(
+        (raw * p + c) / q if q != 1 else raw * p + c for raw in info.raw_range
+    )

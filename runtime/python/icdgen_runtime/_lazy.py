@@ -4,70 +4,42 @@ from __future__ import annotations
 
 from importlib import import_module
 
-# Itself: what annotations name is loaded when they are evaluated.
+# The module itself: names in annotations are loaded when they are evaluated.
 from . import _lazy  # noqa: PLW0406
 from ._errors import UnknownIdError
 
 __all__ = [
     "Any",
     "Buffer",
-    "Callable",
     "Candidate",
-    "Curve",
-    "Derivation",
-    "FieldInfo",
-    "Frames",
     "Iterator",
     "Known",
-    "Literal",
-    "M",
     "Mapping",
     "Message",
     "Messages",
-    "OpenEnum",
     "Optional",
-    "S",
-    "Struct",
-    "T",
     "attribute",
 ]
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
-    from typing import Any, Literal, Optional
+    from collections.abc import Iterator, Mapping
+    from typing import Any, Optional
 
-    from ._base import Message, Struct
-    from ._enumeration import OpenEnum
-    from ._fields import FieldInfo
-    from ._hints import Buffer, Candidate, Curve, Derivation, Frames, Known, M, S, T
+    from ._base import Message
+    from ._hints import Buffer, Candidate, Known
 else:
-    _NAMED = {
-        "Any": "typing",
+    _OURS = {
         "Buffer": "._hints",
-        "Callable": "collections.abc",
         "Candidate": "._hints",
-        "Curve": "._hints",
-        "Derivation": "._hints",
-        "FieldInfo": "._fields",
-        "Frames": "._hints",
-        "Iterator": "collections.abc",
         "Known": "._hints",
-        "Literal": "typing",
-        "M": "._hints",
-        "Mapping": "collections.abc",
         "Message": "._base",
-        "OpenEnum": "._enumeration",
-        "Optional": "typing",
-        "S": "._hints",
-        "Struct": "._base",
-        "T": "._hints",
     }
 
     def __getattr__(name):
-        if name not in _NAMED:
-            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-        return getattr(import_module(_NAMED[name], __package__), name)
+        if name.startswith("_"):  # import asks for `__path__`: typing stays unloaded
+            raise AttributeError(name)
+        return getattr(import_module(_OURS.get(name, "typing"), __package__), name)
 
 
 def attribute(

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from importlib import import_module
 
-from . import _lazy
-from ._base import Message
+from . import _types
 from ._errors import IcdError
+from ._types import FieldInfo, MessageFacts
 
 
-def part(kind: type[_lazy.M], message: Message, index: int) -> _lazy.M:
+def part(kind: type[_types.M], message: MessageFacts, index: int) -> _types.M:
     """One of the parts that are of a class. Raises `IcdError` if there is none."""
     key = kind.NODE, kind.__name__
     begins = [begin for *one, begin in message.PARTS if tuple(one) == key]
@@ -23,25 +23,23 @@ def part(kind: type[_lazy.M], message: Message, index: int) -> _lazy.M:
     return _read(kind, _values(message), begins[index])
 
 
-def parts(message: Message) -> _lazy.Iterator[Message]:
+def parts(message: MessageFacts) -> _types.Iterator[_types.Any]:
     """All of them, in the order of the frame."""
     values = _values(message)
     for node, name, begin in message.PARTS:
-        kind: type[Message] = getattr(import_module(f"{__package__}.{node}"), name)
+        kind: type[MessageFacts] = getattr(import_module(f"{__package__}.{node}"), name)
         yield _read(kind, values, begin)
 
 
-def _values(message: Message) -> dict[int, _lazy.Any]:
+def _values(message: MessageFacts) -> dict[int, _types.Any]:
     """The values by the bits at which they begin, each element of an array."""
-    found: dict[int, _lazy.Any] = {}
+    found: dict[int, _types.Any] = {}
     for info in message.FIELDS:
         _collect(info, getattr(message, info.attribute), found)
     return found
 
 
-def _collect(
-    info: _lazy.FieldInfo, value: _lazy.Any, found: dict[int, _lazy.Any]
-) -> None:
+def _collect(info: FieldInfo, value: _types.Any, found: dict[int, _types.Any]) -> None:
     for one, raw in zip(info.parts, value if info.elements else (value,)):
         if one.struct is None:
             found[one.at] = raw
@@ -50,15 +48,13 @@ def _collect(
             _collect(inner.within(one), getattr(raw, inner.attribute), found)
 
 
-def _read(kind: type[_lazy.M], values: dict[int, _lazy.Any], begin: int) -> _lazy.M:
+def _read(kind: type[_types.M], values: dict[int, _types.Any], begin: int) -> _types.M:
     """The message whose values begin so many bits after its own places."""
     return kind(**{info.attribute: _value(info, values, begin) for info in kind.FIELDS})
 
 
-def _value(
-    info: _lazy.FieldInfo, values: dict[int, _lazy.Any], begin: int
-) -> _lazy.Any:
-    found: list[_lazy.Any] = []
+def _value(info: FieldInfo, values: dict[int, _types.Any], begin: int) -> _types.Any:
+    found: list[_types.Any] = []
     for one in info.parts:
         if one.struct is None:
             found.append(values[begin + one.at])

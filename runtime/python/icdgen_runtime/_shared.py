@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from . import _lazy
+from . import _types
 from ._base import Message
 from ._errors import LengthError, UnknownIdError
 
@@ -19,7 +19,7 @@ class Shared(Message):
         raise TypeError(f"{self.NAME} are several messages: make one of them")
 
     @classmethod
-    def from_bytes(cls, data: _lazy.Buffer) -> _lazy.Any:
+    def from_bytes(cls, data: _types.Buffer) -> _types.Any:
         """The message in a frame. Raises `UnknownIdError` if it is none of them, `LengthError` if all have another length."""
         frame = bytes(data)
         found = cls.which(frame)
@@ -34,7 +34,7 @@ class Shared(Message):
         )
 
     @classmethod
-    def which(cls, frame: bytes) -> _lazy.Optional[type[Message]]:
+    def which(cls, frame: bytes) -> _types.Optional[type[Message]]:
         """The message that a frame is; None if it is none of them."""
         for message, lengths, signs in cls.FRAMES:
             whole = frame.ljust(lengths[-1], b"\0")
@@ -49,8 +49,8 @@ def shared(
     node: str,
     kind: str,
     id: int,
-    candidates: tuple[_lazy.Candidate, ...],
-    named: _lazy.Callable[[str], type[Message]],
+    candidates: tuple[_types.Candidate, ...],
+    named: _types.Callable[[str], type[Message]],
 ) -> type[Message]:
     """The class for an id that several messages have."""
     frames = tuple((named(name), lengths, signs) for name, lengths, signs in candidates)

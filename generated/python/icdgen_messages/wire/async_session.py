@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from typing import NamedTuple, Optional, overload
 
 from .._base import Message
-from .._hints import KindOf, M, N, SpokenBy, class_of, message_of
+from .._hints import N
 from .client import Request
 from .envelope_client import EnvelopeClient
 from .events import Event, Outcome, OutcomeOf
@@ -25,6 +25,7 @@ from .exchanges import (
     outcome_of,
 )
 from .link import Link, Settings
+from .spoken import KindOf, M, SpokenBy, class_of, message_of
 
 _PIECE = 4096  # bytes that are read at a time
 

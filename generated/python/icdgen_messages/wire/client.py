@@ -7,7 +7,7 @@ from typing import Generic, Literal, NamedTuple, Optional
 
 from .._base import Message
 from .._errors import IcdError, LengthError, UnknownIdError
-from .._hints import Buffer, KindOf, N, SpokenBy, message_of
+from .._hints import Buffer, N
 from .can import CanEvent, CanJoiner, CanMessage, CanPacket, can_split
 from .errors import BusyError, ChecksumError, UnsupportedError, need
 from .events import (
@@ -24,7 +24,7 @@ from .events import (
 from .i2c import I2cTransfer, i2c_read_length, i2c_reply, i2c_write
 from .link import Bus, Link, Polled, Settings
 from .logs import LogMessage
-from .spoken import requested, sent
+from .spoken import KindOf, SpokenBy, message_of, requested, sent
 from .uart import UartDecoder, uart_encode, uart_kind
 
 

@@ -9,7 +9,7 @@ from typing import Any, Generic, Literal, Optional, TypeVar, Union, cast
 
 from .._base import Message
 from .._errors import IcdError
-from .._hints import KindOf, N, SpokenBy
+from .._hints import N
 from .client import Client, Request
 from .envelope_client import EnvelopeClient
 from .errors import BusyError, UnsupportedError
@@ -28,6 +28,7 @@ from .events import (
 from .failures import FailedError, RefusedError, ReplyTimeoutError
 from .link import Link, Settings
 from .procedures import Procedure
+from .spoken import KindOf, SpokenBy
 
 AnyClient = Union[Client[N], EnvelopeClient[N]]
 P = TypeVar("P", bound=Procedure)

@@ -3,11 +3,47 @@
 
 from __future__ import annotations
 
+from typing import Any, Protocol, TypeVar, cast
+
 from .._base import Message
 from .._errors import UnknownIdError
-from .._hints import KindOf, N, SpokenBy, class_of, message_of
+from .._hints import N
 from .envelope import Direction
 from .link import Link
+
+M = TypeVar("M", bound=Message)
+M2 = TypeVar("M2", bound=Message)
+M3 = TypeVar("M3", bound=Message)
+M_co = TypeVar("M_co", covariant=True)
+N_contra = TypeVar("N_contra", contravariant=True)
+
+
+class SpokenBy(Protocol[N_contra]):
+    """A message that a node speaks, its own or one of a node that it includes."""
+
+    def to_bytes(self) -> bytes: ...
+
+    def _spoken_by(self, node: N_contra, /) -> None: ...
+
+
+class KindOf(Protocol[N_contra, M_co]):
+    """The class of such a message."""
+
+    def __call__(self) -> object: ...
+
+    def _made(self) -> M_co: ...
+
+    def _spoken_by(self, node: N_contra, /) -> None: ...
+
+
+def class_of(message: KindOf[Any, M]) -> type[M]:
+    """The class that it is."""
+    return cast("type[M]", message)
+
+
+def message_of(message: SpokenBy[Any]) -> Message:
+    """The message that it is."""
+    return cast("Message", message)
 
 
 def requested(link: Link[N], message: KindOf[N, Message]) -> int:

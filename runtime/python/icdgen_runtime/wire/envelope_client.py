@@ -8,14 +8,14 @@ from typing import Generic, Literal, Optional
 
 from .._base import Message
 from .._errors import LengthError, UnknownIdError
-from .._hints import Buffer, KindOf, N, SpokenBy, class_of, message_of
+from .._hints import Buffer, N
 from .client import Request
 from .envelope import Direction, StreamRow
 from .errors import BusyError, UnsupportedError, need
 from .events import Arrived, Done, Event, Gap, LineError, Timeout
 from .link import Link, Settings
 from .sender import Sender
-from .spoken import requested, sent
+from .spoken import KindOf, SpokenBy, class_of, message_of, requested, sent
 from .stream import StreamDecoder, StreamEvent
 
 _NOTHING = Request("telecommand", 0)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Optional, Union, overload
 
 from .._base import Message
-from .._hints import M2, M3, KindOf, M, N, SpokenBy, class_of, message_of
+from .._hints import N
 from .carriers import carrier_of
 from .client import Client, Request
 from .events import Event, Outcome, OutcomeOf
@@ -24,6 +24,7 @@ from .exchanges import (
 )
 from .link import Link, Settings
 from .ports import Port, Read, Write
+from .spoken import M2, M3, KindOf, M, SpokenBy, class_of, message_of
 
 
 class BusSession(Exchanges[N]):

@@ -1,0 +1,349 @@
+"""Types that the other modules name: facts of fields, structs and messages, and types in annotations.
+
+No module below the classes of messages imports these classes. It takes fields and facts,
+which stand here.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+# The module itself: names in annotations are loaded when they are evaluated.
+from . import _types  # noqa: PLW0406
+
+__all__ = [
+    "Any",
+    "Buffer",
+    "Callable",
+    "Candidate",
+    "Curve",
+    "Derivation",
+    "FieldInfo",
+    "Frames",
+    "Iterator",
+    "Literal",
+    "M",
+    "Mapping",
+    "MessageFacts",
+    "OpenEnum",
+    "Optional",
+    "S",
+    "StructFacts",
+    "T",
+    "Tail",
+]
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+    from typing import Any, ClassVar, Literal, Optional, TypeVar
+
+    from ._enumeration import OpenEnum
+    from ._hints import Buffer, Candidate, Curve, Derivation, Frames, T
+
+    M = TypeVar("M", bound="MessageFacts")
+    S = TypeVar("S", bound="StructFacts")
+else:
+    _HOMES = {
+        "Buffer": "._hints",
+        "Candidate": "._hints",
+        "Curve": "._hints",
+        "Derivation": "._hints",
+        "Frames": "._hints",
+        "OpenEnum": "._enumeration",
+        "T": "._hints",
+    }
+
+    def __getattr__(name):
+        if name.startswith("_"):  # import asks for `__path__`: typing stays unloaded
+            raise AttributeError(name)
+        if name in ("M", "S"):
+            bound = MessageFacts if name == "M" else StructFacts
+            value = import_module("typing").TypeVar(name, bound=bound)
+            return globals().setdefault(name, value)
+        return getattr(import_module(_HOMES.get(name, "typing"), __package__), name)
+
+
+class FieldInfo:
+    """Facts of a field in the ICD. Not to be changed.
+
+    Limits are those of the physical value, or of the raw one if there is no scale.
+    """
+
+    __slots__ = (
+        "attribute", "name", "at", "bits", "type", "unit", "physical", "whole", "scale", "enum", "const",
+        "special", "minimum", "maximum", "above", "below", "byte_order", "bit_order", "default",
+        "elements", "is_open", "fewest", "struct", "curve", "ends", "leads_back", "when", "derived",
+    )  # fmt: skip
+
+    def __init__(
+        self,
+        attribute: str,
+        name: str,
+        at: int,
+        bits: int,
+        type: str,
+        unit: str = "",
+        physical: str = "",
+        scale: tuple[int, int, int] = (1, 0, 1),
+        enum: _types.Optional[type[_types.OpenEnum]] = None,
+        const: _types.Optional[int] = None,
+        special: tuple[tuple[float, str], ...] = (),
+        minimum: _types.Optional[float] = None,
+        maximum: _types.Optional[float] = None,
+        above: _types.Optional[float] = None,
+        below: _types.Optional[float] = None,
+        byte_order: str = "",
+        bit_order: str = "",
+        whole: str = "",
+        default: _types.Any = None,
+        elements: int = 0,
+        is_open: bool = False,
+        fewest: int = 0,
+        struct: _types.Optional[type[StructFacts]] = None,
+        curve: _types.Curve = (),
+        ends: tuple[int, ...] = (),
+        leads_back: bool = True,
+        when: tuple[tuple[str, tuple[int, ...]], ...] = (),
+        derived: _types.Optional[_types.Derivation] = None,
+    ) -> None:
+        self.attribute = attribute
+        """The attribute that holds the raw value."""
+        self.name = name
+        """The manual's name, verbatim."""
+        self.at = at
+        """Offset in bits from the start of the frame."""
+        self.bits = bits
+        """Width in bits."""
+        self.type = type
+        """``uint``, ``int``, ``bool``, ``enum``, ``float``, ``bytes``, ``text`` or ``struct``."""
+        self.unit = unit
+        """Unit of the physical value, or of the raw one if there is no scale."""
+        self.physical = physical
+        """The attribute that holds the physical value, of ``text`` a `str`.
+
+        Empty if the field has neither a scale nor a text.
+        """
+        self.whole = whole
+        """The attribute that holds it exactly, as a whole number of parts of the unit."""
+        self.scale = scale
+        """``(p, c, q)``: the physical value is exactly ``(raw * p + c) / q``."""
+        self.enum = enum
+        """The enumeration of the values."""
+        self.const = const
+        """The only valid raw value."""
+        self.special = special
+        """Raw values with a meaning of their own."""
+        self.minimum, self.maximum = minimum, maximum
+        """The smallest and the largest value, or None."""
+        self.above, self.below = above, below
+        """Exclusive limits of the value, or None."""
+        self.byte_order = byte_order
+        """``little`` or ``big``; empty where it is the message's."""
+        self.bit_order = bit_order
+        """``lsb0`` or ``msb0``; empty where it is the message's."""
+        self.default = default
+        """The raw value in a new message."""
+        self.elements = elements
+        """Elements of an array, of so many bits each: its attributes hold tuples; else 0."""
+        self.is_open = is_open
+        """Whether frames hold up to so many elements, or bytes: see `Message.TAIL`."""
+        self.fewest = fewest
+        """How many of them every frame holds."""
+        self.struct = struct
+        """The class of what stands here, where that is a struct; the offsets in it begin at 0."""
+        self.curve = curve
+        """How it is computed in doubles, and no scale: from a raw value on, the terms of
+        a polynomial in what is above that, the constant first.
+
+        A table of points has several such pieces; without terms there is no number.
+        """
+        self.ends = ends
+        """The raw values between which a physical one leads back, where not all do."""
+        self.leads_back = leads_back
+        """Whether the physical value can be set."""
+        self.when = when
+        """The field is present only if each of these attributes has one of these values.
+
+        Otherwise its value is None after decoding, and is ignored when the message is encoded.
+        """
+        self.derived = derived
+        """For a derived value: attributes, numbers, and steps on the row of their values."""
+
+    @property
+    def signed(self) -> bool:
+        """Whether the raw value is in two's complement."""
+        if self.enum is not None:
+            from ._enumeration import is_signed
+
+            return is_signed(self.enum)
+        return self.type == "int"
+
+    def allows(self, value: float) -> bool:
+        """Whether a physical value (a raw one if there is no scale) keeps the limits; NaN keeps none."""
+        return (
+            (self.minimum is None or value >= self.minimum)
+            and (self.above is None or value > self.above)
+            and (self.maximum is None or value <= self.maximum)
+            and (self.below is None or value < self.below)
+        )
+
+    @property
+    def raw_range(self) -> tuple[int, int]:
+        """The smallest and the largest raw value of a field that holds integers."""
+        if self.signed:
+            return -(1 << (self.bits - 1)), (1 << (self.bits - 1)) - 1
+        return 0, (1 << self.bits) - 1
+
+    @property
+    def parts(self) -> tuple[FieldInfo, ...]:
+        """The elements of an array as fields, called ``temperatures[3]``; else the field."""
+        return tuple(map(self._part, range(self.elements))) or (self,)
+
+    def _part(self, index: int) -> FieldInfo:
+        told = {name: getattr(self, name) for name in self.__slots__}
+        for key in ("attribute", "name"):
+            told[key] += f"[{index}]"
+        told["at"] += index * self.bits
+        if self.is_open or self.default is None:
+            told.update(default=None, is_open=False, fewest=0)
+        else:
+            told["default"] = self.default[index]
+        return FieldInfo(**{**told, "elements": 0})
+
+    @property
+    def leaves(self) -> tuple[FieldInfo, ...]:
+        """The same, and of a struct the fields in it, called ``satellites[2].gnss``: no arrays, no structs."""
+        if self.struct is None:
+            return self.parts
+        return tuple(leaf for line in self.lines for leaf in line.parts)
+
+    @property
+    def lines(self) -> tuple[FieldInfo, ...]:
+        """The field; of a struct the fields in it, called ``satellites[2].gnss``, arrays as one."""
+        if self.struct is None:
+            return (self,)
+        return tuple(
+            line
+            for part in self.parts
+            for info in self.struct.FIELDS
+            for line in info.within(part).lines
+        )
+
+    def within(self, part: FieldInfo) -> FieldInfo:
+        """This field of a struct, where the struct stands as ``part`` of a message."""
+        told = {name: getattr(self, name) for name in self.__slots__}
+        for key in ("attribute", "name", "physical", "whole"):
+            if told[key]:
+                head = part.name if key == "name" else part.attribute
+                told[key] = f"{head}.{told[key]}"
+        told["at"] += part.at
+        told["byte_order"] = self.byte_order or part.byte_order
+        told["bit_order"] = self.bit_order or part.bit_order
+        return FieldInfo(**told)
+
+    @property
+    def fresh(self) -> _types.Any:
+        """The raw value in a new message: of a struct a new one."""
+        made = self.struct
+        if made is None:
+            return self.default
+        count = self.fewest if self.is_open else self.elements
+        return tuple(made() for _ in range(count)) if self.elements else made()
+
+    def _values(self) -> tuple[_types.Any, ...]:
+        return tuple(getattr(self, name) for name in self.__slots__)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, FieldInfo):
+            return NotImplemented
+        return self._values() == other._values()
+
+    def __hash__(self) -> int:
+        return hash((self.attribute, self.name, self.at, self.bits, self.type))
+
+    def __repr__(self) -> str:
+        values = (f"{name}={getattr(self, name)!r}" for name in self.__slots__)
+        return f"FieldInfo({', '.join(values)})"
+
+
+class Tail:
+    """The end of a message whose frames differ in length.
+
+    A frame is the beginning of the longest one, which has ``LENGTH`` bytes.
+    """
+
+    __slots__ = ("part", "counter", "step", "most", "plus")
+
+    def __init__(
+        self, part: str, counter: str, step: int, most: int, plus: int = 0
+    ) -> None:
+        self.part = part
+        """The attribute that holds it: a tuple, or `bytes`."""
+        self.counter = counter
+        """The attribute that says how many elements it has.
+
+        Empty if only the length of the frame does.
+        """
+        self.step = step
+        """Bytes of an element."""
+        self.most = most
+        """The most elements."""
+        self.plus = plus
+        """There are so many more elements than the counter says."""
+
+
+class StructFacts:
+    """Facts of a struct or a message, which its class has as attributes."""
+
+    __slots__ = ()
+
+    if TYPE_CHECKING:
+        NODE: ClassVar[str]
+        """The node whose ICD declares it."""
+        NAME: ClassVar[str]
+        """The manual's name, verbatim."""
+        LENGTH: ClassVar[int]
+        """Length of a frame in bytes, without the id; of the longest frame, if they differ."""
+        FIELDS: ClassVar[tuple[FieldInfo, ...]]
+        """The fields in the order of the manual."""
+        VIEWS: ClassVar[tuple[FieldInfo, ...]]
+        """Overlay fields and derived values, which are computed from the fields and not set."""
+        CONDITIONAL: ClassVar[bool]
+        """Whether a field is not always there: see `FieldInfo.when`."""
+    else:
+        FIELDS = VIEWS = ()
+        CONDITIONAL = False
+
+
+class MessageFacts(StructFacts):
+    """Facts of a message, which its class has as attributes."""
+
+    __slots__ = ()
+
+    if TYPE_CHECKING:
+        KIND: ClassVar[str]
+        """``telecommand``, ``telemetry`` or ``configuration`` (which is both)."""
+        IDS: ClassVar[tuple[int, ...]]
+        """Its ids: one, or the id to set it and the id to get it."""
+        TABLE: ClassVar[int | None]
+        """The manual's table."""
+        ACKNOWLEDGED: ClassVar[bool]
+        """Whether the node acknowledges it, where it is a telecommand."""
+        PARTS: ClassVar[tuple[tuple[str, str, int], ...]]
+        """The messages that it repeats: their nodes, their classes, and from which bit."""
+        TAIL: ClassVar[Tail | None]
+        """The end of frames that differ in length."""
+        INNER: ClassVar[
+            tuple[tuple[Tail, int, tuple[tuple[int, int, int, int], ...]], ...]
+        ]
+        """Variable-length fields in front of `TAIL`: where each begins in the longest frame, and the bits that count it."""
+        ENDS_EARLY: ClassVar[bool]
+        """Whether frames may lack the zeros that they end with."""
+        BYTE_ORDER: ClassVar[Literal["little", "big"]]
+        BIT_ORDER: ClassVar[Literal["lsb0", "msb0"]]
+    else:
+        IDS = PARTS = INNER = ()
+        TABLE = TAIL = None
+        ENDS_EARLY, ACKNOWLEDGED = False, True
+        BYTE_ORDER, BIT_ORDER = "little", "lsb0"
