@@ -1,4 +1,4 @@
-"""Imports lead one way: down the order of CONTRIBUTING.md. The order stands here, from the bottom to the top."""
+"""Imports of the generator and of the Python runtime lead down. The order stands here, from the bottom to the top."""
 
 from __future__ import annotations
 
@@ -32,6 +32,20 @@ LAYERS = [  # what stands in one row does not know each other
     "__main__",
 ]
 ROWS = [["icdgen"], *([f"icdgen.{name}" for name in row.split()] for row in LAYERS)]
+RUNTIME = ROOT / "runtime" / "python" / "icdgen_runtime"
+RUNTIME_LAYERS = [
+    "_enumeration _errors _hints",
+    "_types",
+    "_derived _floats _layout",
+    "_codec _curves _parts",
+    "_conditions _dataclass _dicts _fields _tails",
+    "_columns _compiled",
+    "_base",
+    "_shared",
+    "_lazy",
+    "wire",
+]
+RUNTIME_ROWS = [["icdgen_runtime"], *([f"icdgen_runtime.{name}" for name in row.split()] for row in RUNTIME_LAYERS)]
 USERS = {  # a language's backend -> the only packages that import it: they need its names of messages and fields
     "icdgen.backends.c": ["icdgen.backends.c_selftest", "icdgen.backends.html", "icdgen.diff"],
     "icdgen.backends.python": ["icdgen.diff"],
@@ -39,12 +53,14 @@ USERS = {  # a language's backend -> the only packages that import it: they need
 }
 
 
-def test_no_modules_of_ours_import_each_other():
-    assert imports.circles(imports.graph(PACKAGE)) == []
+@pytest.mark.parametrize("folder", [PACKAGE, RUNTIME], ids=lambda folder: folder.name)
+def test_no_modules_of_ours_import_each_other(folder):
+    assert imports.circles(imports.graph(folder)) == []
 
 
-def test_imports_lead_down():
-    assert imports.upward(imports.graph(PACKAGE), ROWS) == []
+@pytest.mark.parametrize("folder, rows", [(PACKAGE, ROWS), (RUNTIME, RUNTIME_ROWS)], ids=["icdgen", "icdgen_runtime"])
+def test_imports_lead_down(folder, rows):
+    assert imports.upward(imports.graph(folder), rows) == []
 
 
 def test_the_backend_of_a_language_is_imported_by_its_users_only():
@@ -52,8 +68,8 @@ def test_the_backend_of_a_language_is_imported_by_its_users_only():
 
 
 def test_the_order_names_only_what_there_is():
-    modules = imports.graph(PACKAGE)
-    assert [name for row in ROWS for name in row if name not in modules] == []
+    modules = {*imports.graph(PACKAGE), *imports.graph(RUNTIME)}
+    assert [name for row in (*ROWS, *RUNTIME_ROWS) for name in row if name not in modules] == []
 
 
 @pytest.fixture
@@ -129,24 +145,39 @@ def test_a_planted_import_of_a_reserved_package_is_found(package):
     ],
 )
 def test_an_import_that_is_planted_in_a_copy_of_the_package_is_found(tmp_path, module, text, error):
-    assert imports.upward(imports.graph(_copy(tmp_path, module, text)), ROWS) == [error]
+    assert imports.upward(imports.graph(_copy(PACKAGE, tmp_path, module, text)), ROWS) == [error]
 
 
 def test_a_backend_that_is_imported_by_the_site_in_a_copy_of_the_package_is_found(tmp_path):
-    modules = imports.graph(_copy(tmp_path, "backends/html/wire.py", "from icdgen.backends.python import nodes"))
+    modules = imports.graph(
+        _copy(PACKAGE, tmp_path, "backends/html/wire.py", "from icdgen.backends.python import nodes")
+    )
     error = "icdgen.backends.html.wire imports icdgen.backends.python.nodes"
     assert imports.reserved(modules, USERS) == [error]
 
 
 def test_a_circle_that_is_planted_in_a_copy_of_the_package_is_found(tmp_path):
-    modules = imports.graph(_copy(tmp_path, "icd/model.py", "from icdgen import codec"))
+    modules = imports.graph(_copy(PACKAGE, tmp_path, "icd/model.py", "from icdgen import codec"))
     (group,) = imports.circles(modules)
     assert {"icdgen.codec", "icdgen.icd.model"} <= set(group)
 
 
-def _copy(folder: Path, module: str, text: str) -> Path:
-    """A copy of the package, one module of which has another import in a function."""
-    copy = shutil.copytree(PACKAGE, folder / "icdgen", ignore=shutil.ignore_patterns("__pycache__"))
+def test_a_worker_of_the_runtime_that_imports_the_messages_in_a_copy_is_found(tmp_path):
+    modules = imports.graph(_copy(RUNTIME, tmp_path, "_tails.py", "from ._base import Message"))
+    error = "icdgen_runtime._tails imports icdgen_runtime._base, which does not stand below it"
+    assert imports.upward(modules, RUNTIME_ROWS) == [error]
+    (group,) = imports.circles(modules)
+    assert {"icdgen_runtime._base", "icdgen_runtime._compiled", "icdgen_runtime._tails"} <= set(group)
+
+
+def test_a_circle_that_is_planted_in_a_copy_of_the_wire_layer_is_found(tmp_path):
+    modules = imports.graph(_copy(RUNTIME, tmp_path, "wire/link.py", "from .client import Client"))
+    assert any("icdgen_runtime.wire.link" in group for group in imports.circles(modules))
+
+
+def _copy(package: Path, folder: Path, module: str, text: str) -> Path:
+    """A copy of a package, one module of which has another import in a function."""
+    copy = shutil.copytree(package, folder / package.name, ignore=shutil.ignore_patterns("__pycache__"))
     with (copy / module).open("a", encoding="utf-8") as file:
         file.write(f"\n\ndef _late() -> None:\n    {text}\n")
     return copy
