@@ -16,7 +16,7 @@ from icdgen.definitions.model import Definitions, Item, Network, NotHeld, Source
 from icdgen.definitions.wording import line, node_name
 from icdgen.diagnostics import Findings
 
-AS_BYTES, PROCESS, UNSENT = "IMP081", "IMP083", "IMP084"
+PROCESS, UNSENT = "IMP083", "IMP084"
 _SPACE = "ccsds.org/schema/sois/seds"
 _WITHOUT_EFFECT = frozenset({
     "schemaLocation", "Device.name", "ContainerDataType.abstract",
@@ -110,11 +110,7 @@ class _Found:
         length, covered = -(-(self.layout.at - start) // 8), -(-(max(covered, start) - start) // 8)
         made: Item = {"name": self.name, "id": id, "kind": self.kind, "length": length, **self.more}
         if self.layout.lost is not None:
-            name, why = self.layout.lost
-            text = f"message `{self.name}`: from `{name}` on only bytes are imported: {why}"
-            to.warn(
-                AS_BYTES, text, why.help or "describe the rest by hand, or simplify the definition", "error", self.line
-            )
+            self.layout.lost.report(self.name, to, self.line)
         if length > covered:
             made["reserved"] = length - covered
         return {**made, "fields": fields} if fields else made

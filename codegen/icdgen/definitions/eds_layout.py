@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from xml.etree.ElementTree import Element
 
 from icdgen.definitions import eds_parts, eds_ranges, packets
+from icdgen.definitions.containers import Container, Counter, fixed_field, variable_field
 from icdgen.definitions.eds_parts import Line, Part, Told
 from icdgen.definitions.eds_sheets import Sheets
 from icdgen.definitions.eds_types import ARRAY, CONTAINER, Types, described
 from icdgen.definitions.eds_values import whole
-from icdgen.definitions.frames import BIG, LITTLE
+from icdgen.definitions.frames import LITTLE
 from icdgen.definitions.model import Item, NotHeld, again
 from icdgen.definitions.reading import TooMuch
 from icdgen.definitions.wording import line, shortest
-from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS, REST
+from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS
 
 UNCHECKED = "IMP082"
-MOST_FIELDS = 5000  # of a message
 _DEEPEST = 30  # containers that inherit or hold each other, and arrays of arrays
 _FIELDS = ("Entry", "FixedValueEntry", "LengthEntry", "ErrorControlEntry")
 _PACKET = Line(Fraction(1), Fraction(7))  # by which the length of a space packet makes that of its container
@@ -34,18 +34,15 @@ class Structs:
 
 
 @dataclass
-class Layout:
-    """Everything that a container has, itself and by inheritance."""
+class Layout(Container[Part]):
+    """Parts of a container, its own and inherited ones, with their constraints."""
 
     sheets: Sheets
     types: Types
     structs: Structs
-    parts: list[Part] = field(default_factory=list)
     constraints: list[Told] = field(default_factory=list)
     told: dict[Hashable, int] = field(default_factory=dict)  # by what is constrained: its only raw value
-    at: int = 0
     within: tuple[Element, ...] = ()  # containers in which this one is repeated
-    lost: tuple[str, NotHeld] | None = None  # the entry from which on only bytes are imported, and why
 
     def read(self, container: Element) -> None:
         """Raises `NotHeld`."""
@@ -53,9 +50,7 @@ class Layout:
         for one in self.constraints:
             part = next((part for part in self.parts if part.path == one.path), None)
             if part is None and self.lost is not None:
-                name, why = self.lost
-                text = f"it depends on `{line('.'.join(one.path), 100)}`, which is in or behind `{name}`: {why}"
-                raise NotHeld(text, why.help)
+                raise self.missing(line(".".join(one.path), 100))
             raw = eds_parts.constrain(part, one, self.sheets, self.types)
             if raw is not None and part is not None:
                 self.told[part.path, part.entry] = raw
@@ -103,17 +98,8 @@ class Layout:
             except TooMuch:
                 raise
             except NotHeld as why:
-                self._lose(entry, path, why, before, at)
-
-    def _lose(self, entry: Element, path: tuple[str, ...], why: NotHeld, before: int, at: int) -> None:
-        """Holds the bytes from an entry to the end instead of its fields. Raises ``why`` if there are none ahead."""
-        if self.lost is not None or not before or at % 8 or not self.parts[before - 1].bits:
-            raise why
-        del self.parts[before:]
-        name = line(entry.get("name"), 100) or f"unnamed {at}"
-        item: Item = {"type": "bytes", "up_to": MOST_BYTES}
-        self.parts.append(Part((*path, name), entry, item, at, 0, element=8))
-        self.at, self.lost = at, (name, why)
+                name = line(entry.get("name"), 100) or f"unnamed {at}"
+                self.lose(Part((*path, name), {}, at, 0, entry=entry), why, before)
 
     def _placed(self, entry: Element, path: tuple[str, ...], within: tuple[Element, ...]) -> None:
         """Puts an entry where the last one ended. Raises `NotHeld`."""
@@ -121,7 +107,7 @@ class Layout:
         name = line(self.sheets.attribute(entry, "name"), 100) or f"unnamed {self.at}"
         if entry.find("PresentWhen") is not None:
             raise NotHeld(f"`{name}` is present only on a condition")
-        if self.parts and not self.parts[-1].bits:
+        if self.is_open:
             raise NotHeld(f"`{name}` follows `{self.parts[-1].path[-1]}`, whose length is not fixed")
         if entry.tag == "PaddingEntry":
             self.at += whole(self.sheets.attribute(entry, "sizeInBits"), "the size of a padding", 0, 8 * MOST_BYTES)
@@ -129,8 +115,7 @@ class Layout:
             self._entry(entry, name, path, within)
         else:
             raise NotHeld(f"it has a `{line(entry.tag, 60)}`")
-        if len(self.parts) > MOST_FIELDS or self.at > 8 * MOST_BYTES:
-            raise NotHeld(f"it has more than {MOST_FIELDS} fields or {MOST_BYTES} bytes")
+        self.check_size()
 
     def _entry(self, entry: Element, name: str, path: tuple[str, ...], within: tuple[Element, ...]) -> None:
         type_, count = self._element(entry, name)
@@ -145,25 +130,21 @@ class Layout:
             self._add(type_, path, within)
         elif type_.tag == CONTAINER:
             item, bits = self._struct(type_, name, within)
-            self._put(Part(path, entry, {**item, "count": count, **described(entry)}, self.at, bits * count))
+            self._put(Part(path, {**item, "count": count, **described(entry)}, self.at, bits * count, entry=entry))
         else:
             piece = self.types.piece(type_, entry, f"`{name}`")
             if entry.tag == "FixedValueEntry":
                 eds_parts.fix(piece, self.sheets.attribute(entry, "fixedValue"), name)
-            part = Part(path, entry, piece.item, self.at, piece.bits, piece)
+            part = Part(path, piece.item, self.at, piece.bits, piece.order, entry=entry, piece=piece)
             if count != 1:
                 self._repeat(part, count, name)
             again(part.item, {**part.item, **self._said(entry, name)})
-            if not piece.bits:
-                part.element = 8
             self._put(part)
 
     def _put(self, part: Part) -> None:
-        little = part.piece is not None and part.piece.order == LITTLE
-        if part.at % 8 and (little or "struct" in part.item):
+        if part.at % 8 and (part.order == LITTLE or "struct" in part.item):
             raise NotHeld(f"`{part.path[-1]}` begins within a byte")
-        self.parts.append(part)
-        self.at += part.bits
+        self.add(part)
 
     def _said(self, entry: Element, name: str) -> dict[str, str]:
         """What it is for; of an error control also how it is computed, for nothing else says so."""
@@ -276,7 +257,7 @@ class Layout:
         _, most = by.piece.range.within(eds_ranges.Range(Fraction(0), Fraction((1 << by.bits) - 1))).of_integers()
         item["up_to"] = max(1, min(int(most or 1), MOST_ELEMENTS))
         item |= {key: text for key, text in described(entry).items() if key not in item or "struct" in item}
-        self.parts.append(Part(path, entry, item, self.at, 0, None, bits, by.path))
+        self.add(Part(path, item, self.at, 0, element=bits, counter=Counter(by), entry=entry))
 
     def header(self) -> packets.Header | None:
         """The primary header of a space packet, if it begins with one."""
@@ -290,53 +271,35 @@ class Layout:
         return None if is_line and eds_parts.line_of(length.entry, self.sheets) != _PACKET else found
 
     def front(self) -> tuple[Hashable, int] | None:
-        """What it begins with, and its bits, if a header can have it as an id."""
+        """The part at the beginning and its bits, if a header can have it as the id."""
         part = next(iter(self.parts), None)
-        if part is None or part.piece is None or part.at or part.bits not in (8, 16, 24, 32):
+        if part is None or part.piece is None or not part.is_message_id:
             return None
-        is_id = part.piece.order == BIG and part.item["type"] in ("uint", "enum") and "formula" not in part.item
-        return ((part.path, part.entry), part.bits) if is_id else None
+        return (part.path, part.entry), part.bits
 
     def fields(self, start: int) -> list[Item]:
-        """As they stand in an ICD, from a bit on. Raises `NotHeld`."""
-        parts = [one for one in self.parts if one.at >= start]
-        made: list[Item] = []
-        names = shortest([_telling(one.path) for one in parts])
-        called = {one.path: name for one, name in zip(parts, names, strict=True)}
-        for part, name in zip(parts, names, strict=True):
-            if not part.bits:
-                made.append(again(part.item, self._open(part, name, called, start)))
-            elif "struct" in part.item:
-                made.append({"at": part.at - start, "name": name, **part.item})
-            else:
-                bits = int(part.item.get("bits", part.bits))
-                little = part.piece is not None and part.piece.order == LITTLE and bits > 8
-                place = {"at": part.at - start, "bits": bits, "name": name}
-                order = {"byte_order": LITTLE} if little and part.item["type"] not in ("bytes", "text") else {}
-                made.append(again(part.item, {**place, **part.item, **order}))
-        return made
+        """Return the fields of the ICD from a bit on. Raises `NotHeld`."""
+        parts = [part for part in self.parts if part.at >= start]
+        called = shortest([_telling(part.path) for part in parts])
+        names = {id(part): name for part, name in zip(parts, called, strict=True)}
+        fields: list[Item] = []
+        for part in parts:
+            if not part.bits and part.counter is None:
+                part.counter = self._length_of(part, names)
+            name, at = names[id(part)], part.at - start
+            fields.append(fixed_field(part, name, at) if part.bits else variable_field(part, name, at, names))
+        return fields
 
-    def _open(self, part: Part, name: str, called: dict[tuple[str, ...], str], start: int) -> Item:
-        """What ends a message: counted by a field, by the length of the frame that a field has, or up to the end."""
-        if part.at % 8:
-            raise NotHeld(f"`{name}`, whose length is not fixed, begins within a byte")
-        ahead = (part.at - start) // 8
-        room = max(1, (MOST_BYTES - ahead) // (part.element // 8))
-        place = {"at": part.at - start, "name": name}
-        if part.counter:
-            if part.counter not in called:
-                raise NotHeld(f"`{name}` is counted by a field of the header")
-            return {**place, **part.item, "count": called[part.counter], "up_to": min(room, part.item["up_to"])}
-        size: object = REST
-        for one in self.parts:
-            is_length = one.entry.tag == "LengthEntry" and len(one.path) == 1 and one.path in called
-            if not is_length or one.item["type"] != "uint":
-                continue
-            how = eds_parts.line_of(one.entry, self.sheets)
-            if how is not None and how.factor == 1 and how.offset.denominator == 1:
-                plus = int(how.offset) - part.at // 8
-                size = {"field": called[one.path], "plus": plus} if plus else called[one.path]
-        return {**place, **part.item, "size": size, "up_to": min(room, part.item["up_to"])}
+    def _length_of(self, part: Part, names: Mapping[int, str]) -> Counter | None:
+        """Return the field with the length of the container, if it counts the bytes of its last part."""
+        counter = None
+        for other in self.parts:
+            is_length = other.entry.tag == "LengthEntry" and len(other.path) == 1 and id(other) in names
+            if is_length and other.item["type"] == "uint":
+                length = eds_parts.line_of(other.entry, self.sheets)
+                if length is not None and length.factor == 1 and length.offset.denominator == 1:
+                    counter = Counter(other, int(length.offset) - part.at // 8)
+        return counter
 
 
 def _telling(path: tuple[str, ...]) -> tuple[str, ...]:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import NamedTuple
 from xml.etree.ElementTree import Element
 
-from icdgen.definitions import eds_ranges
+from icdgen.definitions import containers, eds_ranges
 from icdgen.definitions.eds_sheets import Sheets
 from icdgen.definitions.eds_types import Piece, Types
 from icdgen.definitions.eds_values import coded, evaluate
-from icdgen.definitions.model import Item, NotHeld, again
+from icdgen.definitions.model import NotHeld, again
 from icdgen.definitions.wording import line
 from icdgen.icd.fmt.emit import Spelled
 
@@ -20,21 +20,11 @@ _MOST_FIXED = 64  # bits of a text that is a constant
 
 
 @dataclass
-class Part:
-    """A field in its place. ``path`` are the names of the entries that lead to it, ``bits`` all of it, or 0 if it is open."""
+class Part(containers.Part):
+    """Entry of a data sheet in its place."""
 
-    path: tuple[str, ...]
-    entry: Element
-    item: Item
-    at: int
-    bits: int
+    entry: Element = field(kw_only=True)
     piece: Piece | None = None  # of a scalar
-    element: int = 0  # bits of an element of what is open
-    counter: tuple[str, ...] = ()  # of what is open: the path of the field that counts it
-
-    @property
-    def end(self) -> int:
-        return self.at + self.bits
 
 
 class Told(NamedTuple):
@@ -54,8 +44,7 @@ class Line(NamedTuple):
 def only(piece: Piece, raw: int, name: str) -> None:
     """Makes a raw value the only one. Raises `NotHeld` if another was."""
     item = piece.item
-    if item.get("const", raw) != raw:
-        raise NotHeld(f"it depends on `{name}`, which is both {item['const']} and {raw}")
+    containers.check_only_value(item, raw, name)
     kind = {"type": "uint"} if item["type"] == "bool" else {}  # a flag has no constant
     kept = {key: value for key, value in item.items() if key not in ("min", "max", "special")}
     again(item, {**kept, **kind, "const": raw})

@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass, field
 from xml.etree.ElementTree import Element
 
-from icdgen.definitions import eds_ranges
+from icdgen.definitions import containers, eds_ranges
 from icdgen.definitions.eds_ranges import ALL, Range
 from icdgen.definitions.eds_sheets import Sheets
 from icdgen.definitions.eds_values import CODES, TWOS, UNSIGNED, coded, whole
@@ -31,12 +31,9 @@ _MARKUP = re.compile(r"(?<!\S)[\\@][A-Za-z]\w*\s*")  # of Doxygen
 
 
 @dataclass
-class Piece:
-    """What a type makes of a field, without place and name. ``bits`` are those of it; 0 where its length is not fixed."""
+class Piece(containers.Piece):
+    """Field that a type makes, with the code, the labels and the range of its raw values."""
 
-    item: Item
-    bits: int
-    order: str = BIG
     code: str = UNSIGNED  # of an integer; nothing of what is none
     values: dict[str, int] = field(default_factory=dict)  # raw values by label
     range: Range = ALL
