@@ -32,7 +32,7 @@ _WITHOUT_EFFECT = frozenset(
         for key in ("signed", "sizeInBits")
     }
 )
-AS_BYTES, IN_HEADER, BASE_ONLY = "IMP081", "IMP086", "IMP087"
+IN_HEADER, BASE_ONLY = "IMP086", "IMP087"
 _HAZARDOUS = frozenset({"vital", "critical", "severe"})
 
 
@@ -100,32 +100,27 @@ class _Found:
         self.kind, self.element, self.layout, self.more = kind, element, layout, more
         self.name = called(element)
         self.told: dict[Hashable, int] = {one.reference: layout.tell(one) for one in layout.told}
-        self.header = packets.header((one.at, one.piece.bits, one.item.get("const")) for one in layout.parts)
+        self.header = packets.header((one.at, one.bits, one.item.get("const")) for one in layout.parts)
         first = next(iter(layout.parts), None)
-        is_id = first is not None and _is_id(first)
-        self.front: tuple[Hashable, int] | None = (first.reference, first.piece.bits) if first and is_id else None
+        is_id = first is not None and first.is_message_id
+        self.front: tuple[Hashable, int] | None = (first.reference, first.bits) if first and is_id else None
 
     def message(self, id: int, start: int, to: Definitions) -> Item:
         """As it stands in an ICD. Raises `NotHeld`."""
         made = {"name": self.name, "id": id, "kind": self.kind, "length": 0, **self.more}
         lost = [one for one in self.layout.parts if one.at < start and not self._is_ahead(one, start)]
         if lost:
-            shown = ", ".join(f"`{one.item['name']}`" for one in lost)
+            shown = ", ".join(f"`{one.path[-1]}`" for one in lost)
             text = f"message `{self.name}`: {shown} lies within the header"
             to.warn(IN_HEADER, text, "it is left out: the parts of a header have their own meaning", "error")
         message = self.layout.laid_out(made, start, BIG, to)
         if self.layout.lost is not None:
-            name, why = self.layout.lost
-            text = f"message `{self.name}`: from `{name}` on only bytes are imported: {why}"
-            place = self.layout.names.place(self.element)
-            to.warn(
-                AS_BYTES, text, why.help or "describe the rest by hand, or simplify the definition", "error", *place
-            )
+            self.layout.lost.report(self.name, to, *self.layout.names.place(self.element))
         return message
 
     def _is_ahead(self, part: Part, start: int) -> bool:
         """Whether a part is one of what stands in front of the data: of the primary header, or the id."""
-        at, bits = part.at, part.piece.bits
+        at, bits = part.at, part.bits
         return packets.is_of_header(at, bits) if self.header is not None else (at, bits) == (0, start)
 
 
@@ -137,7 +132,7 @@ def _all(names: Names, types: Types, to: Definitions) -> Iterator[_Found]:
         types.message = called(element)
         layout = Layout(names, types)
         try:
-            layout.add(element)
+            layout.read(element)
             more = {**_group(names, element), **described(element)}
             yield _Found(_TELEMETRY, element, layout, more, id(element) in bases)
         except NotHeld as why:
@@ -154,7 +149,7 @@ def _all(names: Names, types: Types, to: Definitions) -> Iterator[_Found]:
             container = names.container_of(element)
             if container is None:
                 raise NotHeld("it has no container, which says how it is sent")
-            layout.add(container)
+            layout.read(container)
             assigned: dict[str, str] = {}
             for base in chain:
                 for one in base.iterfind("BaseMetaCommand/ArgumentAssignmentList/ArgumentAssignment"):
@@ -208,12 +203,6 @@ def _arguments(chain: list[Element]) -> dict[str, Element]:
         for one in command.iterfind("ArgumentList/Argument"):
             found.setdefault(one.get("name", ""), one)
     return found
-
-
-def _is_id(part: Part) -> bool:
-    """Whether a header can have it as an id."""
-    is_whole = part.at == 0 and part.piece.bits in (8, 16, 24, 32) and part.piece.order == BIG
-    return is_whole and part.item["type"] in ("uint", "enum") and "formula" not in part.item
 
 
 def _paired(messages: list[Item]) -> list[Item]:

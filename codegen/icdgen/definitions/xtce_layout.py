@@ -7,6 +7,15 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 from xml.etree.ElementTree import Element
 
+from icdgen.definitions import containers
+from icdgen.definitions.containers import (
+    MOST_FIELDS,
+    Container,
+    Counter,
+    check_only_value,
+    fixed_field,
+    variable_field,
+)
 from icdgen.definitions.frames import LITTLE, ORDERS, Place, laid_out
 from icdgen.definitions.model import Definitions, Item, NotHeld, again
 from icdgen.definitions.reading import TooMuch
@@ -17,7 +26,6 @@ from icdgen.definitions.xtce_types import Piece, Types, described, meant, repeat
 from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS
 
 OPEN = "IMP080"
-MOST_FIELDS = 5000  # of a message
 MOST_PLACED = 500  # of one whose fields say where they stand
 _DEEPEST = 50  # containers that inherit or include each other
 _REFERENCES = {"ParameterRefEntry": "parameterRef", "ArgumentRefEntry": "argumentRef",
@@ -37,18 +45,12 @@ class Reference(NamedTuple):
 
 
 @dataclass
-class Part:
-    """A field in its place. ``at`` counts bits from the first of the frame; a fixed value has no reference."""
+class Part(containers.Part):
+    """Entry of a container of XTCE in its place. A fixed value has no reference."""
 
-    reference: Reference | None
-    item: Item
-    piece: Piece
-    at: int
+    piece: Piece = field(kw_only=True)
+    reference: Reference | None = None
     is_reserved: bool = False  # it has room and no meaning
-
-    @property
-    def end(self) -> int:
-        return self.at + self.piece.bits
 
 
 class Told(NamedTuple):
@@ -60,21 +62,18 @@ class Told(NamedTuple):
 
 
 @dataclass
-class Layout:
-    """Everything that a container has, itself and by inheritance."""
+class Layout(Container[Part]):
+    """Parts of a container, its own and inherited ones, with the values that restrict it."""
 
     names: Names
     types: Types
     arguments: dict[str, Element] = field(default_factory=dict)  # of a command
-    parts: list[Part] = field(default_factory=list)
     told: list[Told] = field(default_factory=list)
     jumps: bool = False  # whether a part says where it stands
-    at: int = 0
     behind: str = ""  # the entry just before, where it is not always there
     size: int = 0  # bits that every frame has, where that is said
-    lost: tuple[str, NotHeld] | None = None  # the entry from which on only bytes are imported, and why
 
-    def add(self, container: Element, within: tuple[Element, ...] = (), is_included: bool = False) -> None:
+    def read(self, container: Element, within: tuple[Element, ...] = (), is_included: bool = False) -> None:
         """Adds the entries of a container behind those that it inherits. Raises `NotHeld`."""
         if any(container is one for one in within):
             circle = " -> ".join(one.get("name", "") for one in (*within, container))
@@ -85,7 +84,7 @@ class Layout:
         start = self.at if is_included else 0
         within = (*within, container)
         if (extended := self.names.base_of(container)) is not None:
-            self.add(extended, within, is_included)
+            self.read(extended, within, is_included)
         if (base := container.find("BaseContainer")) is not None:
             if (criteria := base.find("RestrictionCriteria")) is not None:
                 self.told += self._told(criteria, container)
@@ -104,7 +103,10 @@ class Layout:
             except TooMuch:
                 raise
             except NotHeld as why:
-                self._lose(entry, why, before, at)
+                if self.behind:
+                    raise
+                item: Item = {}
+                self.lose(Part((_named(entry),), item, at, 0, piece=Piece(item, 0)), why, before)
             if len(self.parts) > MOST_FIELDS:
                 raise NotHeld(f"it has more than {MOST_FIELDS} fields")
 
@@ -115,15 +117,6 @@ class Layout:
             if "when" in part.item:
                 raise NotHeld(f"`{_named(entry)}` is present only on nested conditions")
             part.item |= needs
-
-    def _lose(self, entry: Element, why: NotHeld, before: int, at: int) -> None:
-        """Holds the bytes from an entry to the end of the frame instead of their fields. Raises ``why`` if there are none ahead."""
-        if self.lost is not None or not before or at % 8 or self.behind or not self.parts[before - 1].piece.bits:
-            raise why
-        del self.parts[before:]
-        item: Item = {"name": _named(entry), "type": "bytes", "size": "rest", "up_to": MOST_BYTES}
-        self.parts.append(Part(None, item, Piece(item, 0), at))
-        self.at, self.lost = at, (_named(entry), why)
 
     def _move(self, entry: Element, start: int) -> None:
         location = entry.find("LocationInContainerInBits")
@@ -142,11 +135,11 @@ class Layout:
             raise NotHeld(f"`{_named(entry)}` is located in front of its container")
 
     def _entry(self, entry: Element, container: Element, within: tuple[Element, ...]) -> None:
-        count = _count(entry)
+        count = _repeats(entry)
         if entry.tag == "ContainerRefEntry":
             inner = self.names.container(entry.get("containerRef", ""), container)
             for _ in range(count):
-                self.add(inner, within, is_included=True)
+                self.read(inner, within, is_included=True)
             return
         if entry.tag == "FixedValueEntry":
             self._fixed(entry)
@@ -181,15 +174,16 @@ class Layout:
                 raise NotHeld(f"it has more than {MOST_FIELDS} fields")
         if piece.members:
             return
-        if self.parts and not self.parts[-1].piece.bits:
-            raise NotHeld(f"`{name}` follows `{self.parts[-1].item['name']}`, whose size is not fixed")
+        if self.is_open:
+            raise NotHeld(f"`{name}` follows `{self.parts[-1].path[-1]}`, whose size is not fixed")
         if piece.order == LITTLE and (self.at % 8 or piece.bits % 8):
             if self.at // 8 == (self.at + piece.bits - 1) // 8:
                 raise NotHeld(f"the least significant byte of the {piece.bits} bits of `{name}` is sent first")
             self.jumps = True  # its bits are counted from the least significant one, as Yamcs does
-        item = again(piece.item, {"name": name, **piece.item, **said})
-        self.parts.append(Part(reference, item, piece, self.at, "reserved" in beside(of)))
-        self.at += piece.bits
+        item = again(piece.item, {**piece.item, **said})
+        part = Part((name,), item, self.at, piece.bits, piece.order, item.get("bits", 8), piece=piece)
+        part.reference, part.is_reserved = reference, "reserved" in beside(of)
+        self.add(part)
 
     def _fixed(self, entry: Element) -> None:
         """Bits that are always the same: in hexadecimal, the last ones of it."""
@@ -203,11 +197,10 @@ class Layout:
         name = entry.get("name", "")
         if bits > 64 and value:
             raise NotHeld(f"a fixed value has {bits} bits")
-        item = {"name": name or f"Fixed {self.at}", "type": "uint", "const": value}
-        self.parts.append(
-            Part(None, item, Piece(item, bits), self.at, is_reserved=not (name and bits <= 64) and not value)
-        )
-        self.at += bits
+        item: Item = {"type": "uint", "const": value}
+        part = Part((name or f"Fixed {self.at}",), item, self.at, bits, piece=Piece(item, bits))
+        part.is_reserved = not (name and bits <= 64) and not value
+        self.add(part)
 
     def _parameter(self, name: str, seen_from: Element, is_argument: bool) -> Reference:
         return self.argument(name) if is_argument else Reference(*self.names.parameter(name, seen_from))
@@ -230,7 +223,7 @@ class Layout:
         """The key of what other fields must be for an entry to be there. Raises `NotHeld`."""
         found: Item = {}
         for alternatives in self._all_of(condition, seen_from, f"`{named}` is present only if there is"):
-            names = {self._part(one).item["name"]: self._part(one) for one in alternatives}
+            names = {self._part(one).path[-1]: self._part(one) for one in alternatives}
             if len(names) > 1 or (name := next(iter(names))) in found:
                 raise NotHeld(f"`{named}` is present on a condition of several fields")
             raws = [self._raw(names[name], one) for one in alternatives]
@@ -273,20 +266,15 @@ class Layout:
         """Makes the value of a parameter or argument the only one, and says which. Raises `NotHeld`."""
         part = self._part(told)
         raw = self._raw(part, told)
-        if part.item.get("const", raw) != raw:
-            raise NotHeld(f"it depends on `{told.reference.name}`, which is both {part.item['const']} and {raw}")
+        check_only_value(part.item, raw, told.reference.name)
         part.item["const"] = raw
         return raw
 
     def _part(self, told: Told) -> Part:
         """The last part that is the parameter, argument or member. Raises `NotHeld`."""
         part = next((one for one in reversed(self.parts) if one.reference == told.reference), None)
-        if part is None and self.lost is not None:
-            name, why = self.lost
-            text = f"it depends on `{told.reference.name}`, which is in or behind `{name}`: {why}"
-            raise NotHeld(text, why.help)
         if part is None:
-            raise NotHeld(f"it depends on `{told.reference.name}`, which it does not have")
+            raise self.missing(told.reference.name)
         return part
 
     def _raw(self, part: Part, told: Told) -> int:
@@ -304,70 +292,80 @@ class Layout:
             raw = int(text, 0) if text.lower().startswith(("0x", "-0x")) else int(text)
         except ValueError:
             raise NotHeld(f"it depends on `{name}`, which is never `{line(text, 60)}`") from None
-        if raw.bit_length() > part.piece.bits or (raw < 0 and item["type"] in ("uint", "bool")):
+        if raw.bit_length() > part.bits or (raw < 0 and item["type"] in ("uint", "bool")):
             raise NotHeld(f"it depends on `{name}`, which is never {raw}")
         return raw
 
     def laid_out(self, message: Item, start: int, order: str, to: Definitions) -> Item:
         """The message with the fields from a bit on. Raises `NotHeld`."""
-        always = max((one.end for one in self.parts if one.piece.bits and "when" not in one.item), default=start)
+        always = max((part.end for part in self.parts if part.bits and "when" not in part.item), default=start)
         always = max(always, self.size)
-        late = next((one.item["name"] for one in self.parts if "when" in one.item and one.end > always), None)
+        late = next((part for part in self.parts if "when" in part.item and part.end > always), None)
         if late is not None:
-            raise NotHeld(f"frames end before `{late}` where it is not there")
+            raise NotHeld(f"frames end before `{late.path[-1]}` where it is not there")
         end = always - start
-        if max((one.end for one in self.parts), default=0) - start > 8 * MOST_BYTES or end > 8 * MOST_BYTES:
+        if max((part.end for part in self.parts), default=0) - start > 8 * MOST_BYTES or end > 8 * MOST_BYTES:
             raise NotHeld(f"its frames have more than {MOST_BYTES:,} bytes")
-        parts = [one for one in self.parts if one.at >= start and not one.is_reserved]
-        names: dict[str, int] = {}
-        for one in parts:
-            name = one.item["name"]
-            names[name] = names.get(name, 0) + 1
-            if names[name] > 1:
-                one.item["name"] = f"{name} {names[name]}"
-        closed = [one for one in parts if one.piece.bits]
+        parts = [part for part in self.parts if part.at >= start and not part.is_reserved]
+        names = _numbered(parts)
+        closed = [part for part in parts if part.bits]
         message["length"] = -(-end // 8)
         fields: list[Item] = []
         if self.jumps:
             if len(parts) > MOST_PLACED:
                 raise NotHeld(f"more than {MOST_PLACED} fields say where they stand")
-            placed = [(one.item, Place(one.at - start, one.piece.bits, one.piece.order)) for one in closed]
+            placed = [
+                (
+                    again(part.item, {"name": names[id(part)], **part.item}),
+                    Place(part.at - start, part.bits, part.order),
+                )
+                for part in closed
+            ]
             message = laid_out(message, placed, order, to)
             fields = message.pop("fields", [])
         else:
-            for one in closed:
-                little = {"byte_order": LITTLE} if one.piece.order == LITTLE and one.piece.bits > 8 else {}
-                place = {"at": one.at - start, "bits": one.piece.bits}
-                fields.append(again(one.item, {**place, **one.item, **little}))
-            last = max((one.end for one in closed), default=start) - start
+            fields = [fixed_field(part, names[id(part)], part.at - start) for part in closed]
+            last = max((part.end for part in closed), default=start) - start
             message |= {"reserved": rest} if (rest := message["length"] - -(-last // 8)) else {}
-        for one in parts:
-            if not one.piece.bits:
+        for part in parts:
+            if not part.bits:
                 if end % 8:
-                    raise NotHeld(f"`{one.item['name']}`, whose size is not fixed, begins within a byte")
+                    raise NotHeld(f"`{names[id(part)]}`, whose size is not fixed, begins within a byte")
                 message.pop("reserved", 0)  # what is in front of it, and has no name
-                fields.append(_open(message, one, parts, order, to))
+                at = 8 * message["length"]
+                _count(part, names[id(part)], at, parts, message["name"], to)
+                field = variable_field(part, names[id(part)], at, names)
+                is_other = part.element > 8 and part.order != message.get("byte_order", order)
+                field |= ORDERS[part.order] if is_other else {}
+                fields.append(field)
         return {**message, "fields": fields} if fields else message
 
 
-def _open(message: Item, part: Part, parts: list[Part], order: str, to: Definitions) -> Item:
-    """The field of a part whose size is not fixed: counted where another counts it, else up to the end of the frame."""
+def _numbered(parts: Iterable[Part]) -> dict[int, str]:
+    """Names of parts by `id`: the second of one name has a 2 behind it."""
+    times: dict[str, int] = {}
+    names: dict[int, str] = {}
+    for part in parts:
+        name = part.path[-1]
+        times[name] = times.get(name, 0) + 1
+        names[id(part)] = name if times[name] == 1 else f"{name} {times[name]}"
+    return names
+
+
+def _count(part: Part, name: str, at: int, parts: list[Part], message: str, to: Definitions) -> None:
+    """Give a part whose size is not fixed its counter, if another part can count it, and its greatest number of elements."""
     item, piece = part.item, part.piece
-    most = min(item["up_to"], (MOST_BYTES - message["length"]) * 8 // item.get("bits", 8))
+    most = min(item["up_to"], (8 * MOST_BYTES - at) // part.element)
     if part.reference is not None and (said := beside(part.reference.of).get("up_to")) is not None:
         most = min(most, max(1, number(said, "a size")))
-    counter = next((one for one in parts if _is_named(one, piece.size)), None)
+    counter = next((other for other in parts if _is_named(other, piece.size)), None)
     counted = _counted(counter, piece, most) if counter is not None else 0
     if counter is not None and counted:
-        by, most = counter.item["name"], counted
-        item["size" if "size" in item else "count"] = {"field": by, "plus": piece.plus} if piece.plus else by
+        part.counter, most = Counter(counter, piece.plus or 0), counted
     elif counter is not None:
-        text = f"message `{message['name']}`: `{item['name']}` is as long as `{piece.size}` says"
+        text = f"message `{message}`: `{name}` is as long as `{piece.size}` says"
         to.warn(OPEN, text, "it is imported up to the end of the frame")
-    is_other = item.get("bits", 8) > 8 and piece.order != message.get("byte_order", order)
-    return again(
-        item, {"at": 8 * message["length"], **item, **(ORDERS[piece.order] if is_other else {}), "up_to": most}
-    )
+    item["up_to"] = most
 
 
 def _is_named(part: Part, reference: str) -> bool:
@@ -378,9 +376,9 @@ def _is_named(part: Part, reference: str) -> bool:
 def _counted(counter: Part, piece: Piece, most: int) -> int:
     """The most elements, or bytes, that a field may count; 0 if it may not."""
     odd = counter.item.keys() & {"formula", "points", "const", "count", "when", "view"}
-    if piece.plus is None or odd or counter.item["type"] != "uint" or not counter.piece.bits:
+    if piece.plus is None or odd or counter.item["type"] != "uint" or not counter.bits:
         return 0
-    counted = min(most, (1 << counter.piece.bits) - 1 + piece.plus)
+    counted = min(most, (1 << counter.bits) - 1 + piece.plus)
     return counted if counted >= max(1, piece.plus) else 0
 
 
@@ -394,7 +392,7 @@ def _named(entry: Element) -> str:
     return line(next((entry.attrib[key] for key in keys if key in entry.attrib), entry.tag), 100)
 
 
-def _count(entry: Element) -> int:
+def _repeats(entry: Element) -> int:
     """How often an entry is there."""
     repeat = entry.find("RepeatEntry")
     if repeat is None:

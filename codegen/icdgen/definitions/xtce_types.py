@@ -9,6 +9,7 @@ from fractions import Fraction
 from typing import Any
 from xml.etree.ElementTree import Element
 
+from icdgen.definitions import containers
 from icdgen.definitions.accounting import settle
 from icdgen.definitions.frames import BIG, LITTLE
 from icdgen.definitions.model import Item, NotHeld
@@ -28,12 +29,9 @@ _LIMITS = {"minInclusive": "min", "maxInclusive": "max", "minExclusive": "above"
 
 
 @dataclass
-class Piece:
-    """What a type makes of a field, without place and name. ``bits`` are all of it; 0 where it goes on to the end of the frame."""
+class Piece(containers.Piece):
+    """Field that a type makes, with what counts its elements and the labels of its raw values."""
 
-    item: Item
-    bits: int
-    order: str = BIG
     size: str = ""  # the parameter that says how much there is, if one does
     plus: int | None = None  # so much more than it says; None where it does not count bytes or elements
     values: dict[str, int] = field(default_factory=dict)  # by label
