@@ -6,6 +6,7 @@ import re
 from collections import Counter
 
 from icdgen.definitions.accounting import Account, accounted
+from icdgen.definitions.containers import variable_field
 from icdgen.definitions.frames import ORDERS, usual
 from icdgen.definitions.kaitai_layout import Layout
 from icdgen.definitions.kaitai_parts import File, Key, Part, Undecided
@@ -14,7 +15,6 @@ from icdgen.definitions.kaitai_yaml import parse
 from icdgen.definitions.model import Definitions, Item, Network, NotHeld, again
 from icdgen.definitions.reading import TooMuch
 from icdgen.definitions.wording import line, node_name, shortest, summary
-from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS, REST
 
 MOST_MESSAGES = 256
 _META = re.compile(r"^meta:[ \t]*(?:#.*)?\r?\n(?:[ \t]*(?:#.*)?\r?\n)*[ \t]+\w", re.MULTILINE)
@@ -115,21 +115,12 @@ def _names(name: str, layouts: list[Layout]) -> list[str]:
 def _fields(layout: Layout, order: str) -> list[Item]:
     """The parts as fields; bits on which something depends become fields of their own, and the whole a view."""
     fields: list[Item] = []
-    room = MOST_BYTES - -(-layout.at // 8)
-    names = shortest([one.path for one in layout.parts])
-    for part, name in zip(layout.parts, names, strict=True):
-        item = part.item
+    called = shortest([part.path for part in layout.parts])
+    names = {id(part): name for part, name in zip(layout.parts, called, strict=True)}
+    for part in layout.parts:
+        item, name = part.item, names[id(part)]
         if not part.bits:
-            counts = "count" in item
-            most = min(room // (part.piece.bits // 8), MOST_ELEMENTS) if counts else room
-            said: str | Item = REST
-            if part.counter is not None:
-                of, plus = part.counter
-                said = next(other for one, other in zip(layout.parts, names, strict=True) if one is of)
-                said = {"field": said, "plus": plus} if plus else said
-                most = min(most, part.counter.most)
-            size = {"count" if counts else "size": said}
-            fields.append({"at": part.at, "name": name, **item, **size, "up_to": most})
+            fields.append(variable_field(part, name, part.at, names))
         elif "struct" in item:
             fields.append({"at": part.at, "name": name, **item})
         elif not part.mask:

@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from icdgen.definitions.accounting import settle
+from icdgen.definitions.containers import AS_BYTES, Container, Counter
 from icdgen.definitions.kaitai_expressions import Masked, counted, equalities, line_of, masked, number
-from icdgen.definitions.kaitai_parts import Counter, Ended, File, Key, Label, Part, Scope, Undecided
+from icdgen.definitions.kaitai_parts import Ended, File, Key, Label, Part, Scope, Undecided, placed
 from icdgen.definitions.kaitai_types import Piece, Type, built_in, contents, named, sized
 from icdgen.definitions.kaitai_yaml import integer
 from icdgen.definitions.model import Item, NotHeld, raws
@@ -17,24 +18,20 @@ from icdgen.definitions.wording import line, summary, unit
 from icdgen.icd.located import Map
 from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS, REST
 
-RAW_ONLY, AS_BYTES = "IMP078", "IMP081"
-MOST_FIELDS = 5000
+RAW_ONLY = "IMP078"
 _DEEPEST = 50  # types that hold each other
 _WORD = 8  # bytes of the largest number
 
 
 @dataclass
-class Layout:
+class Layout(Container[Part]):
     """Walks the root type. ``decided`` are the values of fields on which something depends."""
 
     file: File
     decided: dict[Key, int | None]
     is_struct: bool = False
-    at: int = 0
-    parts: list[Part] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
     ends: list[int] = field(default_factory=list)  # of the parts with a size of their own that are being read
-    open: bool = False
 
     def read(self, root: Type) -> None:
         """Raises `NotHeld`, and `Undecided`."""
@@ -55,13 +52,12 @@ class Layout:
     def _sequence(self, type_: Type, scope: Scope, path: tuple[str, ...], within: tuple[Type, ...]) -> None:
         for index, one in enumerate(type_.seq):
             self.file.step()
-            if len(self.parts) > MOST_FIELDS or self.at > 8 * MOST_BYTES:
-                raise NotHeld(f"it has more than {MOST_FIELDS} fields or {MOST_BYTES} bytes")
+            self.check_size()
             name = str(one.get("id") or f"unnamed{index}")
             where = (*path, name)
             known = False
             try:
-                if self.open:
+                if self.is_open:
                     raise NotHeld("it follows a part of variable size")
                 if "if" in one and not self._is_there(one, name, scope):
                     continue
@@ -189,7 +185,7 @@ class Layout:
                 raise NotHeld("its elements are not numbers")
             piece.item |= {"bits": piece.bits, "count": REST if isinstance(count, Counter) else count}
         piece.item |= summary(str(one.get("doc") or "")) | unit(_unit(one))
-        part = Part(where, piece.item, piece, self.at, counter=counter)
+        part = placed(where, piece, self.at, counter)
         self._valid(part, one.get("valid"), scope)
         self._fit(part)
         return part
@@ -198,12 +194,7 @@ class Layout:
         """Adds a part if there is room for it. Raises `NotHeld`."""
         if self.ends and self.at + part.bits > self.ends[-1]:
             raise NotHeld("it is longer than the part that contains it")
-        self._add(part)
-
-    def _add(self, part: Part) -> None:
-        self.parts.append(part)
-        self.at += part.bits
-        self.open = not part.bits
+        self.add(part)
 
     def _valid(self, part: Part, said: Any, scope: Scope) -> None:
         """The only value, or the limits, if that is what is valid."""
@@ -231,7 +222,9 @@ class Layout:
             name = where if len(always) <= _WORD else (*where, str(start // _WORD + 1))
             item = {"type": "uint", **(summary(str(one.get("doc") or "")) if not start else {})}
             bits = 8 * len(data)
-            self._add(Part(name, item, Piece(item, bits), self.at, (1 << bits) - 1, int.from_bytes(data, "big")))
+            part = placed(name, Piece(item, bits), self.at)
+            part.mask, part.value = (1 << bits) - 1, int.from_bytes(data, "big")
+            self.add(part)
 
     def _structs(
         self, where: tuple[str, ...], inner: Type, count: int | Counter | str, one: Map, within: tuple[Type, ...]
@@ -245,14 +238,14 @@ class Layout:
             raise NotHeld(f"what each of them has depends on `{error.key[0][-1]}`") from None
         if not layout.parts and not layout.at:
             return  # none of them has a byte
-        if layout.open or layout.at % 8:
+        if layout.is_open or layout.at % 8:
             raise NotHeld("they are not of a fixed number of bytes")
         counter = count if isinstance(count, Counter) else None
         item: Item = {"struct": inner.name, "count": REST if counter else count, **summary(str(one.get("doc") or ""))}
         known = self.file.structs.setdefault(id(inner), {"name": inner.name, "length": layout.at // 8, "parts": layout})
         if known["length"] != layout.at // 8:
             raise NotHeld("they are not as long as elsewhere")
-        self._fit(Part(where, item, Piece(item, layout.at), self.at, counter=counter))
+        self._fit(placed(where, Piece(item, layout.at), self.at, counter))
 
     def _as_bytes(self, one: Map, where: tuple[str, ...], why: NotHeld, known: bool) -> None:
         """Holds what cannot be told further as bytes: as many as it has, or all that are left. Raises `NotHeld` in a struct."""
@@ -262,8 +255,8 @@ class Layout:
             size = sized(one) if known and "repeat" not in one else None
         except NotHeld:
             size = None
-        is_end = self.open or size is None
-        if self.open:
+        is_end = self.is_open or size is None
+        if self.is_open:
             held = "no part of it is imported"
         elif size is not None:
             held = "its bytes are imported"
@@ -286,7 +279,9 @@ class Layout:
         """Bytes without a meaning; 0 bits are all that are left."""
         self._align()
         item: Item = {"type": "bytes"}
-        self._add(Part(where, item, Piece(item, bits), self.at, is_whole=False))
+        part = placed(where, Piece(item, bits), self.at)
+        part.is_whole = False
+        self.add(part)
 
     # what depends on values
 
@@ -372,7 +367,7 @@ class Layout:
         at = one.get("pos")
         if not isinstance(at, int) or "io" in one or type_.outer is not None or type_.seq:
             return False
-        if self.open or 8 * at < self.at or at > MOST_BYTES:
+        if self.is_open or 8 * at < self.at or at > MOST_BYTES:
             return False
         self.at = 8 * at
         try:
@@ -396,7 +391,7 @@ class Layout:
         item = part.item
         if item.get("type") not in ("uint", "int", "float") or "formula" in item or "view" in item:
             return False
-        if any(one.counter is not None and one.counter.of is part for one in self.parts):
+        if any(one.counter is not None and one.counter.part is part for one in self.parts):
             return False  # what counts is a plain number
         if item["type"] != "float" and line_of(one["value"], is_integer=True) is None:
             return False

@@ -5,11 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from icdgen.definitions import containers
+from icdgen.definitions.containers import Counter
 from icdgen.definitions.frames import Place
 from icdgen.definitions.kaitai_types import Piece, Type
 from icdgen.definitions.model import Item, NotHeld
 from icdgen.definitions.reading import Reading
 from icdgen.definitions.wording import line
+from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS
 
 Key = tuple[tuple[str, ...], int, tuple[int, ...]]  # a field by its path, bits of it, and the values that are asked for
 
@@ -32,36 +35,15 @@ class Label(NamedTuple):
     value: str
 
 
-class Counter(NamedTuple):
-    """What says how many elements there are, or bytes: a field, and what is added to it."""
-
-    of: Part
-    plus: int
-
-    @property
-    def most(self) -> int:
-        return (1 << self.of.bits) - 1 + self.plus
-
-
 @dataclass
-class Part:
-    """A field in its place. Of ``mask`` the bits are known, as ``value`` has them; ``excluded`` are values that it has not."""
+class Part(containers.Part):
+    """Attribute in its place. The bits of ``mask`` have the values in ``value``; ``excluded`` are pairs of mask and value."""
 
-    path: tuple[str, ...]
-    item: Item
-    piece: Piece
-    at: int
+    piece: Piece = field(kw_only=True)
     mask: int = 0
     value: int = 0
     excluded: set[tuple[int, int]] = field(default_factory=set)
-    is_whole: bool = True  # whether it is what the file defines, and not bytes that stand for it
-    counter: Counter | None = None  # of what goes on as long as a field says
-
-    @property
-    def bits(self) -> int:
-        """All of it; 0 where it goes on to the end."""
-        count = self.item.get("count", 1)
-        return self.piece.bits * count if isinstance(count, int) else 0
+    is_whole: bool = True  # whether it is what the file defines, and not bytes in its place
 
     @property
     def is_ordered(self) -> bool:
@@ -72,6 +54,16 @@ class Part:
     @property
     def place(self) -> Place:
         return Place(self.at, self.bits, self.piece.order)
+
+
+def placed(path: tuple[str, ...], piece: Piece, at: int, counter: Counter | None = None) -> Part:
+    """Return the part that a piece makes at a bit. ``counter`` counts its elements, or bytes."""
+    item, count = piece.item, piece.item.get("count", 1)
+    bits = piece.bits * count if isinstance(count, int) else 0
+    if not bits:
+        most = MOST_ELEMENTS if "count" in item else MOST_BYTES
+        item["up_to"] = min(most, counter.most) if counter is not None else most
+    return Part(path, item, at, bits, piece.order, piece.bits or 8, counter, piece=piece)
 
 
 @dataclass

@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass, field
 from typing import Any
 
+from icdgen.definitions import containers
 from icdgen.definitions.enumerations import Enumerations
 from icdgen.definitions.frames import BIG, LITTLE
 from icdgen.definitions.kaitai_yaml import integer
@@ -23,12 +24,9 @@ _DEEPEST = 40
 
 
 @dataclass
-class Piece:
-    """What an attribute is on the wire. ``bits`` are those of one element; 0 where it goes on to the end."""
+class Piece(containers.Piece):
+    """Field that the type of an attribute makes. ``bits`` are those of one element."""
 
-    item: Item
-    bits: int
-    order: str = BIG
     is_bits: bool = False  # whether it begins where the bit before it ended
 
 
