@@ -55,33 +55,33 @@ def compare(old: Icd, new: Icd) -> Comparison:
 
 def _once(changes: Iterable[Change]) -> list[Change]:
     """What changed in a struct is said where it stands first, with the other places."""
-    found: list[Change] = []
-    known: dict[object, int] = {}
-    others: dict[int, list[str]] = {}
+    result: list[Change] = []
+    indexes: dict[object, int] = {}
+    other_places: dict[int, list[str]] = {}
     for change in changes:
         key = _in_struct(change)
-        if key is None or key not in known:
+        if key is None or key not in indexes:
             if key is not None:
-                known[key] = len(found)
-            found.append(change)
+                indexes[key] = len(result)
+            result.append(change)
         else:
             where = change.where
-            others.setdefault(known[key], []).append(f"{quote(where.field)} of {quote(where.message)}")
-    for index, places in others.items():
+            other_places.setdefault(indexes[key], []).append(f"{quote(where.field)} of {quote(where.message)}")
+    for index, places in other_places.items():
         if len(places) > MOST_PLACES:
             places[MOST_PLACES - 1 :] = [f"{len(places) - MOST_PLACES + 1} more"]
-        found[index] = replace(found[index], details=(*found[index].details, f"The same of {listing(places)}."))
-    return found
+        result[index] = replace(result[index], details=(*result[index].details, f"The same of {listing(places)}."))
+    return result
 
 
 def _in_struct(change: Change) -> object:
     """What a change of a field of a struct has in common with the same change wherever the struct stands; None of others."""
     pair: object = change.pair
     if isinstance(pair, MessagePair):  # many fields are looked at together
-        pair = next((one for one in pair.parts if one.any.name == change.where.field), None)
+        pair = next((part for part in pair.parts if part.any.name == change.where.field), None)
     if not isinstance(pair, FieldPair) or not pair.is_of_struct:
         return None
-    sides = [one for one in (pair.before, pair.after) if one is not None]
+    sides = [side for side in (pair.before, pair.after) if side is not None]
     return change.rule.code, change.old, change.new, sides[-1].at - sides[0].at
 
 
@@ -105,8 +105,8 @@ def _all(context: Context) -> Iterator[Change]:
 def _run(of: str, pair: Pair, context: Context) -> Iterator[Change]:
     when = "both" if pair.both else "gone" if pair.after is None else "come"
     checks = _CHECKS.get((of, when), {})
-    said = [(found.code or code, found) for check, code in checks.items() for found in check(pair, context)]
-    for code, found in sorted(said, key=itemgetter(0)):
+    results = [(found.code or code, found) for check, code in checks.items() for found in check(pair, context)]
+    for code, found in sorted(results, key=itemgetter(0)):
         yield _change(RULES[code], pair, found)
 
 
@@ -134,10 +134,12 @@ def _decisions(pair: Pair, keys: tuple[str, ...]) -> tuple[str, ...]:
     if isinstance(pair, NodePair):
         return ()
     old, new = ({e.id: e for e in side.errata} if side is not None else {} for side in (pair.before, pair.after))
-    said = []
+    decisions = []
     for key in sorted(old.keys() | new.keys()):
         before, after = old.get(key), new.get(key)
         held = [name for entry in (before, after) if entry for name, _ in entry.held]
         if before != after and any(name in keys for name in held):
-            said.append(f"{key} {'is new' if before is None else 'is gone' if after is None else 'says otherwise'}")
-    return tuple(said)
+            decisions.append(
+                f"{key} {'is new' if before is None else 'is gone' if after is None else 'says otherwise'}"
+            )
+    return tuple(decisions)

@@ -147,9 +147,9 @@ def _read(pair: MessagePair, sent: Message, reader: Message) -> tuple[str, tuple
     if lengths == NO:
         return NO, odd
     own = [p for p in pair.parts if not p.any.view]  # views read what the others carry
-    derived = [(p, "another formula") for p in pair.kept if is_derived_otherwise(p)]
+    derived = [(p, "another formula") for p in pair.common if is_derived_otherwise(p)]
     absent = [p.any for p in own if not p.both and (p.before if reader is pair.old else p.after) is not None]
-    wrong = [(p, why) for p in pair.kept if (why := _misread(p))]
+    wrong = [(p, why) for p in pair.common if (why := _misread(p))]
     if not absent and not wrong and not derived:
         return lengths, odd
     reasons = [*odd, *_together((p.any.name, why) for p, why in (*wrong, *derived))]

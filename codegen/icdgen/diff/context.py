@@ -35,12 +35,12 @@ class Context:
     @cached_property
     def users(self) -> dict[int, list[str]]:
         """Fields that hold the values of an enumeration of the new ICD, by the enumeration's identity."""
-        found: dict[int, list[str]] = {}
+        users: dict[int, list[str]] = {}
         for message in (m for node in self.match.new.nodes for m in node.messages):
             for field in lines(message.layout):
                 if field.enum is not None:
-                    found.setdefault(id(field.enum), []).append(f"{message.name}: {field.name}")
-        return found
+                    users.setdefault(id(field.enum), []).append(f"{message.name}: {field.name}")
+        return users
 
     def sides(self, node: NodePair) -> tuple[tuple[Icd, Node], tuple[Icd, Node]]:
         return (self.match.old, node.old), (self.match.new, node.new)
@@ -51,8 +51,9 @@ class Context:
 
     def _other_envelopes(self, node: NodePair) -> frozenset[str]:
         """The directions in which no message is as before, because its envelope is not: of nodes that have one in both ICDs."""
-        found = (one for one in DIRECTIONS if differ(*self.sides(node), one)) if self.have_envelopes(node) else ()
-        return frozenset(found)
+        if not self.have_envelopes(node):
+            return frozenset()
+        return frozenset(direction for direction in DIRECTIONS if differ(*self.sides(node), direction))
 
     def pair(self, message: Message) -> MessagePair:
         """The pair that a message is a side of."""
@@ -74,11 +75,11 @@ class Context:
     def is_touched_before(self, pair: MessagePair, bit: int) -> bool:
         """Whether any field of the first ``bit`` bits came, went or lies elsewhere."""
         alone = (*pair.lost, *pair.gained)
-        return any(p.any.at < bit for p in alone) or any(not p.same_bits for p in pair.kept)
+        return any(p.any.at < bit for p in alone) or any(not p.same_bits for p in pair.common)
 
     def unspoken(self, node: NodePair, side: int) -> list[Message]:
         """Messages of one side that the node does not speak on the other, where they are still declared."""
-        mine, other = (icd.messages_of(one) for icd, one in self.sides(node))
+        mine, other = (icd.messages_of(side_of_node) for icd, side_of_node in self.sides(node))
         if side:
             mine, other = other, mine
         spoken = {id(self.pair(m)) for m in other}
@@ -94,20 +95,20 @@ def free_before(pair: FieldPair) -> bool:
 
 
 def _bits(position: Position) -> set[tuple[int, int]]:
-    found = set()
-    for one in position:
-        if isinstance(one, range):
-            found |= {(byte, bit) for byte in one for bit in range(8)}
+    bits = set()
+    for part in position:
+        if isinstance(part, range):
+            bits |= {(byte, bit) for byte in part for bit in range(8)}
         else:
-            found |= {(one.byte, one.shift + bit) for bit in range(one.bits)}
-    return found
+            bits |= {(part.byte, part.shift + bit) for bit in range(part.bits)}
+    return bits
 
 
 def by_id(messages: Iterable[Message], key: str) -> dict[int, list[Message]]:
     """The messages of each id; ``key`` names it: ``telemetry_id``."""
-    found: dict[int, list[Message]] = {}
+    messages_by_id: dict[int, list[Message]] = {}
     for message in messages:
         number = getattr(message, key)
         if number is not None:
-            found.setdefault(number, []).append(message)
-    return found
+            messages_by_id.setdefault(number, []).append(message)
+    return messages_by_id

@@ -43,7 +43,7 @@ class Name(NamedTuple):
     stem: str = ""
 
 
-class Marks(Generic[Marked]):
+class SourceMarks(Generic[Marked]):
     """Sources for the parts of an ICD that is made to ask for its names, by which it is known what has each of them."""
 
     def __init__(self) -> None:
@@ -57,9 +57,9 @@ class Marks(Generic[Marked]):
 
     def names(self, icd: Icd, language: str) -> Iterator[tuple[Marked, Identifier]]:
         """What has a mark, and each of the names that code in the language has for it."""
-        for one in backends.get(language).identifiers(icd):
-            if id(one.source) in self._known:
-                yield self._known[id(one.source)][1], one
+        for identifier in backends.get(language).identifiers(icd):
+            if id(identifier.source) in self._known:
+                yield self._known[id(identifier.source)][1], identifier
 
 
 NOTHING, NODES, OWNERS = range(3)  # what is called by its old name
@@ -79,39 +79,39 @@ class Generated:
     @cached_property
     def _kept(self) -> set[int]:
         """Everything whose names may have changed, with what it is part of: id(pair)."""
-        kept: set[int] = set()
+        ids: set[int] = set()
         parts_of = {id(p): [part for part in p.parts if may_rename(part)] if p.both else [] for p in self._changed}
         idle = idle_facts(part for parts in parts_of.values() for part in parts)
         for pair in self._changed:
             parts = [id(part) for part in parts_of[id(pair)] if what_differs(part) not in idle]
             if parts or may_rename(pair):
-                kept.update((id(pair), *parts))
-        return kept
+                ids.update((id(pair), *parts))
+        return ids
 
     @cached_property
     def everything(self) -> Names:
         """Old names of everything in messages and enumerations in which anything differs."""
-        return _Cut(self._match, 0, {id(one) for pair in self._changed for one in (pair, *pair.parts)}).names
+        return _ReducedIcd(self._match, 0, {id(part) for pair in self._changed for part in (pair, *pair.parts)}).names
 
     @cached_property
-    def _before(self) -> _Cut:
-        return _Cut(self._match, 0, self._kept)
+    def _before(self) -> _ReducedIcd:
+        return _ReducedIcd(self._match, 0, self._kept)
 
     @cached_property
-    def _after(self) -> _Cut:
-        return _Cut(self._match, 1, self._kept)
+    def _after(self) -> _ReducedIcd:
+        return _ReducedIcd(self._match, 1, self._kept)
 
     @cached_property
-    def _in_old_nodes(self) -> _Cut:
+    def _in_old_nodes(self) -> _ReducedIcd:
         if all(node.old.name == node.new.name for node in self._match.nodes if node.both):
             return self._after
-        return _Cut(self._match, 1, self._kept, NODES)
+        return _ReducedIcd(self._match, 1, self._kept, NODES)
 
     @cached_property
-    def _under_old_owners(self) -> _Cut:
+    def _under_old_owners(self) -> _ReducedIcd:
         owners: list[DeclaredPair] = [*self._match.messages.values(), *self._match.enums.values()]
         if any(pair.both and is_called_otherwise(pair) for pair in owners):
-            return _Cut(self._match, 1, self._kept, OWNERS)
+            return _ReducedIcd(self._match, 1, self._kept, OWNERS)
         return self._in_old_nodes
 
     @property
@@ -129,22 +129,23 @@ class Generated:
         if old == new:
             return []
         real = dict(zip(new, self.new.get(id(pair), ()), strict=False))
-        found: list[tuple[Name | None, Name | None]] = []
+        changes: list[tuple[Name | None, Name | None]] = []
         for key in sorted({_sort(name) for name in (*old, *new)}):
             before, later = ([name for name in names if _sort(name) == key] for names in (old, new))
             if len(before) == len(later):
-                found += [(a, real.get(b, b)) for a, b in zip(before, later, strict=True) if a.text != b.text]
+                changes += [(a, real.get(b, b)) for a, b in zip(before, later, strict=True) if a.text != b.text]
             else:
-                found += [(a, None) for a in before if a not in later]
-                found += [(None, real.get(b, b)) for b in later if b not in before]
-        return found
+                changes += [(a, None) for a in before if a not in later]
+                changes += [(None, real.get(b, b)) for b in later if b not in before]
+        return changes
 
     def retyped(self, pair: FieldPair) -> list[tuple[str, str, str]]:
         """Language, old and new type of the raw value, where they differ."""
         if not _is_sound(pair.old) or not _is_sound(pair.new) or pair.is_of_struct:
             return []
-        types = ((one, self._before.type_of(one, pair), self._under_old_owners.type_of(one, pair)) for one in LANGUAGES)
-        return [(language, before, after) for language, before, after in types if before != after]
+        before, after = self._before, self._under_old_owners
+        types = ((language, before.type_of(language, pair), after.type_of(language, pair)) for language in LANGUAGES)
+        return [(language, old, new) for language, old, new in types if old != new]
 
 
 def is_called_otherwise(pair: IdentifiedPair) -> bool:
@@ -190,10 +191,10 @@ def idle_facts(pairs: Iterable[IdentifiedPair]) -> set[Difference]:
 
 def _texts(samples: list[FieldPair], side: int) -> list[list[tuple[str, str]]]:
     """The generated names of one side of each sample, by language, all in one message of an ICD of its own."""
-    marks = Marks[list[tuple[str, str]]]()
-    found: list[list[tuple[str, str]]] = [[] for _ in samples]
+    marks = SourceMarks[list[tuple[str, str]]]()
+    texts_of_samples: list[list[tuple[str, str]]] = [[] for _ in samples]
     fields = [
-        _sample(pair.new if side else pair.old, f"Sample {number}", marks.of(found[number]))
+        _sample(pair.new if side else pair.old, f"Sample {number}", marks.of(texts_of_samples[number]))
         for number, pair in enumerate(samples)
     ]
     for vocabulary in dict.fromkeys(pair.owner.new_node.vocabulary for pair in samples):
@@ -202,9 +203,9 @@ def _texts(samples: list[FieldPair], side: int) -> list[list[tuple[str, str]]]:
         message = message_with_lists(message, {})
         icd = Icd((Node("samples", "", "", "little", "lsb0", (message,), (), vocabulary=vocabulary),))
         for language in LANGUAGES:
-            for texts, one in marks.names(icd, language):
-                texts.append((language, one.text))
-    return found
+            for texts, identifier in marks.names(icd, language):
+                texts.append((language, identifier.text))
+    return texts_of_samples
 
 
 def _sample(line: Line, name: str, source: Map) -> Scalar:
@@ -234,17 +235,17 @@ def _is_sound(field: NodePlace) -> bool:
     return field.bits <= 64 and wanted.get(field.type, True)
 
 
-class _Cut:
+class _ReducedIcd:
     """One of both ICDs, with what is to be kept of it; every part has a mark of its own, by which its names are found."""
 
     def __init__(self, match: Match, side: int, kept: set[int], old_names: int = NOTHING) -> None:
         self.match, self.side, self.kept, self.old_names = match, side, kept, old_names
-        self.marks = Marks[IdentifiedPair]()
+        self.marks = SourceMarks[IdentifiedPair]()
         self.enums: dict[int, Enum] = {}
         self.messages: dict[int, Message] = {}  # id(pair) -> what it has become
         self.nodes: dict[int, LayoutNode] = {}  # id(pair) -> what its node has become
         icd = match.new if side else match.old
-        names = {one.name: self.name_of(pair) for pair in match.nodes if (one := self.side_of(pair)) is not None}
+        names = {node.name: self.name_of(pair) for pair in match.nodes if (node := self.side_of(pair)) is not None}
         nodes = [(node, tuple(self.enum(enum, names) for enum in node.enums)) for node in icd.nodes]
         self.icd = Icd(
             tuple(
@@ -269,31 +270,31 @@ class _Cut:
         keeps_its_old_name = not self.side or (self.old_names and pair.before is not None)
         return pair.old.name if keeps_its_old_name else pair.new.name
 
-    def marked(self, one: Thing, pair: IdentifiedPair | None, **more: Any) -> Thing:
+    def marked(self, thing: Thing, pair: IdentifiedPair | None, **more: Any) -> Thing:
         """The thing with a mark, and under its old name where that is asked for."""
         if pair is not None:
             more["source"] = self.marks.of(pair)
             if self.old_names == OWNERS and pair.before is not None and isinstance(pair, MessagePair | EnumPair):
                 more.update(name=pair.old.name, identifier=pair.old.identifier)
-        return replace(one, **more)
+        return replace(thing, **more)
 
     def enum(self, enum: Enum, names: dict[str, str]) -> Enum:
         pair = self.match.enums.get(id(enum))
         members = {id(self.side_of(p)): p for p in pair.parts} if pair is not None else {}
-        kept = [m for m in enum.members if id(m) in members and id(members[id(m)]) in self.kept]
-        own = tuple(self.marked(m, members[id(m)]) for m in kept)
-        made = self.marked(enum, pair, members=own, node=names.get(enum.node, enum.node))
-        self.enums[id(enum)] = made
-        return made
+        members_to_keep = [m for m in enum.members if id(m) in members and id(members[id(m)]) in self.kept]
+        own = tuple(self.marked(m, members[id(m)]) for m in members_to_keep)
+        marked_enum = self.marked(enum, pair, members=own, node=names.get(enum.node, enum.node))
+        self.enums[id(enum)] = marked_enum
+        return marked_enum
 
     def message(self, message: Message, names: dict[str, str]) -> Message:
         pair = self.match.messages[id(message)]
         layout = self.layout(message, pair)
-        made = message_with_lists(
+        marked_message = message_with_lists(
             self.marked(message, pair, layout=layout, node=names.get(message.node, message.node)), {}
         )
-        self.messages[id(pair)] = made
-        return made
+        self.messages[id(pair)] = marked_message
+        return marked_message
 
     def layout(self, message: Message, pair: MessagePair) -> Layout:
         """The layout of a message with the lines that are kept, each with its mark; structs are left out."""
@@ -306,12 +307,12 @@ class _Cut:
                 mark, enum = self.marks.of(part), self.enums.get(id(place.enum), place.enum)
                 nodes[id(place.node)] = with_attributes(place.node, source=mark, enum=enum)
                 self.nodes[id(part)] = nodes[id(place.node)]
-        known = {node.name for node in nodes.values()} | {part.counter for part in layout.parts if part.is_rest}
+        names = {node.name for node in nodes.values()} | {part.counter for part in layout.parts if part.is_rest}
         fixed = [nodes[id(node)] for node in layout.fixed if id(node) in nodes]
         derived = [nodes[id(node)] for node in layout.derived if id(node) in nodes]
         sequence: tuple[VariableNode, ...] = tuple(nodes[id(node)] for node in layout.sequence if id(node) in nodes)
         length = layout.length
-        if any(part.name not in known or part.counter not in known for part in layout.parts):
+        if any(part.name not in names or part.counter not in names for part in layout.parts):
             begins = {part.name: part.begin for part in layout.parts}
             fixed += [_of_full_size(node, 8 * begins[node.name]) for node in sequence]
             sequence, length = (), layout.longest
@@ -320,17 +321,17 @@ class _Cut:
             length=length,
             fixed=tuple(fixed),
             sequence=sequence,
-            derived=tuple(one for one in derived if known.issuperset(one.derivation.fields)),
+            derived=tuple(value for value in derived if names.issuperset(value.derivation.fields)),
         )
 
     @cached_property
     def names(self) -> Names:
         """Those of everything that was kept."""
-        found: dict[int, dict[Name, None]] = {}
+        names_by_pair: dict[int, dict[Name, None]] = {}
         types: dict[int, str] = {}  # Rust: id(pair) -> name of the type
         for language in LANGUAGES:
-            for pair, one in self.marks.names(self.icd, language):
-                text, stem = one.text, _stem(language, one.scope)
+            for pair, identifier in self.marks.names(self.icd, language):
+                text, stem = identifier.text, _stem(language, identifier.scope)
                 owner = pair.owner if isinstance(pair, (FieldPair, MemberPair)) else None
                 is_guard = owner is None and language == "c" and text.endswith("_H")  # of a header
                 if stem is None or is_guard or not text.isidentifier():
@@ -339,8 +340,8 @@ class _Cut:
                     if owner is None:
                         types.setdefault(id(pair), text)
                     stem = types.get(id(owner), "")
-                found.setdefault(id(pair), {})[Name(language, text, stem)] = None
-        return {key: tuple(names) for key, names in found.items()}
+                names_by_pair.setdefault(id(pair), {})[Name(language, text, stem)] = None
+        return {key: tuple(names) for key, names in names_by_pair.items()}
 
     def type_of(self, language: str, pair: FieldPair) -> str:
         """The type of the field's raw value in a language."""
@@ -354,13 +355,13 @@ class _Cut:
         if field.type == "enum" and field.enum is None:
             return f"u{field.bits}" if language == "rust" else "int"
         members = describe(self.icd).message(message).all_members
-        one = next(one for one in members if one.model.source is node.source)
+        member = next(member for member in members if member.model.source is node.source)
         if language == "rust":
-            return rust.raw_type(one)
+            return rust.raw_type(member)
         if language == "c":
             array = f"[{field.count}]" if field.count else ""
-            return f"uint8_t{array}[{field.bits // 8}]" if field.is_bytes else f"{c.type_of(one)}{array}"
-        return python.annotation(one).replace("_lazy.", "")
+            return f"uint8_t{array}[{field.bits // 8}]" if field.is_bytes else f"{c.type_of(member)}{array}"
+        return python.annotation(member).replace("_lazy.", "")
 
 
 def _of_full_size(node: VariableNode, at: int) -> VariableNode:

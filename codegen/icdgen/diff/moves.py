@@ -37,8 +37,8 @@ class Moves:
 class _Order:
     """The fields that are in both ICDs, as they stand in the frame of one."""
 
-    def __init__(self, kept: list[FieldPair], side: Callable[[FieldPair], Line]) -> None:
-        self.rows = sorted(kept, key=lambda pair: (side(pair).at, side(pair).name))
+    def __init__(self, pairs: list[FieldPair], side: Callable[[FieldPair], Line]) -> None:
+        self.rows = sorted(pairs, key=lambda pair: (side(pair).at, side(pair).name))
         self.rank = {id(pair): number for number, pair in enumerate(self.rows)}
 
     def before(self, pair: FieldPair) -> FieldPair | None:
@@ -48,10 +48,10 @@ class _Order:
 
 def moves(message: MessagePair) -> Moves:
     """The moves within a message that is in both ICDs."""
-    found = Moves()
-    if not any(pair.moved for pair in message.kept):
-        return found
-    old, new = _Order(message.kept, lambda pair: pair.old), _Order(message.kept, lambda pair: pair.new)
+    result = Moves()
+    if not any(pair.moved for pair in message.common):
+        return result
+    old, new = _Order(message.common, lambda pair: pair.old), _Order(message.common, lambda pair: pair.new)
     groups: dict[int, list[FieldPair]] = {}
     for pair in old.rows:
         if pair.moved:
@@ -60,11 +60,11 @@ def moves(message: MessagePair) -> Moves:
         for run in _runs(rows, old, new):
             move = Move(run, step)
             _causes(message, move, old, new)
-            found.moves.append(move)
-    found.moves.sort(key=lambda move: (move.fields[0].old.at, move.fields[0].new.at))
-    for move in found.moves:
-        found.causes.update(id(pair) for pair in (*move.gained, *move.lost))
-    return found
+            result.moves.append(move)
+    result.moves.sort(key=lambda move: (move.fields[0].old.at, move.fields[0].new.at))
+    for move in result.moves:
+        result.causes.update(id(pair) for pair in (*move.gained, *move.lost))
+    return result
 
 
 def _runs(rows: list[FieldPair], old: _Order, new: _Order) -> list[list[FieldPair]]:

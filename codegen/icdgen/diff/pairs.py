@@ -125,8 +125,8 @@ class FieldPair(SideBySide[Line]):
     def same_bits(self) -> bool:
         """Whether both lie on the same bits, however these are numbered; of a variable-length part, those of one element."""
         was, now = (
-            position(node, one, self.is_open)
-            for node, one in ((self.owner.old_node, self.old), (self.owner.new_node, self.new))
+            position(node, line, self.is_open)
+            for node, line in ((self.owner.old_node, self.old), (self.owner.new_node, self.new))
         )
         return was == now
 
@@ -134,7 +134,7 @@ class FieldPair(SideBySide[Line]):
     def is_open(self) -> bool:
         """Whether it is in a variable-length part of its message on one side."""
         sides = (self.owner.old, self.old), (self.owner.new, self.new)
-        return any(one.levels[0].node is node for message, one in sides for node in message.layout.sequence)
+        return any(line.levels[0].node is node for message, line in sides for node in message.layout.sequence)
 
     @property
     def is_of_struct(self) -> bool:
@@ -166,7 +166,7 @@ class MessagePair(_DeclaredPair[Message, FieldPair]):
         return Where(self.node.name, message=self.any.name)
 
     @property
-    def kept(self) -> list[FieldPair]:
+    def common(self) -> list[FieldPair]:
         """Fields that are in both, in the order of the old frame."""
         return [pair for pair in self.parts if pair.both]
 
@@ -244,13 +244,13 @@ def position(node: Node, line: Line, first_only: bool = False) -> Position:
     return tuple(piece for at in starts for piece in pieces_at(at, line.bits, own.byte, own.bit))
 
 
-def kind(one: Line) -> str:
+def kind(line: Line) -> str:
     """How the bits are read: as an unsigned or signed number, as a float, as bytes."""
-    if one.is_bytes:
+    if line.is_bytes:
         return "bytes"
-    if one.type in ("uint", "int", "enum", "bool"):
-        return "int" if one.signed else "unsigned"
-    return one.type
+    if line.type in ("uint", "int", "enum", "bool"):
+        return "int" if line.signed else "unsigned"
+    return line.type
 
 
 def differing(
@@ -258,9 +258,9 @@ def differing(
 ) -> Iterator[tuple[Any, Row | None, Row | None]]:
     """The rows of a list that differ, by their key and in its order; None where a side has no such row."""
     before, after = ({key(row): row for row in side} for side in (old, new))
-    for one in sorted(before.keys() | after.keys()):
-        if before.get(one) != after.get(one):
-            yield one, before.get(one), after.get(one)
+    for name in sorted(before.keys() | after.keys()):
+        if before.get(name) != after.get(name):
+            yield name, before.get(name), after.get(name)
 
 
 def place_of(

@@ -49,7 +49,7 @@ def ids(data: dict, others: tuple[int, ...]) -> Iterator[Case]:
 
 
 def _renamed(case: Case, pair: MessagePair) -> Case:
-    names = {p.old.name: p.new.name for p in pair.kept}
+    names = {p.old.name: p.new.name for p in pair.common}
     request = dict(case.request)
     if "raw" in request:
         request["raw"] = {names.get(name, name): value for name, value in request["raw"].items()}

@@ -22,11 +22,11 @@ def erratum_differs(pair: NodePair, ctx: Context) -> Iterator[Found]:
         assert entry is not None
         was, now = old.title if old else "", new.title if new else ""
         if old is not None and new is not None:
-            code, said, was, now = "DIF405", *_differences(old, new)
+            code, what, was, now = "DIF405", *_differences(old, new)
         else:
-            code, said = ("DIF403", "is new") if new else ("DIF404", "is gone")
-            said += "" if entry.is_note else f" ({_kind(entry)})"
-        text = f"{entry.label.lower()} {entry.id} {said}: {entry.title}"
+            code, what = ("DIF403", "is new") if new else ("DIF404", "is gone")
+            what += "" if entry.is_note else f" ({_kind(entry)})"
+        text = f"{entry.label.lower()} {entry.id} {what}: {entry.title}"
         where = pair.where()._replace(erratum=entry.id)
         places = place_of(old, ("id",)), place_of(new, ("id",))
         yield Found(text, ("name",), was, now, where=where, places=places, code=code)

@@ -73,8 +73,8 @@ _ID = ("id", "set_id", "get_id")
 
 def _exchanged(ctx: Context, before: list[Message], after: list[Message]) -> tuple[Message | None, Message | None]:
     """Of the messages of an id one that no longer has it, and one that has it now: of the same length, if there is such."""
-    left = [one for one in before if not any(ctx.pair(one) is ctx.pair(other) for other in after)]
-    come = [one for one in after if not any(ctx.pair(one) is ctx.pair(other) for other in before)]
+    left = [message for message in before if not any(ctx.pair(message) is ctx.pair(other) for other in after)]
+    come = [message for message in after if not any(ctx.pair(message) is ctx.pair(other) for other in before)]
     both = [(old, new) for old in left for new in come]
     return min(both, key=lambda pair: pair[0].length != pair[1].length, default=(None, None))
 

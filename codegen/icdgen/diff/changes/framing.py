@@ -23,25 +23,26 @@ def _short(text: str) -> str:
 @rule("DIF134", "node")
 @rule("DIF413", "node", severity="note")
 def fact_differs(pair: NodePair, ctx: Context) -> Iterator[Found]:
-    others, have_envelopes = ctx.other_envelopes(pair), ctx.have_envelopes(pair)
+    other_envelopes, have_envelopes = ctx.other_envelopes(pair), ctx.have_envelopes(pair)
     for fact in facts(pair.old, pair.new):
         was, now = shown(fact.old), shown(fact.new)
         keys: tuple[str, ...] = (fact.path.rsplit(".", 1)[-1],)
         is_around = have_envelopes and AROUND.fullmatch(fact.path)
-        is_spelling = is_around and not others and "checksums" not in fact.path  # as an order that is the node's
+        # A spelling, such as an order that is the node's anyway, changes no frame.
+        is_spelling = is_around and not other_envelopes and "checksums" not in fact.path
         if fact.is_word or is_spelling:
-            code, said, keys = "DIF413", "says otherwise", ()
+            code, what, keys = "DIF413", "says otherwise", ()
         else:
             was, now = _short(was), _short(now)
             gone = "DIF134" if PART.fullmatch(fact.path) else "DIF120" if is_around else "DIF121"
             if fact.new is None:
-                code, said = gone, f"is no longer stated; it was {was}"
+                code, what = gone, f"is no longer stated; it was {was}"
             elif fact.old is None:
-                code, said = gone, f"is stated now: {now}"
+                code, what = gone, f"is stated now: {now}"
             else:
-                code, said = "DIF120", f"is {now}, was {was}"
+                code, what = "DIF120", f"is {now}, was {was}"
         where = pair.where()._replace(section=fact.path)
-        yield Found(f"`{fact.path}` {said}", keys, was, now, where=where, places=fact.places, code=code)
+        yield Found(f"`{fact.path}` {what}", keys, was, now, where=where, places=fact.places, code=code)
 
 
 @rule("DIF122", "node")
@@ -50,17 +51,17 @@ def fact_differs(pair: NodePair, ctx: Context) -> Iterator[Found]:
 def mask_bit_differs(pair: NodePair, ctx: Context) -> Iterator[Found]:
     for bit, old, new in differing(pair.old.loggable, pair.new.loggable, lambda row: row.bit):
         if new is None:
-            code, said = "DIF123", f"no longer selects {_frame(old)}"
+            code, what = "DIF123", f"no longer selects {_frame(old)}"
         elif old is None:
-            code, said = "DIF124", f"selects {_frame(new)}"
+            code, what = "DIF124", f"selects {_frame(new)}"
         elif old.id != new.id:
-            code, said = "DIF122", f"selects {_frame(new)}, selected {_frame(old)}"
+            code, what = "DIF122", f"selects {_frame(new)}, selected {_frame(old)}"
         else:
             continue  # it is only called otherwise
         where = pair.where()._replace(section=f"loggable {bit}")
         places = (place_of(old, ("id",)), place_of(new, ("id",)))
         was, now = (f"telemetry {row.id}" if row else "" for row in (old, new))
-        yield Found(f"log mask bit {bit} {said}", ("id",), was, now, where=where, places=places, code=code)
+        yield Found(f"log mask bit {bit} {what}", ("id",), was, now, where=where, places=places, code=code)
 
 
 def _frame(row: Loggable | None) -> str:

@@ -40,8 +40,8 @@ def _places(first: FieldPair, causes: list[FieldPair]) -> Places:
     """Where the first field stands that moved, or what made it move."""
     old, new = first.places(("at",))
     for cause in causes:
-        one, other = cause.places(("at", "bits"))
-        old, new = (one if cause.before is not None else old), (other if cause.after is not None else new)
+        before, after = cause.places(("at", "bits"))
+        old, new = (before if cause.before is not None else old), (after if cause.after is not None else new)
     return old, new
 
 
@@ -57,16 +57,16 @@ def _by(move: Move) -> str:
 
 
 def _cause(move: Move) -> str:
-    said = []
+    causes = []
     if move.gained:
-        said.append(f"{some([p.new.name for p in move.gained])} inserted at bit {move.gained[0].new.at:,}")
+        causes.append(f"{some([p.new.name for p in move.gained])} inserted at bit {move.gained[0].new.at:,}")
     if move.lost:
-        said.append(f"{some([p.old.name for p in move.lost])} taken out at bit {move.lost[0].old.at:,}")
-    for one in move.resized:
-        said.append(f"{quote(one.new.name)} has {count(one.new.width, 'bit')}, had {one.old.width}")
+        causes.append(f"{some([p.old.name for p in move.lost])} taken out at bit {move.lost[0].old.at:,}")
+    for pair in move.resized:
+        causes.append(f"{quote(pair.new.name)} has {count(pair.new.width, 'bit')}, had {pair.old.width}")
     if move.reserved:
-        said.append(f"{bits(abs(move.by))} without a field {'inserted' if move.by > 0 else 'taken out'}")
-    return listing(said)
+        causes.append(f"{bits(abs(move.by))} without a field {'inserted' if move.by > 0 else 'taken out'}")
+    return listing(causes)
 
 
 @rule("DIF110", "field")
@@ -89,7 +89,7 @@ def count_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
 
 @rule("DIF128", "field")
 def condition_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    was, now = (_needs(one, message) for one, message in ((pair.old, pair.owner.old), (pair.new, pair.owner.new)))
+    was, now = (_needs(line, message) for line, message in ((pair.old, pair.owner.old), (pair.new, pair.owner.new)))
     if _conditions(pair.old) != _conditions(pair.new):
         text = f"{quote(pair.new.name)} is {now}, was {was}"
         yield Found(
@@ -98,13 +98,13 @@ def condition_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
 
 
 def _conditions(field: Line) -> set[tuple[str, frozenset[int]]]:
-    return {(one.field, frozenset(one.values)) for one in field.when}
+    return {(condition.field, frozenset(condition.values)) for condition in field.when}
 
 
 def _needs(field: Line, message: Message) -> str:
     if not field.when:
         return "always there"
-    return f"there if {' and '.join(condition_text(one, message) for one in field.when)}"
+    return f"there if {' and '.join(condition_text(condition, message) for condition in field.when)}"
 
 
 def _an_array(elements: int) -> str:
@@ -131,9 +131,9 @@ def order_changed(pair: NodePair, ctx: Context) -> Iterator[Found]:
         return
     fields, messages = [], set()
     for message in pair.messages:
-        for one in message.kept:
-            if one.old.at == one.new.at and one.old.width == one.new.width and not one.same_bits:
-                fields.append(one.new.name)
+        for field in message.common:
+            if field.old.at == field.new.at and field.old.width == field.new.width and not field.same_bits:
+                fields.append(field.new.name)
                 messages.add(message.new.name)
     for key in ("byte_order", "bit_order"):
         before, after = getattr(pair.old, key), getattr(pair.new, key)
@@ -152,7 +152,7 @@ def own_order_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
         own = getattr(old, key), getattr(new, key)
         if own[0] == own[1]:
             continue  # if it is read otherwise, its node has turned round
-        was, now = (one or getattr(node, key) for one, node in zip(own, nodes, strict=True))
+        was, now = (order or getattr(node, key) for order, node in zip(own, nodes, strict=True))
         if was != now:
             text = f"the {key.replace('_', ' ')} of {quote(new.name)} is {now}, was {was}"
             yield Found(text, (key, "type"), was, now)

@@ -27,19 +27,19 @@ def _either(old: Name | None, new: Name | None) -> Name:
 
 def lines(renamed: Renamed) -> tuple[str, ...]:
     """``C: `a` -> `b` and 3 more``, a line a language. Where all came, or all went, just the names."""
-    found: dict[str, list[str]] = {}
+    rows_by_language: dict[str, list[str]] = {}
     one_way = any(all(pair[side] is None for pair in renamed) for side in (0, 1))
     for old, new in sorted(renamed, key=lambda names: not _either(*names).text.endswith("_t")):  # types first
-        said = f"{f'`{old.text}`' if old else '(new)'} -> {f'`{new.text}`' if new else '(gone)'}"
+        text = f"{f'`{old.text}`' if old else '(new)'} -> {f'`{new.text}`' if new else '(gone)'}"
         if one_way:
-            said = f"`{_either(old, new).text}`"
-        rows = found.setdefault(_either(old, new).language, [])
-        if said not in rows:
-            rows.append(said)
+            text = f"`{_either(old, new).text}`"
+        rows = rows_by_language.setdefault(_either(old, new).language, [])
+        if text not in rows:
+            rows.append(text)
     result = []
-    for language, rows in sorted(found.items()):
-        rest = [f"{len(rows) - MOST} more"] if len(rows) > MOST else []
-        result.append(f"{TITLES[language]}: {listing(rows[:MOST] + rest)}")
+    for language, rows in sorted(rows_by_language.items()):
+        others = [f"{len(rows) - MOST} more"] if len(rows) > MOST else []
+        result.append(f"{TITLES[language]}: {listing(rows[:MOST] + others)}")
     return tuple(result)
 
 
@@ -88,10 +88,10 @@ def retyped(pair: FieldPair, ctx: Context) -> Iterator[Found]:
         return
     changed = ctx.generated.retyped(pair)
     if changed:
-        said = tuple(f"{TITLES[language]}: `{a}` -> `{b}`" for language, a, b in changed)
+        details = tuple(f"{TITLES[language]}: `{a}` -> `{b}`" for language, a, b in changed)
         words = listing([TITLES[language] for language, _, _ in changed])
         text = f"{quote(new.name)} has another type in {words}"
-        yield Found(text, ("type", "bits", "enum", "count", "when"), changed[0][1], changed[0][2], said)
+        yield Found(text, ("type", "bits", "enum", "count", "when"), changed[0][1], changed[0][2], details)
 
 
 @rule("DIF308", "field")
@@ -115,9 +115,9 @@ def words_split_otherwise(pair: NodePair, ctx: Context) -> Iterator[Found]:
         return
     renamed: Renamed = []
     for owner in pair.declared:
-        for one in (owner, *owner.parts):
-            if one.both and not is_called_otherwise(one) and not owner.is_of_another_node:
-                renamed += ctx.generated.renamed(one)
+        for part in (owner, *owner.parts):
+            if part.both and not is_called_otherwise(part) and not owner.is_of_another_node:
+                renamed += ctx.generated.renamed(part)
     if renamed:
         text = f"words are split in another way: {count(len(renamed), 'generated name')} of `{pair.new.name}` change"
         was, now = (", ".join(sorted(set(a) - set(b))) for a, b in ((old, new), (new, old)))
@@ -151,7 +151,7 @@ def became_a_view(pair: FieldPair, ctx: Context) -> Iterator[Found]:
         yield Found(f"{quote(pair.new.name)} is {now}, was {was}", ("view", "at", "name"), was, now, details)
 
 
-def _standing(one: Line) -> str:
-    if one.derived is not None:
+def _standing(line: Line) -> str:
+    if line.derived is not None:
         return "derived from other fields"
-    return "a view" if one.view else "a field with bits of its own"
+    return "a view" if line.view else "a field with bits of its own"

@@ -47,19 +47,19 @@ def scale_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
 def is_derived_otherwise(pair: FieldPair) -> bool:
     """Whether a value is derived in both, and not in the same way."""
     old, new = pair.old.derived, pair.new.derived
-    names = {one.old.name: one.new.name for one in pair.owner.kept}
+    names = {field.old.name: field.new.name for field in pair.owner.common}
     return old is not None and new is not None and old.sense(names) != new.sense({})
 
 
 def _points(old: Curve | Scale, new: Curve | Scale) -> tuple[str, ...]:
     """Which points of a table are others."""
-    tables = [one for one in (old, new) if isinstance(one, Curve) and one.points]
+    tables = [curve for curve in (old, new) if isinstance(curve, Curve) and curve.points]
     if len(tables) < 2:
         return ()
-    was, now = (frozenset(one.points) for one in tables)
-    went, came = (sorted(one) for one in (was - now, now - was))
-    told = (("It had", went), ("It has", came))
-    return tuple(f"{what} {listing(_few(list(map(point_text, points))))}." for what, points in told if points)
+    was, now = (frozenset(curve.points) for curve in tables)
+    went, came = (sorted(points) for points in (was - now, now - was))
+    sides = (("It had", went), ("It has", came))
+    return tuple(f"{what} {listing(_few(list(map(point_text, points))))}." for what, points in sides if points)
 
 
 def _few(points: list[str]) -> list[str]:
@@ -97,14 +97,14 @@ def const_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
 
 def _specials(field: Line) -> list[Special]:
     """The values that have a meaning; of floats as numbers, for their bits are others where the width is."""
-    return [replace(one, value=0) if one.number else one for one in field.special]
+    return [replace(special, value=0) if special.number else special for special in field.special]
 
 
 @rule("DIF210", "field", severity="warning")
 @rule("DIF412", "field", severity="note")
 def special_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     old_ones, new_ones = _specials(pair.old), _specials(pair.new)
-    for (named, raw), old, new in differing(old_ones, new_ones, lambda one: (one.number, one.value)):
+    for (named, raw), old, new in differing(old_ones, new_ones, lambda special: (special.number, special.value)):
         value = named or raw
         was, now = old.meaning if old else "", new.meaning if new else ""
         code, text = "DIF210", f"the raw value {value} of {quote(pair.new.name)}"

@@ -120,7 +120,7 @@ def displayed_otherwise(pair: FieldPair, ctx: Context) -> Iterator[Found]:
 
 @rule("DIF409", "node", severity="note")
 def missing_changed(pair: NodePair, ctx: Context) -> Iterator[Found]:
-    for key, was, now in differing(pair.old.missing, pair.new.missing, lambda one: (one.kind, one.id)):
+    for key, was, now in differing(pair.old.missing, pair.new.missing, lambda entry: (entry.kind, entry.id)):
         verb = _verb(was, now, "is missing from the manual", "is no longer missing", "is missing for another reason")
         name = now.name if now else was.name if was else ""
         text = f"{key[0]} {key[1]} {quote(name)} {verb}"
@@ -139,7 +139,7 @@ def _sections(pair: NodePair, key: str) -> Places:
 def order_restated(pair: NodePair, ctx: Context) -> Iterator[Found]:
     if orders(pair.old) == orders(pair.new):
         return
-    if any(not one.same_bits for message in pair.messages for one in message.kept):
+    if any(not field.same_bits for message in pair.messages for field in message.common):
         return
     was, now = (" ".join(orders(side)) for side in (pair.old, pair.new))
     text = f"the order of bytes and bits of `{pair.new.name}` is stated otherwise, no field is read otherwise"
@@ -150,8 +150,8 @@ def order_restated(pair: NodePair, ctx: Context) -> Iterator[Found]:
 def unit_described_otherwise(pair: NodePair, ctx: Context) -> Iterator[Found]:
     for symbol, was, now in differing(pair.old.units, pair.new.units, lambda unit: unit.symbol):
         verb = _verb(was, now, "is declared now", "is no longer declared", "is described otherwise")
-        said = [" ".join(filter(None, u[1:])) if u else "" for u in (was, now)]
-        yield Found(f"the unit {quote(symbol)} {verb}", (), said[0], said[1], places=_sections(pair, "units"))
+        texts = [" ".join(filter(None, u[1:])) if u else "" for u in (was, now)]
+        yield Found(f"the unit {quote(symbol)} {verb}", (), texts[0], texts[1], places=_sections(pair, "units"))
 
 
 @rule("DIF415", "node", severity="note")
