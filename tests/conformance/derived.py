@@ -5,8 +5,8 @@ from __future__ import annotations
 from hypothesis import strategies as st
 
 from icdgen.icd.derived import parse
-from icdgen.icd.derived_values import EXPONENT_BITS
 from icdgen.icd.formula import FormulaError
+from icdgen.icd.roles import EXPONENT
 
 _ALONE = ("count", "when", "bitfields", "struct", "up_to")
 
@@ -38,7 +38,7 @@ def derived(draw, fields: list[dict]) -> dict:
 
 def _is_exponent(field: dict) -> bool:
     is_plain = field["type"] != "float" and "formula" not in field and "points" not in field
-    return is_plain and field["bits"] <= EXPONENT_BITS
+    return is_plain and field["bits"] <= EXPONENT.most_bits
 
 
 @st.composite

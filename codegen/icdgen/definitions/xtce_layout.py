@@ -23,6 +23,7 @@ from icdgen.definitions.wording import line
 from icdgen.definitions.xtce_calibration import fixed, number
 from icdgen.definitions.xtce_names import Names, beside, called
 from icdgen.definitions.xtce_types import Piece, Types, described, meant, repeated
+from icdgen.icd.roles import COUNTER, reasons_against
 from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS
 
 OPEN = "IMP080"
@@ -374,9 +375,8 @@ def _is_named(part: Part, reference: str) -> bool:
 
 
 def _counted(counter: Part, piece: Piece, most: int) -> int:
-    """The most elements, or bytes, that a field may count; 0 if it may not."""
-    odd = counter.item.keys() & {"formula", "points", "const", "count", "when", "view"}
-    if piece.plus is None or odd or counter.item["type"] != "uint" or not counter.bits:
+    """Return the most elements, or bytes, that a field can count; 0 if it cannot count them."""
+    if piece.plus is None or not counter.bits or reasons_against(counter.item, COUNTER):
         return 0
     counted = min(most, (1 << counter.bits) - 1 + piece.plus)
     return counted if counted >= max(1, piece.plus) else 0

@@ -8,15 +8,12 @@ from icdgen.icd.enumeration import Enum
 from icdgen.icd.fault import Fault
 from icdgen.icd.layout import Condition, LayoutNode
 from icdgen.icd.located import Map, unread
+from icdgen.icd.roles import CONDITION, INTEGERS, reasons_against
 from icdgen.icd.suggestions import suggestion
 from icdgen.icd.trees import mappings
 
 _LEAST = "`when` names a field that every frame has: an integer without a formula, an enumeration value, or a flag"
-_PLAIN = ("uint", "int", "enum", "bool")
-_TYPES = (*_PLAIN, "float", "bytes", "text")
-_ODD = {"when": "is optional itself", "count": "is an array", "size": "has a variable length", "bitfields": "is a split field",
-    "formula": "is scaled", "points": "is scaled",
-}  # fmt: skip
+_TYPES = (*INTEGERS, "float", "bytes", "text")
 
 
 def _given(item: Map) -> Map:
@@ -54,8 +51,10 @@ def faults_of_names(message: Map, item: Map) -> Iterator[Fault]:
             yield Fault.at_key(when, name, text, *suggestion(name, names, _LEAST))
         elif not _is_sound(known[name]):
             continue  # a finding already
-        elif why := "is the field itself" if name == item["name"] else _odd(known[name]):
-            yield Fault.at_key(when, name, f"`{item['name']}` cannot depend on `{name}`: it {why}", _LEAST)
+        elif name == item["name"]:
+            yield Fault.at_key(when, name, f"`{name}` cannot depend on itself", _LEAST)
+        elif reasons := reasons_against(known[name], CONDITION):
+            yield Fault.at_key(when, name, f"`{item['name']}` cannot depend on `{name}`: it {reasons[0]}", _LEAST)
 
 
 def faults_of_values(message: Map, item: Map, enums: Mapping[str, Enum]) -> Iterator[Fault]:
@@ -127,18 +126,9 @@ def _allowed(field: Map, enums: Mapping[str, Enum]) -> str:
     return f"is {low:,} to {high:,}"
 
 
-def _odd(field: Map) -> str:
-    """Why nothing can depend on a field, as the end of a sentence; empty if something can."""
-    if odd := next((words for key, words in _ODD.items() if key in field), ""):
-        return odd
-    if field.get("view"):
-        return "is an overlay field"
-    return "" if field.get("type") in _PLAIN else f"is `{field.get('type')}`"
-
-
 def _decides(field: Map) -> bool:
     """Whether something can depend on a field."""
-    return _is_sound(field) and not _odd(field)
+    return _is_sound(field) and not reasons_against(field, CONDITION)
 
 
 def _is_sound(field: Map) -> bool:
@@ -146,7 +136,7 @@ def _is_sound(field: Map) -> bool:
     kind, bits = field.get("type"), field.get("bits", 1 if "size" in field else 0)
     if kind not in _TYPES or type(bits) is not int or not isinstance(field.get("enum", ""), str):
         return False
-    return 0 < bits <= 64 or (bits > 64 and kind not in _PLAIN)
+    return 0 < bits <= 64 or (bits > 64 and kind not in INTEGERS)
 
 
 def _fields(message: Map) -> dict[str, Map]:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
+from icdgen.icd.roles import SPLIT, reasons_against
 from icdgen.icd.trees import mappings
 
 OF_A_WHOLE = ("unit", "formula", "points", "outside", "const", "special", "min", "max", "above", "below", "display")
@@ -22,16 +23,10 @@ def parts_of(field: Map) -> list[Map]:
 def obstacles(field: Map, byte_order: str, bit_order: str) -> Iterator[Fault]:
     """What is wrong with the division; the parts are `parts_of` it."""
     name, bits = f"`{field['name']}`", field["bits"]
-    if "count" in field:
-        message = f"{name} is an array, and `bitfields` divide one number"
-        yield Fault.at(
-            field, "bitfields", message, "write a field for each element, or the parts as fields of the message"
-        )
-        return
-    if field["type"] != "uint" or bits > 64:
-        what = f"{name} is `{field['type']}`" if field["type"] != "uint" else f"{name} has {bits:,} bits"
-        message = f"`bitfields` divide an unsigned number, and {what}"
-        yield Fault.at(field, "bitfields", message, "make the parts fields of the message")
+    if reasons := reasons_against(field, SPLIT):
+        help = "write a field for each element, or " if "count" in field else ""
+        message = f"{name} cannot have `bitfields`: it {reasons[0]}"
+        yield Fault.at(field, "bitfields", message, f"{help}make the parts fields of the message")
         return
     for key in OF_A_WHOLE:
         if key in field:

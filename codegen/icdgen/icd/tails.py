@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
+from icdgen.icd.roles import COUNTER, reasons_against
 from icdgen.icd.suggestions import suggestion, yaml_text
 from icdgen.icd.trees import mappings
 
@@ -120,9 +121,9 @@ def faults_of_count(message: Map, item: Map) -> Iterator[Fault]:
     if same is not None:
         text = f"`{said}` counts both `{same['name']}` and {name}"
         yield Fault.at(item, key, text, "name another counter: each variable-length field needs its own")
-    odd = _odd(counter, message)
-    if odd:
-        text = f"`{counter['name']}` cannot count {name}: it {odd}"
+    reason = _reason_against(counter, message)
+    if reason:
+        text = f"`{counter['name']}` cannot count {name}: it {reason}"
         help = "name an unsigned number without a formula, within the `length` of the message"
         yield Fault.at(item, key, text, help)
         return
@@ -145,22 +146,18 @@ def _is_unknown(message: Map, item: Map) -> bool:
     return counting(item).name != REST and counter_of(message, item) is None
 
 
-def _can_count(one: Map, message: Map) -> bool:
-    return not _is_sized(one) and not _odd(one, message)
+def _can_count(field: Map, message: Map) -> bool:
+    """Return whether a field can count elements."""
+    return not _is_sized(field) and not _reason_against(field, message)
 
 
-def _odd(counter: Map, message: Map) -> str:
-    """Why a field cannot count, as the end of a sentence; empty if it can."""
-    if counter.get("type") != "uint" or not counter.keys().isdisjoint(("formula", "points")):
-        return "is scaled" if counter.get("type") == "uint" else f"is `{counter.get('type')}`"
-    for key, words in (("count", "is an array"), ("bitfields", "is a split field"), ("const", "is constant")):
-        if key in counter:
-            return words
-    if counter.get("view"):
-        return "is an overlay field"
-    if counter["at"] + counter["bits"] > 8 * message["length"]:
-        return "is placed behind the `length` of the message"
-    return ""
+def _reason_against(counter: Map, message: Map) -> str:
+    """Return why a field cannot count elements, as the end of a sentence; empty if it can."""
+    reasons = reasons_against(counter, COUNTER)
+    if reasons:
+        return reasons[0]
+    is_behind = counter["at"] + counter["bits"] > 8 * message["length"]
+    return "is placed behind the `length` of the message" if is_behind else ""
 
 
 def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Fault]:

@@ -9,6 +9,7 @@ from icdgen.icd.fault import Fault
 from icdgen.icd.layout import NodePlace
 from icdgen.icd.located import Map, Seq, unread
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Node
+from icdgen.icd.roles import INTEGERS, PROTOCOL, Role, reasons_against
 from icdgen.icd.rules.context import Context, section_of
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.protocol_limits import roles_stand_once
@@ -19,12 +20,6 @@ from icdgen.icd.rules.wording import count, quote
 from icdgen.icd.trees import at_path, mappings, named
 
 BUSES = ("uart", "i2c", "can")
-LEAST_BITS = {"id": 8, "parameter": 2, "type": 2, "counter": 8, "offset": 16, "length": 8, "size": 16, "number": 8,
-    "checksum": 16, "time": 32, "period": 8,
-}  # fmt: skip
-"""Types of fields for the numbers of a procedure."""
-
-AS_BYTES = ("bytes", "mask")  # roles of fields that are taken as they are
 INDEX_ROLES = ("type", "counter", "checksum", "size", "time", "meta")
 ROWS = (("uart", "acknowledge", "data"), ("index_file", "entry"), ("telemetry_log", "header"), ("telemetry_log", "entry"),
     ("unsolicited_log", "message"))  # fmt: skip
@@ -97,17 +92,9 @@ def _fields(owner: Map, keys: Iterable[str], fields: Iterable[NodePlace]) -> Ite
         other = seen.setdefault(field.name, key)
         if other != key:
             yield Fault.at(owner, key, f"{quote(field.name)} is `{other}` already", "name the field of each part")
-        elif problem := _unfit(key, field):
-            yield Fault.at(owner, key, f"{quote(field.name)} cannot be `{key}`: {problem}", "name another field")
-
-
-def _unfit(role: str, field: NodePlace) -> str:
-    if role in AS_BYTES:
-        return "" if field.is_bytes else "it is read as bytes, but is a number"
-    if field.is_bytes or field.type == "float":
-        return f"it is read as a number, but is {field.type}"
-    least = LEAST_BITS.get(role, 1)
-    return f"it has {count(field.bits, 'bit')}, but needs {least} at least" if field.bits < least else ""
+        elif reasons := reasons_against(field.scalar, PROTOCOL.get(key, Role(INTEGERS))):
+            text = f"{quote(field.name)} cannot be `{key}`: it {reasons[0]}"
+            yield Fault.at(owner, key, text, "name another field")
 
 
 def _telecommands_once(node: Node) -> Iterator[Fault]:
