@@ -112,6 +112,15 @@ def test_members_stand_in_a_cell_or_in_its_lines(tmp_path):
     ]
 
 
+def test_members_keep_commas_in_names_and_leave_nothing_silently(tmp_path):
+    rules = RULE.replace("Type: type}", "Type: type, Values: members}")
+    rows = "Byte\tName\tType\tValues\n0\tMode\tu8\t0: off, 1: slow, but steady\n"
+    tree = read(tmp_path, HEADING + rows, rules)[1]
+    assert [(m["value"], m["name"]) for m in tree["enums"][0]["members"]] == [(0, "off"), (1, "slow, but steady")]
+    result, _ = read(tmp_path, HEADING + rows.replace("0: off", "off"), rules)
+    assert "`members` leaves `off`" in found(result, "IMP104")[0] and result.failed
+
+
 def test_a_rule_takes_over_the_keys_of_another(tmp_path):
     rows = "Byte\tName\tType\n0\tMode\tu8\n"
     text = f"Replies\n\n{HEADING}{rows}\nCommands\n\nMotor start (0x22)\n\n{rows}"

@@ -185,7 +185,8 @@ class Builder:
     def enumeration(self, draft: Draft, part: Part) -> str:
         """The name of the enumeration with the field's members; one for all fields of this name and these members."""
         members = [ReadMember(value, name) for value, name in draft.members]
-        for name in (draft.name, f"{part.name} {draft.name}".strip(), f"{part.name} {draft.name} {draft.at}"):
+        stated = [normalised(name)] if (name := draft.roles.get("enumeration")) else []
+        for name in (*stated, draft.name, f"{part.name} {draft.name}".strip(), f"{part.name} {draft.name} {draft.at}"):
             own = self.enums.get(name)
             if own is None:
                 own = self.enums[name] = ReadEnum(name, members, part.table)

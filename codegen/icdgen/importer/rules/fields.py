@@ -22,8 +22,9 @@ from icdgen.importer.words import tidy_unit
 
 MOST_BITS = 64  # of a number
 _EMPTY = ("", "-", "–", "—", "n/a", "none")
-_MEMBER = re.compile(
-    r"(?P<value>0x[0-9a-f]+|0b[01]+|-?[0-9]+)\s*[:=–-]?\s*(?P<name>[^;,\n]*?[^\s;,])\s*(?=[;,\n]|\Z)", re.I
+_VALUE = r"(?:0x[0-9a-f]+|0b[01]+|-?[0-9]+)"
+_MEMBER = re.compile(  # a comma separates members only in front of a value: names may contain one
+    rf"(?P<value>{_VALUE})\s*[:=–-]?\s*(?P<name>[^;\n]*?[^\s;,])\s*(?:[;\n]|,(?=\s*{_VALUE})|\Z)", re.I
 )
 
 
@@ -79,6 +80,8 @@ class FieldReader:
         printed = self.type_of(roles, where, spot)
         if numbers is None or printed is None:
             return None
+        if roles.get("group") and not roles.get("counter") and not roles.get("rest"):
+            numbers.pop("count", None)  # says how often the group is repeated, not the field
         place = self.place(numbers, roles)
         sized = self.size(numbers, printed, roles, where, spot)
         if sized is None:
@@ -240,6 +243,15 @@ class FieldReader:
         unit = tidy_unit(roles.get("unit")).strip("()")
         if unit.casefold() not in _EMPTY:
             made.unit = unit
+        made.const = roles.get("const") or made.const
+        if made.const and whole_number(made.const) is None:
+            self.error(
+                "IMP023",
+                f"{where}: `const` is `{made.const[:40]}`, which is not a number",
+                spot,
+                "correct the pattern or the table file",
+            )
+            made.const = ""
         formula = roles.get("formula")
         if formula.casefold() not in _EMPTY:
             scaled = formulas.per_step(formula, descriptions.names(self.profile))
@@ -302,6 +314,14 @@ class FieldReader:
 
     def members(self, roles: Roles, where: str, spot: Spot) -> list[tuple[int, str]]:
         printed = roles.members + [(m["value"], m["name"]) for m in _MEMBER.finditer(roles.get("members"))]
+        left = _MEMBER.sub("", roles.get("members")).strip(" ;,\n")
+        if left:
+            self.error(
+                "IMP104",
+                f"{where}: `members` leaves `{left[:60]}`, which is no value with a name",
+                spot,
+                "write `0: off; 1: on`, or take values and names with patterns under `lines`",
+            )
         made = []
         for text, name in printed:
             value = whole_number(text, self.rule.base)

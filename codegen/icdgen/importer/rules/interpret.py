@@ -99,13 +99,18 @@ class _Interpreter:
         shared = {role: text for role, text in given.items() if role not in MESSAGE_ROLES}
         reader = FieldReader(rule, table, self.profile, self.order, self.notes)
         parts: dict[tuple[str, ...], Part] = {}
+        of_message = set(MESSAGE_ROLES)
+        if rule.what in ("message", "registers"):
+            of_message.remove("enumeration")  # the name of the enumeration of a field
         for roles in read_roles(rule, table, titles, rows, self.known, self.notes):
+            is_field = not set(roles.given) <= of_message | set(rule.each)
             roles.given = {**shared, **roles.given}
-            own = {role: roles.given.pop(role) for role in list(roles.given) if role in MESSAGE_ROLES}
+            own = {role: roles.given.pop(role) for role in list(roles.given) if role in of_message}
             key = tuple(own.get(role, "") for role in ("message", "id", "set_id", "get_id", "of"))
             part = parts.setdefault(key, Part(rule, table, dict(message)))
             part.given.update(own)
-            self.row(part, roles, reader)
+            if is_field or not own or rule.what not in ("message", "registers"):
+                self.row(part, roles, reader)  # else the row is a message without fields
         if not parts and {"message", "id", "set_id"} & set(message) and rule.what in ("message", "registers"):
             parts[()] = Part(rule, table, message)  # without parameters
         self.parts += parts.values()

@@ -37,6 +37,7 @@ VALUE_ROLES = {
     "max": "highest physical value",
     "value": "value of a member or of a point",
     "up_to": "largest number of elements",
+    "const": "the one valid raw value",
 }
 TEXT_ROLES = {
     "name": "name of the field",
@@ -68,7 +69,7 @@ MESSAGE_ROLES = {
     "mask": "mask of bytes in hexadecimal of which one bit selects a frame for a log",
 }
 ROLES = PLACE_ROLES | VALUE_ROLES | TEXT_ROLES | MESSAGE_ROLES
-INTEGERS = frozenset({*PLACE_ROLES, "value", "id", "set_id", "get_id", "length", "up_to"} - {"part"})
+INTEGERS = frozenset({*PLACE_ROLES, "value", "id", "set_id", "get_id", "length", "up_to", "const"} - {"part"})
 NUMBERS = frozenset({"scale", "offset", "bias", "min", "max"})
 _PATTERN_OF = {
     **dict.fromkeys(ROLES, TEXT),
