@@ -33,6 +33,8 @@ _BUILT_IN = {
     "html": "icdgen.backends.html:HtmlBackend",
     "assurance": "icdgen.backends.assurance:AssuranceBackend",
     "xtce": "icdgen.backends.xtce:XtceBackend",
+    "xlsx": "icdgen.backends.tables:XlsxBackend",
+    "csv": "icdgen.backends.tables:CsvBackend",
 }
 
 
@@ -47,8 +49,8 @@ class Backend(Language, Protocol):
     # Not of ours, but of plug-ins: `templates` and `runtime`, the folders (`Path`) of what it renders and of what it copies.
     # Files of `--templates` go before those of either.
 
-    def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
-        """Every file as relative path and text, in a fixed order."""
+    def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str | bytes]]:
+        """Every file as relative path and content, a text or bytes, in a fixed order."""
 
 
 class UnknownBackend(UserError):

@@ -40,13 +40,13 @@ class PlugIn:
             raise UserError(f"there are {len(points)} backends `{points[0].name}`: {each}", "uninstall all but one")
         return cls(points[0])
 
-    def files(self, icd: Icd, render: Any) -> Iterator[tuple[PurePosixPath, str]]:
+    def files(self, icd: Icd, render: Any) -> Iterator[tuple[PurePosixPath, str | bytes]]:
         """Those of the backend."""
         with self._named("failed"):
             for file in self._files(icd, render):
                 path, text = file
-                if not (isinstance(path, PurePath) and isinstance(text, str)):
-                    raise TypeError(f"`files` gives pairs of path and text, not {file!r:.100}")
+                if not (isinstance(path, PurePath) and isinstance(text, (str, bytes))):
+                    raise TypeError(f"`files` gives pairs of path and text or bytes, not {file!r:.100}")
                 yield PurePosixPath(path), text
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:

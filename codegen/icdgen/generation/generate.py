@@ -15,7 +15,7 @@ from icdgen.icd.loaded import Loaded
 from icdgen.model_cache import load_checked
 from icdgen.render import Renderer
 
-Files = Iterable[tuple[PurePosixPath, str]]  # path below the folder of a language, and text
+Files = Iterable[tuple[PurePosixPath, str | bytes]]  # path below the folder of a language, and content
 
 
 @dataclass(eq=False, repr=False)

@@ -31,11 +31,11 @@ class Plan:
         return bool(self.write or self.remove)
 
 
-def plan(out: Path, language: str, files: Iterable[tuple[PurePosixPath, str]]) -> Plan:
+def plan(out: Path, language: str, files: Iterable[tuple[PurePosixPath, str | bytes]]) -> Plan:
     """Compares. Raises `UserError` where a file that is not ours stands in the way, or two outputs differ only in case."""
     made = Plan(out, language, {})
     folded: dict[str, str] = {}
-    for path, text in files:
+    for path, content in files:
         name = str(path)
         other = folded.setdefault(name.casefold(), name)
         if other != name or name in made.files:
@@ -44,9 +44,9 @@ def plan(out: Path, language: str, files: Iterable[tuple[PurePosixPath, str]]) -
                 "names that differ only in case clash on some systems: give one of them an `identifier:`",
             )
         try:
-            made.files[name] = text.encode("utf-8")
+            made.files[name] = content if isinstance(content, bytes) else content.encode("utf-8")
         except UnicodeEncodeError as error:
-            what = f"U+{ord(text[error.start]):04X}, which is no character"
+            what = f"U+{ord(error.object[error.start]):04X}, which is no character"
             raise UserError(f"{name} would hold {what}", "mend the template") from None
     ours = manifest.read(out, language)
     for name, data in made.files.items():

@@ -50,7 +50,9 @@ def make(
         render = Renderer(HtmlBackend.name, templates)
         backend = HtmlBackend(older)
         backend.packages = packages or Packages()
-        made.files = {str(path): text for path, text in watch(backend.files(loaded.icd, render))}
+        made.files = {
+            str(path): page for path, page in watch(backend.files(loaded.icd, render)) if isinstance(page, str)
+        }
         made.inputs |= render.looked_at
     return made
 

@@ -42,9 +42,10 @@ def icd_digest(icd: Icd) -> str:
     return sha256("".join(f"{node.name} {node.digest}\n" for node in icd.nodes).encode()).hexdigest()
 
 
-def code_digest(files: Iterable[tuple[PurePosixPath, str]]) -> str:
+def code_digest(files: Iterable[tuple[PurePosixPath, str | bytes]]) -> str:
     """The digest of generated files, by their names and contents."""
-    lines = sorted(f"{path} {sha256(text.encode()).hexdigest()}\n" for path, text in files)
+    contents = ((path, made.encode() if isinstance(made, str) else made) for path, made in files)
+    lines = sorted(f"{path} {sha256(data).hexdigest()}\n" for path, data in contents)
     return sha256("".join(lines).encode()).hexdigest()
 
 

@@ -1,0 +1,89 @@
+"""A node -> the rows of its table: one per field, with the message that it belongs to."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+
+from icdgen.icd.lines import Line, lines
+from icdgen.icd.located import Map, plain
+from icdgen.icd.model import Message, Node
+
+Cell = int | str
+Row = list[Cell]
+HEADINGS = ["Message", "ID", "Set ID", "Get ID", "Kind", "Group", "Length", "Message description", "Byte", "Bit", "Bits", "Name",
+            "Type", "Count", "Repeated group", "Counter", "Up to", "Unit", "Formula", "Min", "Max", "Enumeration", "Members",
+            "Constant", "Description", "Further"]  # fmt: skip
+_SHOWN = frozenset({
+    "at", "bits", "name", "type", "count", "size", "up_to", "struct", "enum", "unit", "formula", "min", "max", "const",
+    "summary",
+})  # fmt: skip
+
+
+def of_node(node: Node) -> list[Row]:
+    """Return the rows of the messages that the node declares itself, in their order."""
+    return [row for message in node.messages if message.node == node.name for row in _of_message(message)]
+
+
+def _of_message(message: Message) -> Iterator[Row]:
+    fields = list(_fields(message))
+    own = {
+        "Message": message.name, "ID": message.id, "Set ID": message.set_id, "Get ID": message.get_id, "Kind": message.kind,
+        "Group": message.group, "Message description": message.summary,
+        "Length": None if message.layout.sequence else message.length,  # a length that varies follows from the fields
+    }  # fmt: skip
+    for cells in fields or [{}]:
+        given = own | cells
+        yield [_cell(given.get(heading)) for heading in HEADINGS]
+
+
+def _cell(value: object) -> Cell:
+    return int(value) if isinstance(value, int) else "" if value is None else str(value)
+
+
+def _fields(message: Message) -> Iterator[dict[str, object]]:
+    for line in lines(message.layout):
+        if line.view or line.implied:
+            continue  # no bits of its own
+        outer = line.levels[0]
+        if not line.is_of_struct:
+            yield _field(line, line.at, line.name)
+            continue
+        group = (
+            {"Repeated group": outer.node.name} | _repeats(outer.node.source)
+            if outer.count or "count" in outer.node.source
+            else {}
+        )
+        name = ".".join(level.node.name for level in (line.levels[1:] if group else line.levels))
+        starts = line.starts(first_only=True)
+        for index, at in enumerate(starts, 1):
+            yield _field(line, at, f"{name} {index}" if len(starts) > 1 else name, is_element=True) | group
+
+
+def _repeats(source: Map) -> dict[str, object]:
+    """How often an array or a group is repeated."""
+    count = source.get("count", source.get("size", ""))
+    if isinstance(count, int):
+        return {"Count": count}
+    return {"Counter": count, "Up to": source.get("up_to")} if count else {}
+
+
+def _field(line: Line, at: int, name: str, is_element: bool = False) -> dict[str, object]:
+    source = line.node.source
+    repeats = {} if is_element else _repeats(source)
+    members = line.enum.members if line.enum else ()
+    is_open = "Counter" in repeats and line.is_bytes
+    return {
+        "Byte": at // 8, "Bit": at % 8, "Bits": 8 if is_open else line.bits, "Name": name,
+        "Type": f"{line.type}{line.bits}" if line.type in ("uint", "int", "float") else line.type,
+        "Unit": line.unit_symbol, "Formula": line.formula, "Min": source.get("min"), "Max": source.get("max"),
+        "Enumeration": line.enum.name if line.enum else "",
+        "Members": "; ".join(f"{member.value}: {member.name}" for member in members),
+        "Constant": line.const, "Description": line.summary, "Further": _further(source),
+    } | ({} if line.is_bytes and "Count" in repeats else repeats)  # fmt: skip
+
+
+def _further(source: Map) -> str:
+    """The keys of a field that have no column, as the ICD writes them."""
+    texts = ((key, plain(value)) for key, value in source.items() if key not in _SHOWN)
+    return "; ".join(f"{key}: {value if isinstance(value, str) else json.dumps(value)}" for key, value in texts)
