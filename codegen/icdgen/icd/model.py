@@ -25,7 +25,7 @@ from icdgen.icd.layout import FrameField, Layout, Orders
 from icdgen.icd.layout import Limits as Limits
 from icdgen.icd.layout import Special as Special
 from icdgen.icd.located import Map, unread
-from icdgen.icd.paths import Step, lines_of, members_of, name_of, placed
+from icdgen.icd.paths import Step, members_of, name_of, placed
 from icdgen.icd.tail import Tail as Tail
 from icdgen.icd.units import Unit
 
@@ -201,11 +201,6 @@ class Struct:
         return members_of(self.fields)
 
     @property
-    def lines(self) -> tuple[Field, ...]:
-        """See `Message.lines`."""
-        return lines_of(self.fields)
-
-    @property
     def tail(self) -> None:
         """It has no open end."""
 
@@ -282,15 +277,6 @@ class Message:
         """All that is open, the end last."""
         return (*self.inner, self.tail) if self.tail else ()
 
-    def with_fields(self, fields: tuple[Field, ...]) -> Message:
-        """The message with these of its fields; without what is derived of others, or an open end that is made of others."""
-        known = {field.name for field in members_of(fields)}
-        fields = tuple(one for one in fields if one.derived is None or known.issuperset(one.derived.fields))
-        found = replace(self, fields=fields)
-        names = {field.name for field in found.members}
-        is_whole = names.issuperset(name for one in self.open_parts for name in (one.name, one.counter))
-        return found if self.tail and is_whole else replace(found, tail=None, inner=())
-
     @property
     def counter(self) -> Field | None:
         """Where frames differ in length: the field that says how many elements the end has."""
@@ -317,14 +303,6 @@ class Message:
     def members(self) -> tuple[Field, ...]:
         """The fields as the ICD declares them: an array stands as one, and so does a struct."""
         return members_of(self.fields)
-
-    @property
-    def lines(self) -> tuple[Field, ...]:
-        """The fields, each line of the ICD once: an array stands as one; a field of a struct is ``Satellites[].GNSS``.
-
-        What repeats such a field is its ``count``, and ``elements`` are its places.
-        """
-        return lines_of(self.fields)
 
     @property
     def fresh(self) -> dict[str, int | bytes]:

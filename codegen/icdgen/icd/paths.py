@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from math import prod
 from typing import Any, TypeAlias
 
 from icdgen.frozen import dataclass
@@ -68,24 +67,6 @@ def placed(member: Field, element: Field, fields: Iterable[Field]) -> tuple[Fiel
     )
 
 
-def in_orders(struct: Struct, byte_order: str, bit_order: str) -> Struct:
-    """The struct where these orders hold: its fields have them, unless they have their own, and so has what stands in it."""
-
-    def ordered(one: Field) -> Field:
-        return replace(one, byte_order=one.byte_order or byte_order, bit_order=one.bit_order or bit_order)
-
-    def step(one: Step) -> Step:
-        return one if one.member is None else replace(one, member=ordered(one.member))
-
-    fields = (replace(ordered(one), path=tuple(map(step, one.path))) for one in struct.fields)
-    return replace(struct, fields=tuple(fields))
-
-
-def has_struct(fields: Iterable[Field], struct: object) -> bool:
-    """Whether a struct stands somewhere in what has these fields."""
-    return any(step.struct is struct for field in fields for step in field.path)
-
-
 def members_of(fields: tuple[Field, ...]) -> tuple[Field, ...]:
     """Fields as they are declared: an array stands as one, and so does a struct."""
     if not any(field.path for field in fields):
@@ -107,22 +88,6 @@ def _declared(field: Field) -> Field:
         return field
     step = field.path[0]
     return step.member or replace(field, name=step.name, path=(), count=step.count)
-
-
-def lines_of(fields: tuple[Field, ...]) -> tuple[Field, ...]:
-    """Fields, each line of the ICD once: of arrays and structs, what repeats it stands as its ``count``."""
-    if not any(field.path for field in fields):
-        return fields
-    return tuple(map(_line, (one for one in fields if not any(step.index for step in one.path))))
-
-
-def _line(field: Field) -> Field:
-    path = tuple(replace(step, index=None) for step in field.path)
-    if len(path) < 2:
-        return _declared(field)
-    text = [f"{step.name}[]" if step.count else step.name for step in path[:-1]]
-    counts = [step.count for step in path if step.count]
-    return replace(field, name=".".join((*text, path[-1].name)), path=path, count=prod(counts) if counts else 0)
 
 
 def arrays_of(fields: tuple[Field, ...]) -> tuple[Field, ...]:
