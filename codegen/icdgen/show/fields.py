@@ -62,19 +62,21 @@ def remarks(
     part = _variable_part(message, field)
     if part is not None and message is not None:
         yield "up to the end of the frame" if part.is_rest else f"as many as {count_text(part.counter, part.plus)} says"
-        before = [one.name for one in message.layout.parts[:-1] if one.begin < field.at // 8 and one is not part]
+        before = [
+            other.name for other in message.layout.parts[:-1] if other.begin < field.at // 8 and other is not part
+        ]
         if before:
             yield f"behind {before[-1]}"
     if field.when:
-        yield f"only there if {' and '.join(condition_text(one, message) for one in field.when)}"
+        yield f"only there if {' and '.join(condition_text(condition, message) for condition in field.when)}"
     if field.aliases:
         yield f"also called {', '.join(field.aliases)}"
     if field.derived is not None:
         yield f"derived: {field.formula}"
     elif field.view:
         yield "a view of bits that other fields have"
-    if told := orders_text(field):
-        yield told
+    if orders := orders_text(field):
+        yield orders
     for level in field.levels if isinstance(field, Line) else ():
         if level.struct is not None and level.count:
             most = "up to " if part is not None else ""

@@ -39,19 +39,19 @@ def to_json(icd: Icd) -> _Object:
 @cache
 def as_they_are(kind: Any) -> tuple[str, ...]:
     """The attributes of a class of the model that are shown as they are, under their own names."""
-    found = (one.name for one in fields(kind) if one.type in _PLAIN)
-    return tuple(name for name in found if name not in _OTHERWISE.get(kind, ()))
+    names = (attribute.name for attribute in fields(kind) if attribute.type in _PLAIN)
+    return tuple(name for name in names if name not in _OTHERWISE.get(kind, ()))
 
 
-def _attributes(one: Any) -> _Object:
-    kind: Any = type(one)
-    values = {name: getattr(one, name) for name in as_they_are(kind)}
+def _attributes(thing: Any) -> _Object:
+    kind: Any = type(thing)
+    values = {name: getattr(thing, name) for name in as_they_are(kind)}
     return {name: value for name, value in values.items() if value != _defaults(kind).get(name)}
 
 
 @cache
 def _defaults(kind: Any) -> dict[str, object]:
-    return {one.name: one.default for one in fields(kind)}
+    return {attribute.name: attribute.default for attribute in fields(kind)}
 
 
 def _node(node: Node) -> _Object:
@@ -61,18 +61,18 @@ def _node(node: Node) -> _Object:
         vocabulary=list(node.vocabulary),
         units=[_present(**unit._asdict()) for unit in node.units],
         protocol=node.protocol,
-        missing=[_attributes(one) for one in node.missing],
+        missing=[_attributes(entry) for entry in node.missing],
         errata=_errata(node, is_note=False),
         notes=_errata(node, is_note=True),
     ) | {
         "includes": list(node.includes),
         **(
-            {"structs": [_row(one) | {"fields": list(map(_field, one.layout.places))} for one in node.structs]}
+            {"structs": [_row(struct) | {"fields": list(map(_field, struct.layout.places))} for struct in node.structs]}
             if node.structs
             else {}
         ),
         "messages": [_message(m) for m in node.messages],
-        "enums": [_row(one) | {"members": list(map(_row, one.members))} for one in node.enums],
+        "enums": [_row(enum) | {"members": list(map(_row, enum.members))} for enum in node.enums],
         "loggable": [_row(row) for row in node.loggable],
     }
 
@@ -127,24 +127,24 @@ def _field(field: NodePlace) -> _Object:
         scale_offset=str(scale.offset) if scale and scale.offset else None,
         **(field.curve.plain if field.curve else {}),
         formula=field.formula if field.has_formula else None,
-        special=[_attributes(one) for one in field.special],
+        special=[_attributes(special) for special in field.special],
         display=field.display.plain if field.display else None,
         limits={bound.key: str(bound.value) for bound in bounds(field.limits)},  # exact, like `scale`
         view=True if field.view else None,
-        when={one.field: list(one.values) for one in field.when},
+        when={condition.field: list(condition.values) for condition in field.when},
         **_ids(field.errata),
     )
 
 
 def _derived(field: NodePlace) -> _Object:
-    found = {key: getattr(field, key) for key in ("name", "identifier", "formula", "summary")}
+    attributes = {key: getattr(field, key) for key in ("name", "identifier", "formula", "summary")}
     display = field.display.plain if field.display else None
-    return _present(**found, aliases=list(field.aliases), unit=field.unit_symbol or None, display=display)
+    return _present(**attributes, aliases=list(field.aliases), unit=field.unit_symbol or None, display=display)
 
 
-def _row(one: Enum | Member | Loggable | Struct) -> _Object:
-    aliases = list(one.aliases) if isinstance(one, (Enum, Member, Struct)) else []
-    return _present(**_attributes(one), aliases=aliases, **_ids(one.errata))
+def _row(thing: Enum | Member | Loggable | Struct) -> _Object:
+    aliases = list(thing.aliases) if isinstance(thing, (Enum, Member, Struct)) else []
+    return _present(**_attributes(thing), aliases=aliases, **_ids(thing.errata))
 
 
 def _errata(node: Node, is_note: bool) -> list[_Object]:

@@ -109,17 +109,22 @@ def _one(icd: Icd, node: Node, name: str, width: int | None, kind: str | None) -
         return _message(icd, node, find_message(icd, node.name, name, kind), width)
     except NotFound:
         family = (*icd.included(node), node)
-        found = (
-            [_enum(one, width) for one in by_name([e for n in family for e in n.enums], name, node.vocabulary)]
+        texts = (
+            [_enum(enum, width) for enum in by_name([e for n in family for e in n.enums], name, node.vocabulary)]
             or [
-                _struct(one, icd.node(one.node), width)
-                for one in by_name([s for n in family for s in n.structs], name, node.vocabulary)
+                _struct(struct, icd.node(struct.node), width)
+                for struct in by_name([s for n in family for s in n.structs], name, node.vocabulary)
             ]
-            or [_erratum(one, width) for n in family for one in n.errata if one.id.casefold() == name.casefold()]
+            or [
+                _erratum(erratum, width)
+                for n in family
+                for erratum in n.errata
+                if erratum.id.casefold() == name.casefold()
+            ]
         )
-        if not found:
+        if not texts:
             raise
-        return "\n".join(found)
+        return "\n".join(texts)
 
 
 def _field_count(message: Message) -> int:
@@ -157,8 +162,8 @@ def _message(icd: Icd, asked: Node, message: Message, width: int | None) -> str:
     lines += filter(None, [sharing(ids_of(icd, node), message)])
     lines += [f"From bit {part.at} it repeats {part.message}." for part in message.contains]
     table = field_table(message, node, width)
-    enums = [_enum(one, width) for one in dict.fromkeys(line.enum for line in icd_lines(message.layout) if line.enum)]
-    errata = [_erratum(one, width) for one in errata_of_message(message)]
+    enums = [_enum(enum, width) for enum in dict.fromkeys(line.enum for line in icd_lines(message.layout) if line.enum)]
+    errata = [_erratum(erratum, width) for erratum in errata_of_message(message)]
     return "\n".join([_lines(lines, width), *filter(None, [table]), *enums, *errata])
 
 
@@ -173,8 +178,8 @@ def _enum(enum: Enum, width: int | None) -> str:
 
 def _count(node: Node) -> str:
     notes = sum(e.is_note for e in node.errata)
-    found = ((len(node.errata) - notes, "erratum", "errata"), (notes, "note", "notes"))
-    return ", ".join(f"{number} {one if number == 1 else more}" for number, one, more in found if number)
+    counts = ((len(node.errata) - notes, "erratum", "errata"), (notes, "note", "notes"))
+    return ", ".join(f"{number} {singular if number == 1 else plural}" for number, singular, plural in counts if number)
 
 
 def _erratum(erratum: Erratum, width: int | None) -> str:
@@ -185,8 +190,8 @@ def _erratum(erratum: Erratum, width: int | None) -> str:
         lines.append(f"Printed and held: {', '.join(changes)}")
     if erratum.tables:
         lines.append(f"Tables: {', '.join(map(str, erratum.tables))}")
-    head, *rest = filter(None, lines)
-    return _lines([head], width) + _lines(rest, width, "  ")
+    head, *others = filter(None, lines)
+    return _lines([head], width) + _lines(others, width, "  ")
 
 
 def _lines(lines: Sequence[str], width: int | None, indent: str = "") -> str:
@@ -194,7 +199,7 @@ def _lines(lines: Sequence[str], width: int | None, indent: str = "") -> str:
     text = ""
     for line in map(clean, filter(None, lines)):
         wrapped = [line] if width is None else textwrap.wrap(line, max(width - len(indent), 20)) or [line]
-        text += "".join(f"{indent}{one}\n" for one in wrapped)
+        text += "".join(f"{indent}{line}\n" for line in wrapped)
     return text
 
 

@@ -80,7 +80,7 @@ def of_line(node: LayoutNode, layout: Layout, orders: Orders) -> Iterator[tuple[
         return
     sizes = map(size_of, layout.sequence)
     counters = {size.counter for size in sizes if isinstance(size, Counted)}
-    conditions = {one.field for other in layout.nodes for one in other.present_if}
+    conditions = {condition.field for other in layout.nodes for condition in other.present_if}
     if node.name in counters | conditions:
         return  # other parts of the frame depend on its value
     yield from _of_conditions(node, layout)
@@ -135,7 +135,7 @@ def _of_orders(node: LayoutNode, around: Orders) -> Iterator[tuple[Change, Layou
     for key, name in (("byte_order", "byte"), ("bit_order", "bit")):
         order = getattr(own, name)
         other = replace(own, **{name: _OTHER_ORDER[order]})
-        places = (pieces_at(node.at, stride(node), one.byte, one.bit) for one in (own, other))
+        places = (pieces_at(node.at, stride(node), orders.byte, orders.bit) for orders in (own, other))
         if key in node.source and next(places) != next(places):
             change = Change(key.replace("_", " "), node.source, key, order, _OTHER_ORDER[order])
             yield change, with_attributes(node, orders=replace(node.orders, **{name: _OTHER_ORDER[order]}))
@@ -166,11 +166,11 @@ def _formulas(node: LayoutNode, scalar: Scalar) -> Iterator[tuple[Change, Layout
 
 def _tables(node: LayoutNode, scalar: Scalar, old: Curve) -> Iterator[tuple[Change, LayoutNode]]:
     source, printed, outside = node.source, plain(node.source["points"]), node.source.get("outside", "")
-    others = [(Change("points", source, "points", printed, points), points, outside) for points in tables(printed)]
+    variants = [(Change("points", source, "points", printed, points), points, outside) for points in tables(printed)]
     if outside and (scalar.type == "float" or not old.holds(scalar.raw_min, scalar.raw_max)):
         words = (word for word in OUTSIDE if word != outside)
-        others += [(Change("outside", source, "outside", outside, word), printed, word) for word in words]
-    for change, points, beyond in others:
+        variants += [(Change("outside", source, "outside", outside, word), printed, word) for word in words]
+    for change, points, beyond in variants:
         with suppress(FormulaError):  # not a lookup table any more
             new = table(doubles(points), beyond)
             if new != old:
@@ -266,7 +266,9 @@ def of_enum(enum: Enum) -> Iterator[tuple[Change, Enum]]:
 
 def _is_taken(value: int, member: Member, enum: Enum) -> bool:
     """Whether another member has what a range would get too: no ICD says so, and which name holds is not defined."""
-    return member.to is not None and any(one.value <= value <= one.last for one in enum.members if one is not member)
+    return member.to is not None and any(
+        other.value <= value <= other.last for other in enum.members if other is not member
+    )
 
 
 def formulas(text: str) -> Iterator[str]:
@@ -309,5 +311,5 @@ def _can_be(node: LayoutNode, scalar: Scalar, kind: str) -> bool:
 def _places(layout: Layout, orders: Orders) -> list[tuple[Piece, ...]]:
     """Return the bits of the longest frame that each number has."""
     fields = layout.frame(orders)
-    numbers = (one for one in fields if one.role in ("field", "overlay") and not one.scalar.is_bytes)
-    return [pieces_at(one.at, one.bits, one.byte_order, one.bit_order) for one in numbers]
+    numbers = (field for field in fields if field.role in ("field", "overlay") and not field.scalar.is_bytes)
+    return [pieces_at(field.at, field.bits, field.byte_order, field.bit_order) for field in numbers]

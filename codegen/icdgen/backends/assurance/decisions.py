@@ -28,20 +28,20 @@ def papers(
     icd: Icd, elements: Sequence[Element], files: Files
 ) -> Iterator[tuple[Page, list[list[Cell]], tuple[str, ...]]]:
     """Each paper that has something to say: its page, and the rows and columns of its table."""
-    found = list(errata(icd, elements, files))
-    if found:
+    errata_rows = list(errata(icd, elements, files))
+    if errata_rows:
         groups = [
-            Group([_folded(row) for row in found if row[2] == node.name], node.title)
+            Group([_folded(row) for row in errata_rows if row[2] == node.name], node.title)
             for node in icd.nodes
             if node.errata
         ]
         columns = ("Id", "Kind", "What", "Confidence", "Tables", "Decided in", "Touches", "Printed", "Held", "Evidence")
-        yield Page("errata.html", "Errata", _OF_ERRATA, columns, groups, data=("errata.csv",)), found, ERRATA
-    others = (
+        yield Page("errata.html", "Errata", _OF_ERRATA, columns, groups, data=("errata.csv",)), errata_rows, ERRATA
+    tables = (
         ("assumptions", "Assumptions", _OF_ASSUMPTIONS, ASSUMPTIONS, list(assumptions(icd, files))),
         ("missing", "Not described", _OF_MISSING, MISSING, list(missing(icd))),
     )
-    for name, title, says, keys, rows in others:
+    for name, title, says, keys, rows in tables:
         if rows:  # the page shows what the table has
             shown = tuple(map(str.capitalize, keys))
             yield Page(f"{name}.html", title, says, shown, [Group([*rows])], data=(f"{name}.csv",)), rows, keys
@@ -56,9 +56,9 @@ def _folded(row: list[Cell]) -> list[Cell]:
 def errata(icd: Icd, elements: Sequence[Element], files: Files) -> Iterator[list[Cell]]:
     """A row each, in the order of the overlays."""
     touched: dict[int, list[str]] = {}
-    for one in elements:
-        for erratum in one.errata:
-            touched.setdefault(id(erratum), []).append(files.line(one.source.place))
+    for element in elements:
+        for erratum in element.errata:
+            touched.setdefault(id(erratum), []).append(files.line(element.source.place))
     for node in icd.nodes:
         for row in node.loggable:
             for erratum in row.errata:
@@ -85,16 +85,16 @@ def assumptions(icd: Icd, files: Files) -> Iterator[list[Cell]]:
 def missing(icd: Icd) -> Iterator[list[Cell]]:
     """A row for each message that the manual mentions and does not describe."""
     for node in icd.nodes:
-        for one in node.missing:
-            yield [node.name, one.kind, str(one.id), one.name, one.why]
+        for entry in node.missing:
+            yield [node.name, entry.kind, str(entry.id), entry.name, entry.why]
 
 
 def _sections(node: Node, erratum: Erratum) -> Iterator[Map]:
     """The sections of the ICD that an erratum is about."""
     where = erratum.source.get("where")
-    for one in where if isinstance(where, Seq) else [where]:
-        if isinstance(one, Map) and "section" in one:
-            yield from section(node.source, str(one["section"]))
+    for place in where if isinstance(where, Seq) else [where]:
+        if isinstance(place, Map) and "section" in place:
+            yield from section(node.source, str(place["section"]))
 
 
 def _owners(tree: object, path: str = "") -> Iterator[tuple[str, Map]]:

@@ -59,7 +59,7 @@ def read(folder: Path, icd: Icd, code_of: Callable[[str], str]) -> list[Measurem
     except OSError as error:
         text = f"{folder}: cannot be read: {error.strerror}"
         raise UserError(text, "--measured names a folder of measurements") from None
-    found = []
+    measurements = []
     for path in paths:
         data = _data(path)
         ours = ("ICDs: the digest", data["icd"], icd_digest(icd))
@@ -71,8 +71,8 @@ def read(folder: Path, icd: Icd, code_of: Callable[[str], str]) -> list[Measurem
         rows = [[str(cell) for cell in row] for row in data["rows"]]
         facts = tuple((str(key), str(value)) for key, value in data["facts"])
         says, made_by, columns = (tuple(map(str, data[key])) for key in ("says", "made_by", "columns"))
-        found.append(Measurement(data["name"], data["title"], says, data["code"], made_by, facts, columns, rows))
-    return sorted(found, key=lambda one: one.name)
+        measurements.append(Measurement(data["name"], data["title"], says, data["code"], made_by, facts, columns, rows))
+    return sorted(measurements, key=lambda measurement: measurement.name)
 
 
 def _data(path: Path) -> dict[str, Any]:

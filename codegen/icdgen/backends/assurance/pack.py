@@ -28,13 +28,13 @@ _HOME = (
 
 def files(icd: Icd, render: Renderer, folder: Path | None) -> Iterator[tuple[PurePosixPath, str]]:
     """Path and text of each; ``folder`` is that of measurements. Raises `UserError` for one that is of something else."""
-    known = measured.read(folder, icd, lambda language: code_now(icd, language)) if folder is not None else []
+    measurements = measured.read(folder, icd, lambda language: code_now(icd, language)) if folder is not None else []
     digests = tuple((f"{node.title} ({node.name})", node.digest) for node in icd.nodes)
     of_errata = (erratum.source.place.file for node in icd.nodes for erratum in node.errata)
     read = Files(file for file in (*(node.file for node in icd.nodes), *of_errata) if file)
     traced, tracing = Trace(icd), Tracing(read, Symbols(icd))
     elements = {node.name: list(traced.elements(node)) for node in icd.nodes}
-    every = [one for found in elements.values() for one in found]
+    every = [element for elements_of_node in elements.values() for element in elements_of_node]
     foot = {"version": __version__, "digest": measured.icd_digest(icd), "lines_of": lines_of}
 
     pages = [tracing.page(node, elements[node.name], (("Digest of the ICD", node.digest),)) for node in icd.nodes]
@@ -45,9 +45,9 @@ def files(icd: Icd, render: Renderer, folder: Path | None) -> Iterator[tuple[Pur
     for page, rows, columns in decisions.papers(icd, every, tracing.files):
         pages.append(page)
         tables[page.data[0]] = csv_text(columns, rows)
-    for one in known:
-        pages.append(_measured(one))
-        tables[f"{one.name}.csv"] = csv_text(one.columns, one.rows)
+    for measurement in measurements:
+        pages.append(_measured(measurement))
+        tables[f"{measurement.name}.csv"] = csv_text(measurement.columns, measurement.rows)
 
     home = Page("index.html", "Assurance pack", _HOME, _COLUMNS, [Group(_counts(icd, elements))], digests, ())
     yield PurePosixPath(home.file), render("index.html.j2", page=home, papers=pages, tables=list(tables), **foot)
@@ -65,22 +65,30 @@ def _counts(icd: Icd, elements: dict[str, list[Element]]) -> list[Sequence[Cell]
     """A row a node, and one for all."""
     rows: list[tuple[str, list[int]]] = []
     for node in icd.nodes:
-        kinds = [one.kind for one in elements[node.name]]
-        tried = [traced for one in elements[node.name] for traced in one.changes]
+        kinds = [element.kind for element in elements[node.name]]
+        tried = [traced for element in elements[node.name] for traced in element.changes]
         numbers = [kinds.count(kind) for kind in ("message", "field", "enumeration", "member")]
-        rows.append((node.title, [*numbers, len(tried), sum(not one.noticed for one in tried)]))
+        rows.append((node.title, [*numbers, len(tried), sum(not change.noticed for change in tried)]))
     total = [sum(column) for column in zip(*(numbers for _, numbers in rows), strict=True)]
     return [[name, *(f"{number:,}" for number in numbers)] for name, numbers in (*rows, ("All", total))]
 
 
-def _measured(one: Measurement) -> Page:
+def _measured(measurement: Measurement) -> Page:
     facts = (
-        *one.facts,
-        *(("Measured with", tool) for tool in one.made_by),
-        *((f"Digest of the generated {title(language)}", digest) for language, digest in one.code.items()),
+        *measurement.facts,
+        *(("Measured with", tool) for tool in measurement.made_by),
+        *((f"Digest of the generated {title(language)}", digest) for language, digest in measurement.code.items()),
     )
-    rows: list[Sequence[Cell]] = list(one.rows)
-    return Page(f"{one.name}.html", one.title, one.says, one.columns, [Group(rows)], facts, (f"{one.name}.csv",))
+    rows: list[Sequence[Cell]] = list(measurement.rows)
+    return Page(
+        f"{measurement.name}.html",
+        measurement.title,
+        measurement.says,
+        measurement.columns,
+        [Group(rows)],
+        facts,
+        (f"{measurement.name}.csv",),
+    )
 
 
 def code_now(icd: Icd, language: str) -> str:

@@ -76,7 +76,7 @@ class Element:
     @property
     def noticed(self) -> Noticed:
         """The vectors that notice any of the changes."""
-        return together(one.noticed for one in self.changes)
+        return together(traced.noticed for traced in self.changes)
 
 
 class Trace:
@@ -89,10 +89,10 @@ class Trace:
         self._watches: dict[tuple[str, str], MessageWatch] = {}
         for node in icd.nodes:
             vectors = self._vectors[node.name] = make(icd, node)
-            found = self._lines[node.name] = lines(vectors, text(vectors))
-            for one in vectors.messages:
-                name = one.message.name
-                self._watches[node.name, name] = MessageWatch(node, one, found.messages[name])
+            node_lines = self._lines[node.name] = lines(vectors, text(vectors))
+            for message_vectors in vectors.messages:
+                name = message_vectors.message.name
+                self._watches[node.name, name] = MessageWatch(node, message_vectors, node_lines.messages[name])
         self._shared = SharedIds(icd, self._vectors, self._lines)
 
     def elements(self, node: Node) -> Iterator[Element]:
@@ -102,7 +102,7 @@ class Trace:
             traced = list(self._of_enum(enum))
             yield Element("enumeration", node, None, enum, None, ())
             for row, member in enumerate(enum.members, 1):
-                own = tuple(one for one in traced if one.change.source is member.source)
+                own = tuple(change for change in traced if change.change.source is member.source)
                 yield Element("member", node, enum, member, row, own)
         for struct in node.structs:
             yield Element("struct", node, None, struct, None, ())
@@ -125,13 +125,13 @@ class Trace:
         """The changes of a line of a struct, noticed wherever the struct stands."""
         for change, new in changes.of_line(line, struct.layout, node.orders):
             changed = with_node(struct.layout, line, new)
-            found: list[Noticed] = []
+            results: list[Noticed] = []
             for watch in self._watches.values():
                 layout = with_struct_layout(watch.message.layout, struct.layout, changed)
                 if layout is not watch.message.layout:
                     now = changes.with_layout(watch.message, layout)
-                    found += (_noticed(watch.node, watch.layout(now)), self._shared.of_message(watch.message, now))
-            yield Traced(change, together(found))
+                    results += (_noticed(watch.node, watch.layout(now)), self._shared.of_message(watch.message, now))
+            yield Traced(change, together(results))
 
     def _of_node(self, node: Node) -> Iterator[Traced]:
         for change, now in changes.of_node(node):
@@ -144,41 +144,41 @@ class Trace:
 
     def _of_enum(self, enum: Enum) -> Iterator[Traced]:
         for change, now in changes.of_enum(enum):
-            found = [{enum.node: [self._lines[enum.node].enums[enum.name]]}]
-            found += (_noticed(watch.node, watch.enum(enum, now)) for watch in self._watches.values())
-            yield Traced(change, together(found))
+            results = [{enum.node: [self._lines[enum.node].enums[enum.name]]}]
+            results += (_noticed(watch.node, watch.enum(enum, now)) for watch in self._watches.values())
+            yield Traced(change, together(results))
 
     def _of_message(self, message: Message, node: Node) -> Iterator[Traced]:
         watch = self._watches[node.name, message.name]
         for change, now in changes.of_message(message, node):
             if change.kind == "id":
-                found = together([self._ids(message, now), _noticed(node, watch.id(change.key))])
+                noticed = together([self._ids(message, now), _noticed(node, watch.id(change.key))])
             elif change.kind == "length":
-                found = _noticed(node, watch.length())
+                noticed = _noticed(node, watch.length())
             else:
-                found = _noticed(node, watch.places(now, node))
-            yield Traced(change, together([found, self._shared.of_message(message, now)]))
+                noticed = _noticed(node, watch.places(now, node))
+            yield Traced(change, together([noticed, self._shared.of_message(message, now)]))
 
     def _ids(self, message: Message, now: Message) -> Noticed:
         """The lists of ids, of each node that speaks the message, in which one is no longer its own."""
-        found: Noticed = {}
+        noticed: Noticed = {}
         for node in self.icd.nodes:
-            if all(message is not one for one in self.icd.messages_of(node)):
+            if all(message is not other for other in self.icd.messages_of(node)):
                 continue
-            for direction, known in self._vectors[node.name].ids.items():
-                mine = {id for id, names in known.items() if message.name in names}
+            for direction, names_by_id in self._vectors[node.name].ids.items():
+                mine = {id for id, names in names_by_id.items() if message.name in names}
                 if mine & (set(message.ids) - set(now.ids)):
-                    found.setdefault(node.name, []).append(self._lines[node.name].ids[direction])
-        return found
+                    noticed.setdefault(node.name, []).append(self._lines[node.name].ids[direction])
+        return noticed
 
 
 def together(several: Iterator[Noticed] | list[Noticed]) -> Noticed:
     """The lines of all, in order, each once."""
-    found: dict[str, set[int]] = {}
-    for one in several:
-        for node, numbers in one.items():
-            found.setdefault(node, set()).update(numbers)
-    return {node: sorted(numbers) for node, numbers in found.items() if numbers}
+    lines_by_node: dict[str, set[int]] = {}
+    for noticed in several:
+        for node, numbers in noticed.items():
+            lines_by_node.setdefault(node, set()).update(numbers)
+    return {node: sorted(numbers) for node, numbers in lines_by_node.items() if numbers}
 
 
 def _noticed(node: Node, numbers: list[int]) -> Noticed:

@@ -53,10 +53,10 @@ class Symbols:
         self.languages = (*backends.TITLES, *backends.plug_ins())
         self._known: dict[str, dict[int, list[Symbol]]] = {}
         for language in self.languages:
-            known = self._known[language] = {}
-            for one in backends.get(language).identifiers(icd):
-                if one.source is not None:
-                    known.setdefault(id(one.source), []).append(Symbol(one.scope, one.text))
+            by_source = self._known[language] = {}
+            for identifier in backends.get(language).identifiers(icd):
+                if identifier.source is not None:
+                    by_source.setdefault(id(identifier.source), []).append(Symbol(identifier.scope, identifier.text))
 
     def of(self, language: str, source: Map) -> list[Symbol]:
         """Each once, in the order in which the backend tells them."""
@@ -77,50 +77,78 @@ class Tracing:
 
     def rows(self, elements: Sequence[Element]) -> Iterator[list[Cell]]:
         """The rows of that table."""
-        for one in elements:
-            place = one.source.place
+        for element in elements:
+            place = element.source.place
             yield [
-                one.kind, one.node.name, one.part_of, one.name, _text(one.row), _text(one.table),
-                _text(one.page), self.files.name(place.file), str(place.line), said(one), [erratum.id for erratum in one.errata],
-                str(len(one.changes)), str(_unnoticed(one)), vectors(one.noticed),
-                *([str(name) for name in self.symbols.of(language, one.model.source)] for language in self.symbols.languages),
-            ]  # fmt: skip
+                element.kind,
+                element.node.name,
+                element.part_of,
+                element.name,
+                _text(element.row),
+                _text(element.table),
+                _text(element.page),
+                self.files.name(place.file),
+                str(place.line),
+                printed_numbers(element),
+                [erratum.id for erratum in element.errata],
+                str(len(element.changes)),
+                str(_unnoticed(element)),
+                vectors(element.noticed),
+                *(
+                    [str(name) for name in self.symbols.of(language, element.model.source)]
+                    for language in self.symbols.languages
+                ),
+            ]
 
     def changes(self, elements: Sequence[Element]) -> Iterator[list[Cell]]:
         """A row for each single change: in this file, line and column the value would be another."""
-        for one in elements:
-            for traced in one.changes:
+        for element in elements:
+            for traced in element.changes:
                 change = traced.change
                 place = change.source.at(change.key)
                 yield [
-                    change.kind, one.node.name, one.part_of, one.name, change.key, self.files.name(place.file), str(place.line),
-                    str(place.column), str(change.old), str(change.now), vectors(traced.noticed),
-                ]  # fmt: skip
+                    change.kind,
+                    element.node.name,
+                    element.part_of,
+                    element.name,
+                    change.key,
+                    self.files.name(place.file),
+                    str(place.line),
+                    str(place.column),
+                    str(change.old),
+                    str(change.now),
+                    vectors(traced.noticed),
+                ]
 
     def page(self, node: Node, elements: Sequence[Element], facts: tuple[tuple[str, str], ...]) -> Page:
         """The trace of a node, message by message."""
         groups: list[Group] = []
-        for one in elements:
-            if one.owner is None:
+        for element in elements:
+            if element.owner is None:
                 rows: list[Sequence[Cell]] = []
-                heading = one.model.title if isinstance(one.model, Node) else one.name
-                groups.append(Group(rows, heading, _notes(one)))
-            groups[-1].rows.append(self._shown(one))
+                heading = element.model.title if isinstance(element.model, Node) else element.name
+                groups.append(Group(rows, heading, _notes(element)))
+            groups[-1].rows.append(self._shown(element))
         languages = (title(language) for language in self.symbols.languages)
         columns = ("Row", "Name", "Says", "Line", *languages, "Changes", "Unnoticed", "Vectors")
         file = f"trace-{node.name}.html"
         return Page(file, f"Trace: {node.title}", _SAYS, columns, groups, facts, ("trace.csv", "changes.csv"))
 
-    def _shown(self, one: Element) -> list[Cell]:
-        errata = [f"{erratum.label} {erratum.id}" for erratum in one.errata]
+    def _shown(self, element: Element) -> list[Cell]:
+        errata = [f"{erratum.label} {erratum.id}" for erratum in element.errata]
         return [
-            _text(one.row), [one.name, *errata], said(one), self.files.line(one.source.place),
-            *(self._names(language, one) for language in self.symbols.languages),
-            str(len(one.changes)) if one.changes else "", str(_unnoticed(one)) if one.changes else "", vectors(one.noticed),
-        ]  # fmt: skip
+            _text(element.row),
+            [element.name, *errata],
+            printed_numbers(element),
+            self.files.line(element.source.place),
+            *(self._names(language, element) for language in self.symbols.languages),
+            str(len(element.changes)) if element.changes else "",
+            str(_unnoticed(element)) if element.changes else "",
+            vectors(element.noticed),
+        ]
 
-    def _names(self, language: str, one: Element) -> list[str]:
-        return list(dict.fromkeys(symbol.name for symbol in self.symbols.of(language, one.model.source)))
+    def _names(self, language: str, element: Element) -> list[str]:
+        return list(dict.fromkeys(symbol.name for symbol in self.symbols.of(language, element.model.source)))
 
 
 def title(language: str) -> str:
@@ -128,22 +156,22 @@ def title(language: str) -> str:
     return backends.TITLES.get(language, language)
 
 
-def said(one: Element) -> str:
+def printed_numbers(element: Element) -> str:
     """The numbers of the line, as they stand there."""
-    return ", ".join(f"{key} {one.source[key]}" for key in _SHOWN if key in one.source)
+    return ", ".join(f"{key} {element.source[key]}" for key in _SHOWN if key in element.source)
 
 
-def _notes(one: Element) -> tuple[str, ...]:
-    words = [one.model.kind if isinstance(one.model, Message) else one.kind]
-    if one.table is not None:
-        words.append(f"Table {one.table} of the manual")
-    if one.page is not None:
-        words.append(f"page {one.page}")
-    return (", ".join(words),) if isinstance(one.model, Message | Enum) else ()
+def _notes(element: Element) -> tuple[str, ...]:
+    words = [element.model.kind if isinstance(element.model, Message) else element.kind]
+    if element.table is not None:
+        words.append(f"Table {element.table} of the manual")
+    if element.page is not None:
+        words.append(f"page {element.page}")
+    return (", ".join(words),) if isinstance(element.model, Message | Enum) else ()
 
 
-def _unnoticed(one: Element) -> int:
-    return sum(not traced.noticed for traced in one.changes)
+def _unnoticed(element: Element) -> int:
+    return sum(not traced.noticed for traced in element.changes)
 
 
 def _text(value: int | None) -> str:
