@@ -90,7 +90,7 @@ def test_what_cannot_be_is_said_and_nothing_is_left_behind(write, everything, tm
         ((short,), "is no log: it has 3 bytes"),
         ((tmp_path / "missing",), "cannot read"),
         ((tmp_path,), "is a folder"),
-        ((path, "--out", "x.doc"), "tells no format"),
+        ((path, "--out", "x.doc"), "is not a known format"),
         ((path, "--format", "parquet"), "does not go to standard output"),
         ((path, "--node", "cubemag"), "describes no logs"),
         ((path, "--out", tmp_path / "no" / "x.csv"), "cannot write"),

@@ -81,7 +81,7 @@ def icd_option(command: Command) -> Command:
 def kind_option(command: Command) -> Command:
     """``--kind``, for commands that take the id of a message."""
     kinds = click.Choice(["telecommand", "telemetry", "configuration"])
-    return click.option("--kind", type=kinds, help="Where an id alone is ambiguous.")(command)
+    return click.option("--kind", type=kinds, help="Kind of the message, if an id is ambiguous.")(command)
 
 
 def format_option(*forms: str) -> Callable[[Command], Command]:

@@ -32,11 +32,10 @@ _CSV = ("frame", "node", "message", "direction", "id", "field", "raw", "value", 
 def decode(arguments: tuple[str, ...], icds: tuple[Path, ...], kind: str | None, form: str) -> None:
     """Decode frames: hex in any spelling, base64, C arrays, dumps, candump and slcan lines.
 
-    FRAME may have its framing, id and checksum or not; it may be - for standard input, @FILE or the name of a file, text or
-    bytes as they came over the line, with any number of frames. NODE (a name) and MESSAGE (an id or a name) are found where
-    the frame tells them; what is ambiguous is said. NODE may be left out where there is one only. JSON is an object, of
-    several frames an array. Exit status: 1 if a field that must hold a constant holds something else, or if a packet
-    between the frames cannot be decoded, which is reported; 2 if there is no frame that can be decoded.
+    FRAME can include its framing, id and checksum. It can also be - for standard input, @FILE, or the name of a file with text
+    or received bytes, with any number of frames. NODE (a name) and MESSAGE (an id or a name) are only needed if the frame does
+    not identify them; ambiguous frames are reported. JSON output is an object, or an array for several frames. Exit status: 1
+    if a constant field has another value or if a packet between the frames cannot be decoded, 2 if no frame can be decoded.
     """
     from icdgen import recognize
 

@@ -48,10 +48,10 @@ def _asked(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) -
     "sources",
     multiple=True,
     type=PATH,
-    help="Also name the lines of these C, Python or Rust sources that use what changed.",
+    help="Also list the lines of these C, Python or Rust sources that use changed names.",
 )
-@click.option("--unchecked", is_flag=True, help="Compare although `icdgen check` finds fault with an ICD.")
-@click.option("--all", "everything", is_flag=True, help="Leave nothing out of the text report.")
+@click.option("--unchecked", is_flag=True, help="Compare ICDs even if `icdgen check` reports errors.")
+@click.option("--all", "everything", is_flag=True, help="Do not shorten the text report.")
 def diff(
     sides: tuple[str, ...],
     form: str,
@@ -67,7 +67,7 @@ def diff(
     A side is an ICD file or folder, a git revision (HEAD~1, or HEAD~1:icd/a.yaml), or the output of `icdgen show --format
     json` (a file, or - for standard input). A..B compares two revisions; a revision alone is compared with the working tree.
 
-    Exit status: 0 nothing at a level of --fail-on, 1 found, 2 misuse or an ICD that cannot be compared.
+    Exit status: 0 no change in a layer of --fail-on, 1 changes, 2 wrong usage or an ICD that cannot be compared.
     """
     from icdgen.diff import inputs, report, uses
 

@@ -19,7 +19,7 @@ from icdgen.commands.common import format_option, icd_option, kind_option, load_
 def encode(words: tuple[str, ...], icds: tuple[Path, ...], kind: str | None, form: str, raw: bool) -> None:
     """Encode a message from physical values.
 
-    NODE may be left out where there is one only.
+    NODE can be omitted if there is only one.
     """
     from icdgen.values.encode import encode
     from icdgen.values.find import find_frame

@@ -42,7 +42,7 @@ ABOUT_FILES = frozenset({"IMP002", "IMP003", "IMP005"})
 @click.command("import", epilog="Example: icdgen import network.dbc --out icd")
 @click.argument("files", metavar="FILE|FOLDER...", type=PATH, nargs=-1, required=True)
 @click.option("--out", type=PATH, default=Path("icd"), show_default=True, help="Folder for the ICDs, one file a node.")
-@click.option("--kind", help="Kind of a definition that is not recognized by how it begins: xtce, dbc, ksy ...")
+@click.option("--kind", help="Kind of a definition that is not recognized by its beginning: xtce, dbc, ksy ...")
 @click.option(
     "--profile",
     "words",
@@ -52,7 +52,7 @@ ABOUT_FILES = frozenset({"IMP002", "IMP003", "IMP005"})
 @click.option(
     "--update",
     is_flag=True,
-    help="Lay what was read over ICDs that exist; errata, identifiers, summaries and comments stay.",
+    help="Update existing ICDs; errata, identifiers, summaries and comments are kept.",
 )
 @click.option("--dry-run", is_flag=True, help="Write no ICD; print what would be written or changed.")
 @click.option(
@@ -61,7 +61,7 @@ ABOUT_FILES = frozenset({"IMP002", "IMP003", "IMP005"})
     type=PATH,
     help="Write a page (HTML) with a picture of each doubtful table and its result.",
 )
-@click.option("--descriptions", is_flag=True, help="Hold the manual's descriptions as summaries.")
+@click.option("--descriptions", is_flag=True, help="Import the manual's descriptions as summaries.")
 @click.option(
     "--explore", is_flag=True, help="Print the kinds of tables, and for each a rule to be completed; import nothing."
 )
@@ -75,9 +75,7 @@ ABOUT_FILES = frozenset({"IMP002", "IMP003", "IMP005"})
 @click.option(
     "--explain", "table", type=int, metavar="TABLE", help="Print which rule read a table and why others did not."
 )
-@click.option(
-    "--workbench", is_flag=True, help="Serve a page on this machine on which the rules of --profile are written."
-)
+@click.option("--workbench", is_flag=True, help="Serve a local page for writing the rules of --profile.")
 @click.option("--pages", type=PAGES, help="Read these pages of a PDF only: 12 or 20-35.")
 @format_option("text", "json")
 @click.option("--jobs", type=click.IntRange(1, 64), help="Processes that read pages (default: one a core).")

@@ -24,7 +24,9 @@ _SUFFIXES = {".csv": "csv", ".jsonl": "jsonl", ".ndjson": "jsonl", ".parquet": "
 @click.command(epilog="Example: icdgen log wheels telemetry.bin --out telemetry.csv")
 @click.argument("words", nargs=-1, required=True, metavar="[NODE] FILE [MESSAGE]...")
 @click.option("--node", "name", help="Node, instead of the argument NODE.")
-@click.option("--out", "-o", type=PATH, metavar="FILE", help="Convert to this file, whose ending tells the format.")
+@click.option(
+    "--out", "-o", type=PATH, metavar="FILE", help="Convert to this file; its extension determines the format."
+)
 @click.option("--format", "form", type=click.Choice(["csv", "jsonl", "parquet"]), help="Convert to this format.")
 @click.option("--head", type=click.IntRange(0), metavar="N", help="Only the first N rows.")
 @click.option(
@@ -44,15 +46,15 @@ def log(
     direction: Literal["telemetry", "telecommand"],
     icds: tuple[Path, ...],
 ) -> None:
-    """List what a telemetry log or a recorded link holds, or convert it to CSV, JSON lines or Parquet.
+    """List the contents of a telemetry log or a recorded link, or convert it to CSV, JSON lines or Parquet.
 
-    FILE is a log as NODE writes it, or, where its messages travel in envelopes, the bytes that came, as receivers write them to
-    files. Of a log a row is an entry; of a recording it is a message. A column is a field: `frame__field_unit`, holding physical
-    values and names of members; MESSAGEs, by id or name, are the only ones that are wanted. Without --out the conversion goes to
-    standard output (not that to Parquet). What is cut off, damaged or not known is left out, and reported.
+    FILE is a log file of NODE, or, for a framed stream, a recording of the received bytes. A row is an entry of the log or a
+    message of the recording. A column is a field, `frame__field_unit`, with physical values and names of members. MESSAGEs, by
+    id or name, limit the output to these. Without --out the conversion goes to standard output (except Parquet). Truncated,
+    damaged and unknown entries are omitted and reported.
 
-    A log is checked by the times of its entries: damaged ranges are left out with the entry before them, time jumps (the clock was
-    set, the device restarted) are kept. Exit status: 0 converted or listed, 1 likewise, but part of a log is damaged, 2 misuse.
+    Times of the entries show damage: damaged ranges are omitted with the entry before them. Time jumps, such as a restart of
+    the device, are kept. Exit status: 0 converted or listed, 1 also, but part of a log is damaged, 2 wrong usage.
     """
     from icdgen.logfile.log import open_log
 
@@ -93,7 +95,7 @@ def _form_of(out: Path | None) -> str | None:
     if out is None:
         return None
     if out.suffix.lower() not in _SUFFIXES:
-        raise UserError(f"the ending of {out} tells no format", f"{', '.join(_SUFFIXES)}, or --format")
+        raise UserError(f"the extension of {out} is not a known format", f"{', '.join(_SUFFIXES)}, or --format")
     return _SUFFIXES[out.suffix.lower()]
 
 

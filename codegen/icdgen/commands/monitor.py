@@ -42,11 +42,11 @@ def monitor(
 ) -> None:
     """Show live telemetry of NODE as a table: MESSAGEs by id or name, default the identification.
 
-    NODE may be left out where there is one only. Frames that the device sends of its own accord (logs) are shown as well; over a
-    link with envelopes they are all, or those of MESSAGEs, and only what a telecommand asks for is asked for. What does not
-    answer any more keeps its last values, with their age. On a terminal the table stays in its place, and scrolls if it is longer
-    (arrows, PgUp, PgDn, Home, End). In a pipe each round is printed; --format json prints an object for each frame. A line that
-    is lost is taken up again as soon as it is there. Exit status: 1 if a frame was not answered in the last round.
+    NODE can be omitted if there is only one. Frames that the device sends without a request (logs) are shown as well. On a
+    framed stream, all received messages or the given MESSAGEs are shown, and only responses to telecommands are requested. A
+    message without a response keeps its last values and shows their age. On a terminal the table stays in place and scrolls if
+    it is longer (arrows, PgUp, PgDn, Home, End). In a pipe each round is printed; --format json prints an object per frame. A
+    lost connection is opened again when possible. Exit status: 1 if a frame had no response in the last round.
     """
     from icdgen.link.live import Monitor
     from icdgen.link.options import open_session, stranger

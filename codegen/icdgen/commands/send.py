@@ -32,9 +32,9 @@ if TYPE_CHECKING:
 def send(words: tuple[str, ...], icds: tuple[Path, ...], raw: bool, yes: bool, form: str, **options: Any) -> None:
     """Send one telecommand and wait for its acknowledge or response.
 
-    NODE may be left out where there is one only. A telecommand with a hazard (its `hazard`) is shown and asked about first;
-    without a terminal to ask on it is only sent with --yes. Exit status: 0 acknowledged (or sent, if it is never acknowledged),
-    1 refused, no answer or not sent, 2 misuse.
+    NODE can be omitted if there is only one. For a telecommand with a `hazard`, icdgen asks for confirmation; without a
+    terminal, --yes is required. Exit status: 0 acknowledged (or sent, if it has no acknowledge), 1 rejected, no response or not
+    sent, 2 wrong usage.
     """
     from icdgen_runtime.wire.client import Request
     from icdgen_runtime.wire.events import Done

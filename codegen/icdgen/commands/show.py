@@ -20,7 +20,7 @@ from icdgen.commands.common import format_option, icd_option, kind_option, load_
 def show(node: str | None, item: str | None, icds: tuple[Path, ...], kind: str | None, form: str) -> None:
     """Show the nodes, the messages of NODE, or one ITEM of it: a message by id or name, an enumeration, a struct, an erratum.
 
-    NODE may be left out where there is one only.
+    NODE can be omitted if there is only one.
 
     --format json prints everything, in a stable form for programs (schema: show.schema.json in the package).
     """

@@ -32,11 +32,11 @@ class _Sim(click.Command):
 
 
 @click.command(cls=_Sim, epilog="Example: icdgen sim --node wheels --tcp 4000")
-@click.option("--node", "name", help="The program that runs; one that starts another does so after the boot time.")
+@click.option("--node", "name", help="Node to simulate; a boot program starts the next program after the boot time.")
 @click.option("--pty", is_flag=True, help="Serve on a pseudo-terminal, whose path is printed.")
 @click.option("--tcp", type=_PORT, metavar="PORT", help="Serve on a TCP port; 0 takes a free one, which is printed.")
-@click.option("--udp", type=_PORT, metavar="PORT", help="Serve on a UDP port: each datagram is a piece of the stream.")
-@click.option("--connect", metavar="PORT", help="Be the client of tcp://HOST:PORT or udp://HOST:PORT.")
+@click.option("--udp", type=_PORT, metavar="PORT", help="Serve on a UDP port: each datagram is a part of the stream.")
+@click.option("--connect", metavar="PORT", help="Connect to tcp://HOST:PORT or udp://HOST:PORT as a client.")
 @click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen on.")
 @click.option(
     "--set",
@@ -47,13 +47,15 @@ class _Sim(click.Command):
     help="Values of a frame, as encode takes them. Repeatable.",
 )
 @click.option("--script", type=PATH, metavar="FILE", help="Values, waves, faults and logs over time, as YAML.")
-@click.option("--file", "files", multiple=True, metavar="TYPE:COUNTER=PATH", help="A file that it has. Repeatable.")
-@click.option("--uploads", type=PATH, metavar="FOLDER", help="Where uploaded programs are written, DESTINATION.bin.")
+@click.option("--file", "files", multiple=True, metavar="TYPE:COUNTER=PATH", help="A file of the device. Repeatable.")
+@click.option("--uploads", type=PATH, metavar="FOLDER", help="Folder for uploaded programs, DESTINATION.bin.")
 @click.option(
     "--fault", "faults", multiple=True, metavar="KIND=SHARE[@WHAT]", help="A fault, e.g. drop=10%@acknowledge."
 )
 @click.option("--loss", metavar="SHARE", help="Short for --fault drop=SHARE@packet,upload: packets of files are lost.")
-@click.option("--late", type=click.IntRange(1), default=1500, show_default=True, help="How late is late at most, ms.")
+@click.option(
+    "--late", type=click.IntRange(1), default=1500, show_default=True, help="Largest delay of the fault late, in ms."
+)
 @click.option(
     "--seed",
     type=int,
@@ -62,23 +64,39 @@ class _Sim(click.Command):
     help="Seed of the random faults; the same seed gives the same faults.",
 )
 @click.option("--boot", type=click.IntRange(0), help="Boot time in ms (default: the ICD's).")
-@click.option("--busy", type=click.IntRange(0), default=20, show_default=True, help="Loading, erasing ... takes, ms.")
-@click.option("--processing", type=click.IntRange(0), default=0, show_default=True, help="A telecommand takes, ms.")
-@click.option("--strict", is_flag=True, help="Refuse also values that are no member, or beyond a limit.")
 @click.option(
-    "--every", type=SECONDS, default=1.0, show_default=True, help="Telemetry in envelopes goes out each, s; 0: none."
+    "--busy",
+    type=click.IntRange(0),
+    default=20,
+    show_default=True,
+    help="Duration of loading, erasing and similar operations, in ms.",
 )
 @click.option(
-    "--envelope", "chosen", multiple=True, metavar="ROLE=NUMBER", help="A field of the envelope, e.g. source=3."
+    "--processing",
+    type=click.IntRange(0),
+    default=0,
+    show_default=True,
+    help="Processing time of a telecommand, in ms.",
 )
-@click.option("--orders", is_flag=True, help="Take orders from standard input: set, fault, log, restart.")
+@click.option("--strict", is_flag=True, help="Also reject unknown enumeration values and values out of range.")
+@click.option(
+    "--every",
+    type=SECONDS,
+    default=1.0,
+    show_default=True,
+    help="Period of telemetry on framed streams, in s; 0: none.",
+)
+@click.option(
+    "--envelope", "chosen", multiple=True, metavar="ROLE=NUMBER", help="Value of a header field, e.g. source=3."
+)
+@click.option("--orders", is_flag=True, help="Read orders from standard input: set, fault, log, restart.")
 @icd_option
 def sim(
     name: str, pty: bool, tcp: int | None, udp: int | None, host: str, icds: tuple[Path, ...], **options: Any
 ) -> None:
     """Simulate a device on a pseudo-terminal (the default), a TCP or a UDP port.
 
-    Prints where it listens, one line for each, and serves until it is interrupted or, with --orders, its input ends.
+    Prints the address of each port, and runs until it is interrupted or, with --orders, until its input ends.
     """
     from icdgen.sim import run
 
