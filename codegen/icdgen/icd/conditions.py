@@ -1,4 +1,4 @@
-"""Fields that are not always there: `when` of a field names others and the values that they must have then."""
+"""Optional fields: the key `when` names other fields, and the values that they have if the field is present."""
 
 from __future__ import annotations
 
@@ -16,123 +16,129 @@ _LEAST = "`when` names a field that every frame has: an integer without a formul
 _TYPES = (*INTEGERS, "float", "bytes", "text")
 
 
-def _given(item: Map) -> Map:
-    """What a field says under `when`; nothing where that is no mapping."""
-    found = item.get("when")
-    return found if isinstance(found, Map) else unread()
+def _when(item: Map) -> Map:
+    """Return the key `when` of a field; empty if it is not a mapping."""
+    when = item.get("when")
+    return when if isinstance(when, Map) else unread()
 
 
 def of(message: Map, item: Map, enums: Mapping[str, Enum]) -> tuple[Condition, ...]:
-    """The conditions of a field; of what is wrong with one, nothing."""
-    known = _fields(message)
-    found = []
-    for name, said in _given(item).items():
-        one = known.get(name)
-        if one is None or not _decides(one):
+    """Return the conditions of a field, without those that are wrong."""
+    fields = _fields(message)
+    conditions = []
+    for name, listed in _when(item).items():
+        field = fields.get(name)
+        if field is None or not _can_decide(field):
             continue
-        values = [_value(one, each, enums) for each in _listed(said)]
+        values = [_raw_value(field, value, enums) for value in _as_list(listed)]
         if values and None not in values:
-            found.append(Condition(name, tuple(dict.fromkeys(value for value in values if value is not None))))
-    return tuple(found)
+            conditions.append(Condition(name, tuple(dict.fromkeys(value for value in values if value is not None))))
+    return tuple(conditions)
 
 
 def are_understood(node: LayoutNode) -> bool:
     """Return whether a node has all conditions of its line. Each that is wrong has a finding, and no other follows from it."""
-    return len(_given(node.source)) == len(node.present_if)
+    return len(_when(node.source)) == len(node.present_if)
 
 
 def faults_of_names(message: Map, item: Map) -> Iterator[Fault]:
-    """What is wrong with the fields that it depends on."""
-    when, known = _given(item), _fields(message)
+    """Yield the faults of the fields that a field depends on."""
+    when, fields = _when(item), _fields(message)
     for name in when:
-        if name not in known:
+        if name not in fields:
             text = f"`{item['name']}` depends on `{name}`, but `{message['name']}` has no such field"
-            names = (other for other, one in known.items() if one is not item and _decides(one))
+            names = (other for other, field in fields.items() if field is not item and _can_decide(field))
             yield Fault.at_key(when, name, text, *suggestion(name, names, _LEAST))
-        elif not _is_sound(known[name]):
-            continue  # a finding already
+        elif not _is_sound(fields[name]):
+            continue  # it has a finding
         elif name == item["name"]:
             yield Fault.at_key(when, name, f"`{name}` cannot depend on itself", _LEAST)
-        elif reasons := reasons_against(known[name], CONDITION):
+        elif reasons := reasons_against(fields[name], CONDITION):
             yield Fault.at_key(when, name, f"`{item['name']}` cannot depend on `{name}`: it {reasons[0]}", _LEAST)
 
 
 def faults_of_values(message: Map, item: Map, enums: Mapping[str, Enum]) -> Iterator[Fault]:
-    """What is wrong with the values that others must have."""
-    when, known = _given(item), _fields(message)
+    """Yield the faults of the values that other fields must have."""
+    when, fields = _when(item), _fields(message)
     for name, listed in when.items():
-        one = known.get(name)
-        if one is None or not _decides(one) or (one["type"] == "enum" and one.get("enum", "") not in enums):
-            continue  # a finding already
-        values = [_value(one, said, enums) for said in _listed(listed)]
-        for said, value in zip(_listed(listed), values, strict=True):
-            if value is None and _is_range(one, said, enums):
-                text = f"{_shown(said)} is a range of values of `{one['enum']}`"
+        field = fields.get(name)
+        if field is None or not _can_decide(field) or (field["type"] == "enum" and field.get("enum", "") not in enums):
+            continue  # it has a finding
+        raws: list[int] = []
+        for value in _as_list(listed):
+            raw = _raw_value(field, value, enums)
+            if raw is not None:
+                raws.append(raw)
+            if raw is None and _is_range(field, value, enums):
+                text = f"{_shown(value)} is a range of values of `{field['enum']}`"
                 yield Fault.at_key(when, name, text, "list the values as numbers")
-            elif value is None:
-                yield Fault.at_key(when, name, f"`{name}` is never {_shown(said)}", f"`{name}` {_allowed(one, enums)}")
-            elif "const" in one and value != one["const"]:
-                text = f"`{name}` is always {one['const']}, so `{item['name']}` is never present"
+            elif raw is None:
+                help = f"`{name}` {_possible_values(field, enums)}"
+                yield Fault.at_key(when, name, f"`{name}` is never {_shown(value)}", help)
+            elif "const" in field and raw != field["const"]:
+                text = f"`{name}` is always {field['const']}, so `{item['name']}` is never present"
                 yield Fault.at_key(when, name, text, "correct the value, or remove the field")
-        told = [value for value in values if value is not None]
-        if len(set(told)) < len(told):
+        if len(set(raws)) < len(raws):
             yield Fault.at_key(when, name, f"a value of `{name}` is given twice", "remove one of them")
 
 
-def _listed(said: object) -> list[object]:
-    return list(said) if isinstance(said, list) else [said]
+def _as_list(value: object) -> list[object]:
+    return list(value) if isinstance(value, list) else [value]
 
 
-def _shown(said: object) -> str:
-    return str(said).lower() if isinstance(said, bool) else f"`{said}`" if isinstance(said, str) else str(said)
+def _shown(value: object) -> str:
+    """Return a value as an ICD writes it; text in backticks."""
+    return str(value).lower() if isinstance(value, bool) else f"`{value}`" if isinstance(value, str) else str(value)
 
 
-def _value(field: Map, said: object, enums: Mapping[str, Enum]) -> int | None:
-    """The raw value that is meant; None if the field cannot have it."""
+def _raw_value(field: Map, value: object, enums: Mapping[str, Enum]) -> int | None:
+    """Return the raw value that the ICD means by a value; None if the field cannot have it."""
     kind, bits = field["type"], field["bits"]
     if kind == "enum":
         enum = enums.get(field.get("enum", ""))
-        if isinstance(said, str):
+        if isinstance(value, str):
             members = enum.members if enum else ()
-            return next((one.value for one in members if one.name == said and one.to is None), None)
-        if type(said) is not int:
+            return next((member.value for member in members if member.name == value and member.to is None), None)
+        if type(value) is not int:
             return None
-        low, high = _range(bits, enum is not None and enum.signed)
-        return said if low <= said <= high else None
+        low, high = _raw_range(bits, enum is not None and enum.signed)
+        return value if low <= value <= high else None
     if kind == "bool":
-        return int(said) if said in (0, 1) and isinstance(said, int) else None
-    low, high = _range(bits, kind == "int")
-    return said if type(said) is int and low <= said <= high else None
+        return int(value) if value in (0, 1) and isinstance(value, int) else None
+    low, high = _raw_range(bits, kind == "int")
+    return value if type(value) is int and low <= value <= high else None
 
 
-def _range(bits: int, is_signed: bool) -> tuple[int, int]:
-    """The least and the largest raw value."""
+def _raw_range(bits: int, is_signed: bool) -> tuple[int, int]:
+    """Return the smallest and the largest raw value."""
     return (-(1 << bits - 1), (1 << bits - 1) - 1) if is_signed else (0, (1 << bits) - 1)
 
 
-def _is_range(field: Map, said: object, enums: Mapping[str, Enum]) -> bool:
+def _is_range(field: Map, value: object, enums: Mapping[str, Enum]) -> bool:
+    """Return whether a value names a member of an enumeration that has several values."""
     enum = enums.get(field.get("enum", ""))
-    return enum is not None and any(one.name == said and one.to is not None for one in enum.members)
+    return enum is not None and any(member.name == value and member.to is not None for member in enum.members)
 
 
-def _allowed(field: Map, enums: Mapping[str, Enum]) -> str:
+def _possible_values(field: Map, enums: Mapping[str, Enum]) -> str:
+    """Return which values a field has, as the end of a sentence."""
     if field["type"] == "bool":
         return "is true or false"
     if field["type"] == "enum":
         enum = enums.get(field.get("enum", ""))
-        names = ", ".join(f"`{one.name}`" for one in enum.members[:5]) if enum else "nothing"
+        names = ", ".join(f"`{member.name}`" for member in enum.members[:5]) if enum else "nothing"
         return f"has a value of `{field.get('enum')}`: {names}{' ...' if enum and len(enum.members) > 5 else ''}"
-    low, high = _range(field["bits"], field["type"] == "int")
+    low, high = _raw_range(field["bits"], field["type"] == "int")
     return f"is {low:,} to {high:,}"
 
 
-def _decides(field: Map) -> bool:
-    """Whether something can depend on a field."""
+def _can_decide(field: Map) -> bool:
+    """Return whether other fields can depend on a field."""
     return _is_sound(field) and not reasons_against(field, CONDITION)
 
 
 def _is_sound(field: Map) -> bool:
-    """Whether there is no finding already of what is looked at here."""
+    """Return whether type, width and enumeration of a field have no finding."""
     kind, bits = field.get("type"), field.get("bits", 1 if "size" in field else 0)
     if kind not in _TYPES or type(bits) is not int or not isinstance(field.get("enum", ""), str):
         return False
@@ -140,11 +146,11 @@ def _is_sound(field: Map) -> bool:
 
 
 def _fields(message: Map) -> dict[str, Map]:
-    """The fields by name, but for structs."""
-    found = [item for item in mappings(message.get("fields")) if isinstance(item.get("name"), str)]
-    return {item["name"]: item for item in reversed(found) if "struct" not in item}
+    """Return the fields of a message by name, without structs; of two with one name the first."""
+    named = [item for item in mappings(message.get("fields")) if isinstance(item.get("name"), str)]
+    return {item["name"]: item for item in reversed(named) if "struct" not in item}
 
 
-def exclude(one: tuple[Condition, ...], other: tuple[Condition, ...]) -> bool:
-    """Whether two fields of these conditions are never both there."""
-    return any(a.field == b.field and not set(a.values) & set(b.values) for a in one for b in other)
+def exclude(conditions: tuple[Condition, ...], others: tuple[Condition, ...]) -> bool:
+    """Return whether two fields with these conditions are never in the same frame."""
+    return any(a.field == b.field and not set(a.values) & set(b.values) for a in conditions for b in others)

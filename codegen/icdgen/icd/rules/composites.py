@@ -24,8 +24,8 @@ def _parts(ctx: Context) -> Iterator[tuple[Message, Node, Part, Map]]:
     """Every part of every composite frame, with the mapping that declares it."""
     for message, node in ctx.messages:
         if message.contains:
-            told = [(row.get("message"), row.get("at"), row) for row in mappings(message.source["contains"])]
-            rows = {(name, at): row for name, at, row in told if isinstance(name, str) and isinstance(at, int)}
+            entries = [(row.get("message"), row.get("at"), row) for row in mappings(message.source["contains"])]
+            rows = {(name, at): row for name, at, row in entries if isinstance(name, str) and isinstance(at, int)}
             for part in message.contains:
                 yield message, node, part, rows[part.message, part.at]
 
@@ -52,15 +52,15 @@ def part_exists(ctx: Context) -> Iterator[Fault]:
 
 
 def _repeated(frame: Message, frames: dict[str, Message]) -> set[str]:
-    """The names of a frame, of those that it repeats, of those that these repeat, and so on."""
-    found: set[str] = set()
+    """Return the name of a frame and of all frames that it repeats, directly or through others."""
+    repeated: set[str] = set()
     left = [frame.name]
     while left:
         name = left.pop()
-        if name not in found and name in frames:
-            found.add(name)
+        if name not in repeated and name in frames:
+            repeated.add(name)
             left += [part.message for part in frames[name].contains]
-    return found
+    return repeated
 
 
 @rule("ICD047", whole=True)
@@ -72,10 +72,10 @@ def part_matches(ctx: Context) -> Iterator[Fault]:
             composite, fields = message, _fields_with_bits(message)
         frame = next((m for m in ctx.messages_of(node) if m.name == part.message), None)
         if frame is None or frame is message or frame.layout.sequence:
-            continue  # a finding already
+            continue  # ICD046 or ICD122 reports it
         start, end = part.at, part.at + frame.length * 8
         if end > message.length * 8:
-            continue  # likewise
+            continue  # ICD046 reports it
         wanted = {part.at + field.at: field for field in _fields_with_bits(frame)}
         reported = set()
         for field in fields:

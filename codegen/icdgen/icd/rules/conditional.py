@@ -29,7 +29,7 @@ def depends_on_a_field(ctx: Context) -> Iterator[Fault]:
 @rule("ICD161")
 def may_hold(ctx: Context) -> Iterator[Fault]:
     for field, (_, message, node) in ctx.fields_with["when"]:
-        enums = {one.name: one for known in ctx.scope(node) for one in known.enums}
+        enums = {enum.name: enum for n in ctx.scope(node) for enum in n.enums}
         yield from conditions.faults_of_values(message.source, field.source, enums)
 
 

@@ -1,4 +1,4 @@
-"""What the languages would declare for a model, as far as it is sound."""
+"""Names that languages declare for a model without its errors."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _TEXT = attrgetter("text")
 
 
 class Declared(NamedTuple):
-    """What one language declares: hundreds of thousands of names, so that rules ask for those of some texts only."""
+    """Names that one language declares. They can be hundreds of thousands, so rules ask for those of some texts only."""
 
     language: str
     reserved: frozenset[str]
@@ -31,19 +31,19 @@ class Declared(NamedTuple):
     texts: Counter[str]  # in all scopes together
 
     def spelled(self, texts: Set[str]) -> list[Identifier]:
-        """The identifiers that are one of these texts."""
-        return [one for one in self.identifiers if one.text in texts] if texts else []
+        """Return the identifiers that have one of these texts."""
+        return [identifier for identifier in self.identifiers if identifier.text in texts] if texts else []
 
 
 def declared(ctx: Context) -> list[Declared]:
-    """What each language declares, worked out once a run."""
+    """Return the names that each language declares; computed once for all rules."""
     if ctx.declared is None:
         icd = _sound_icd(ctx)
         ctx.declared = []
-        for one in ctx.languages if icd.nodes else ():
-            identifiers = list(one.identifiers(icd))
+        for language in ctx.languages if icd.nodes else ():
+            identifiers = list(language.identifiers(icd))
             texts = Counter(map(_TEXT, identifiers))
-            ctx.declared.append(Declared(one.name, one.reserved, identifiers, texts))
+            ctx.declared.append(Declared(language.name, language.reserved, identifiers, texts))
     return ctx.declared
 
 

@@ -113,11 +113,11 @@ def struct_used(ctx: Context) -> Iterator[Fault]:
         name = row["struct"] if row["struct"] in known else close_to(row["struct"], known)  # a slip of the pen
         named.setdefault(str(owner.get("name")) if id(owner) in structs else "", set()).add(name)
     used: set[str] = set()  # by what is written: whatever else is wrong with a message, it uses what it names
-    found = [""]
-    while found:
-        new = named.get(found.pop(), set()) - used
+    left = [""]
+    while left:
+        new = named.get(left.pop(), set()) - used
         used |= new
-        found += new
+        left += new
     for struct, _ in ctx.structs:
         if struct.name not in used and names.count(struct.name) == 1:
             message = f"no message uses the struct {quote(struct.name)}"
