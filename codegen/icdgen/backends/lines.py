@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from functools import lru_cache
 
 from icdgen.describe.comments import one_line
 
@@ -46,7 +45,6 @@ def wrapped(text: str, width: int) -> list[str]:
     return [*lines, rest]
 
 
-@lru_cache(maxsize=8192)
 def plain(text: str) -> str:
     """One line without control, invisible or direction-changing characters."""
     text = one_line(text)

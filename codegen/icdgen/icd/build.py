@@ -378,7 +378,7 @@ def calibration(text: str | None, kind: str) -> tuple[formula.Scale | None, curv
         with suppress(formula.FormulaError):
             return formula.parse_cached(text), None
     with suppress(formula.FormulaError):
-        return None, curve.parse_cached(text)
+        return None, curve.parse(text)
     return None, None
 
 

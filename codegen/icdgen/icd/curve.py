@@ -169,9 +169,6 @@ def parse(text: str) -> Curve:
     return polynomial(rounded)
 
 
-parse_cached = lru_cache(maxsize=1024)(parse)
-
-
 def is_finite(curve: Curve, low: int, high: int) -> bool:
     """Whether no step leaves the doubles, for raw values from ``low`` to ``high``."""
     return all(
