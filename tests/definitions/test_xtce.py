@@ -201,6 +201,16 @@ def test_containers_that_cannot_be_held_are_left_out_and_end(text, says, tmp_pat
     assert says.replace("1,000,000", "20,000") in refused(system(text), tmp_path)
 
 
+def test_a_condition_is_on_the_value_of_a_repeated_parameter_that_was_sent_last(tmp_path):
+    condition = '<IncludeCondition><Comparison parameterRef="P" value="1"/></IncludeCondition>'
+    behind = '<LocationInContainerInBits referenceLocation="containerStart"><FixedValue>24</FixedValue></LocationInContainerInBits>'
+    (tmp_path / "twice.xml").write_text(system(container("A", ENTRY * 2 + entry(condition) + entry(behind))))
+    read = run.read(tmp_path / "twice.xml", xtce.Xtce())
+    assert [(one["at"], one["name"], one.get("when")) for one in message(read, "A")["fields"]] == [
+        (0, "P", None), (8, "P 2", None), (16, "P 3", {"P 2": 1}), (24, "P 4", None),
+    ]  # fmt: skip
+
+
 @pytest.mark.parametrize(
     ("types", "says"),
     [

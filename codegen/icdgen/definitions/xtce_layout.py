@@ -52,6 +52,9 @@ class Part(containers.Part):
     piece: Piece = field(kw_only=True)
     reference: Reference | None = None
     is_reserved: bool = False  # it has room and no meaning
+    conditions: list[tuple[Part, object]] = field(
+        default_factory=list
+    )  # parts, and the values with which this one is present
 
 
 class Told(NamedTuple):
@@ -100,7 +103,8 @@ class Layout(Container[Part]):
                 self._move(entry, start)
                 self._entry(entry, container, within)
                 if (condition := entry.find("IncludeCondition")) is not None:
-                    self._conditional(entry, self._needs(condition, container, _named(entry)), before)
+                    conditions = self._conditions(condition, container, _named(entry), before)
+                    self._conditional(entry, conditions, before)
             except TooMuch:
                 raise
             except NotHeld as why:
@@ -111,13 +115,14 @@ class Layout(Container[Part]):
             if len(self.parts) > MOST_FIELDS:
                 raise NotHeld(f"it has more than {MOST_FIELDS} fields")
 
-    def _conditional(self, entry: Element, needs: Item, before: int) -> None:
+    def _conditional(self, entry: Element, conditions: list[tuple[Part, object]], before: int) -> None:
         """Makes what an entry added to ``before`` parts present only where other fields have some values."""
         self.jumps, self.behind = True, _named(entry)
         for part in self.parts[before:]:
             if "when" in part.item:
                 raise NotHeld(f"`{_named(entry)}` is present only on nested conditions")
-            part.item |= needs
+            part.conditions = conditions
+            part.item["when"] = {of.path[-1]: values for of, values in conditions}
 
     def _move(self, entry: Element, start: int) -> None:
         location = entry.find("LocationInContainerInBits")
@@ -220,18 +225,18 @@ class Layout(Container[Part]):
                 raise NotHeld("it depends on more than equalities that must all be true")
             yield told[0]
 
-    def _needs(self, condition: Element, seen_from: Element, named: str) -> Item:
-        """The key of what other fields must be for an entry to be there. Raises `NotHeld`."""
-        found: Item = {}
+    def _conditions(self, condition: Element, seen_from: Element, named: str, before: int) -> list[tuple[Part, object]]:
+        """Return the parts in front of an entry on which it depends, with the values that they must have. Raises `NotHeld`."""
+        conditions: list[tuple[Part, object]] = []
         for alternatives in self._all_of(condition, seen_from, f"`{named}` is present only if there is"):
-            names = {self._part(one).path[-1]: self._part(one) for one in alternatives}
-            if len(names) > 1 or (name := next(iter(names))) in found:
+            part, *others = [self._part(told, before) for told in alternatives]
+            if any(other is not part for other in others) or any(of is part for of, _ in conditions):
                 raise NotHeld(f"`{named}` is present on a condition of several fields")
-            raws = [self._raw(names[name], one) for one in alternatives]
-            found[name] = raws if len(raws) > 1 else raws[0]
-        if not found:
+            raws = [self._raw(part, told) for told in alternatives]
+            conditions.append((part, raws if len(raws) > 1 else raws[0]))
+        if not conditions:
             raise NotHeld(f"`{named}` is present only on a condition that is empty")
-        return {"when": found}
+        return conditions
 
     def _all_of(self, criteria: Iterable[Element], seen_from: Element, said: str) -> Iterator[list[Told]]:
         """What must all hold: of each what is one of several. Raises `NotHeld`."""
@@ -271,9 +276,9 @@ class Layout(Container[Part]):
         part.item["const"] = raw
         return raw
 
-    def _part(self, told: Told) -> Part:
-        """The last part that is the parameter, argument or member. Raises `NotHeld`."""
-        part = next((one for one in reversed(self.parts) if one.reference == told.reference), None)
+    def _part(self, told: Told, end: int | None = None) -> Part:
+        """The last part, of the first ``end``, that is the parameter, argument or member. Raises `NotHeld`."""
+        part = next((one for one in reversed(self.parts[:end]) if one.reference == told.reference), None)
         if part is None:
             raise self.missing(told.reference.name)
         return part
@@ -309,6 +314,9 @@ class Layout(Container[Part]):
             raise NotHeld(f"its frames have more than {MOST_BYTES:,} bytes")
         parts = [part for part in self.parts if part.at >= start and not part.is_reserved]
         names = _numbered(parts)
+        for part in parts:
+            if part.conditions:  # on fields by the names that they have now
+                part.item["when"] = {names.get(id(of), of.path[-1]): values for of, values in part.conditions}
         closed = [part for part in parts if part.bits]
         message["length"] = -(-end // 8)
         fields: list[Item] = []
