@@ -73,7 +73,7 @@ def test_calibrations_are_formulas_or_tables(probe):
         (
             'raw="0.5"',
             'raw="90"',
-            "it is calibrated by a table that cannot be used: raw value 90 is there twice: points are",
+            "it is calibrated by a table that cannot be used: raw value 90 occurs twice: list points",
         ),
         ('calibrated="-1e-9"', 'calibrated="much"', "a coefficient is `much`"),
     ],
