@@ -2,6 +2,10 @@
 
 Raw values are int (uint, int, enum, bool as 0 or 1), bytes (bytes and text fields) and, for floats, the int of their
 IEEE 754 bits, so that every NaN survives. Physical values are exact `fractions.Fraction`s, those of curves doubles.
+
+`decode_frame` returns the values that a frame has. An object of generated code has room for the longest frame; therefore
+`decode` returns and `encode` takes the values of the longest frame, in which elements that a frame does not have are 0, and
+bytes or text of variable length end with zeros. `decode` and `_shortened` translate between the two forms.
 """
 
 from __future__ import annotations
@@ -11,10 +15,23 @@ import struct
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
+from typing import TypeAlias
 
 from icdgen.icd.curve import Curve
-from icdgen.icd.model import Field, Icd, Message, Node, Special, Tail
-from icdgen.icd.places import AnyField
+from icdgen.icd.layout import (
+    Derived,
+    FrameField,
+    Layout,
+    Overlay,
+    Scalar,
+    Sizes,
+    Special,
+    VariablePart,
+)
+from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.places import AnyValue
+
+Raw: TypeAlias = "int | bytes"
 
 
 class CodecError(ValueError):
@@ -27,166 +44,157 @@ class LengthError(CodecError):
         self.expected, self.actual = expected, actual
 
 
-def decode(node: Node, message: Message, frame: bytes) -> dict[str, int | bytes]:
-    """Raw value of every field that is there, by name; elements that are not in the frame are 0. Raises `LengthError`."""
-    actual, frame = len(frame), spread(node, message, frame) if message.inner else frame
-    lacking, bits = len(frame) - actual, int.from_bytes(frame, "little")  # what a frame leaves out reads as 0
-    if len(frame) not in _whole_lengths(message):
-        raise LengthError(message, _next_length(message, len(frame)) - lacking, actual)
-    raw = {one.name: _read(node, one, bits) for one in message.fields if not one.when and one.derived is None}
-    if message.has_conditions:
-        raw |= {one.name: _read(node, one, bits) for one in message.fields if one.when and is_present(one, raw)}
-    tail, counter = message.tail, message.counter
-    if tail is not None and counter is not None:
-        count = (len(frame) - message.begin) // tail.step
-        if counter.implied:
-            raw[counter.name] = count
-        elif _number(raw[counter.name]) + tail.plus != count:
-            told = message.begin + (_number(raw[counter.name]) + tail.plus) * tail.step
-            raise LengthError(message, max(0, told - lacking), actual)
-    return raw | derived(message, raw) if message.views else raw
+def decode(node: Node, message: Message, frame: bytes) -> dict[str, Raw]:
+    """Return the raw values of the longest frame by name, without optional fields that are absent. Raises `LengthError`."""
+    raw = decode_frame(node, message, frame)
+    if not message.layout.parts:
+        return raw
+    for part in message.layout.parts:
+        value = raw.get(part.name)
+        if isinstance(value, bytes):
+            raw[part.name] = value.ljust(part.most, b"\0")
+    for field in message.layout.frame(node.orders):
+        if field.name not in raw and field.has_bits and not field.conditions:
+            raw[field.name] = bytes(field.bits // 8) if field.is_bytes else 0
+    return raw
 
 
-def derived(message: Message, raw: Mapping[str, int | bytes]) -> dict[str, int | bytes]:
-    """The values that are derived from raw ones of the fields, each the bits of a double; none of what is not there."""
-    fields = {field.name: field for field in message.fields}
-    values = dict(raw)
-    found: dict[str, int | bytes] = {}
-    for field in message.views:
-        if field.derived is not None and values.keys() >= set(field.derived.fields):
-            doubles = [value_double(fields[name], _number(values[name])) for name in field.derived.fields]
-            values[field.name] = found[field.name] = float_bits(field, field.derived.double(doubles))
-    return found
+def decode_frame(node: Node, message: Message, frame: bytes) -> dict[str, Raw]:
+    """Return the raw values that a frame has, by name. Raises `LengthError`.
 
-
-def _next_length(message: Message, actual: int) -> int:
-    """The length that a frame of no possible length should have had: the longest possible one below, or the least."""
-    lengths = _whole_lengths(message)
-    return max((one for one in lengths if one < actual), default=lengths[0])
-
-
-def _whole_lengths(message: Message) -> range:
-    """The lengths that frames have with all elements of `Message.inner`."""
-    tail = message.tail
-    if tail is None or not message.inner:
-        return message.lengths
-    return range(message.begin + tail.fewest * tail.step, message.length + 1, tail.step)
-
-
-def spread(node: Node, message: Message, frame: bytes) -> bytes:
-    """The frame with zeros for the elements of `Message.inner` that it does not have: the beginning of the longest one.
-
-    Raises `LengthError` if it is shorter than any, or says that it has more elements than there can be.
+    Array elements beyond its number of elements and optional fields that are absent have no value.
     """
-    if len(frame) < message.least:
-        raise LengthError(message, message.least, len(frame))
-    try:
-        for place, lacking in _gaps(message, _counts(node, message, frame)):
-            frame = frame[:place] + bytes(lacking) + frame[place:]
-    except CodecError:
-        begin, longest = message.inner[0].begin, message.length  # another length than it has, whatever its count says
-        raise LengthError(message, begin if len(frame) == longest else longest, len(frame)) from None
-    return frame
+    sizes = sizes_of_frame(node, message, frame)
+    fields = message.layout.frame(node.orders, sizes)
+    bits = int.from_bytes(frame, "little")  # a frame that ends early lacks zeros
+    raw: dict[str, Raw] = {}
+    optional = []
+    for field in fields:
+        if field.role == "count":
+            raw[field.name] = sizes[message.layout.parts[-1].name]
+        elif field.scalar.present_if:
+            optional.append(field)
+        elif field.role != "derived":
+            raw[field.name] = _read(field, bits)
+    for field in optional:  # they may depend on fields behind them
+        if is_present(field, raw):
+            raw[field.name] = _read(field, bits)
+    return raw | derived(message, raw) if message.layout.derived else raw
 
 
-def squeezed(node: Node, message: Message, frame: bytes) -> bytes:
-    """Of the beginning of the longest frame the bytes that it has: see `spread`. Raises `CodecError` for a count that cannot be."""
-    return _without(frame, _gaps(message, _counts(node, message, frame)))
+def fields_of_frame(node: Node, message: Message, raw: Mapping[str, Raw]) -> list[FrameField]:
+    """List the scalars with values in `raw`, where they stand in the frame of these values. Raises `CodecError`."""
+    return [field for field in message.layout.frame(node.orders, sizes_of_values(message, raw)) if field.name in raw]
 
 
-def _without(frame: bytes, gaps: list[tuple[int, int]]) -> bytes:
-    for place, lacking in reversed(gaps):
-        frame = frame[:place] + frame[place + lacking :]
-    return frame
+def derived(message: Message, raw: Mapping[str, Raw]) -> dict[str, Raw]:
+    """Return the derived values, each as the bits of a double; none whose operands have no raw value."""
+    scalars: dict[str, Scalar] = {}
+    for node in message.layout.nodes:
+        if isinstance(node, Scalar | Overlay | Derived):
+            scalars[node.name] = node if isinstance(node, Scalar) else node.scalar
+    values, results = dict(raw), dict[str, Raw]()
+    for node in message.layout.derived:
+        operands = node.derivation.fields
+        if all(name in values for name in operands):
+            doubles = [value_double(scalars[name], _number(values[name])) for name in operands]
+            values[node.name] = results[node.name] = float_bits(node.scalar, node.derivation.double(doubles))
+    return results
 
 
-def _counts(node: Node, message: Message, frame: bytes) -> dict[str, int | bytes]:
-    """What the fields say that count the elements of `Message.inner`."""
-    names, bits = {one.counter for one in message.inner}, int.from_bytes(frame, "little")
-    return {one.name: _read(node, one, bits) for one in message.fields if one.name in names}
+def sizes_of_frame(node: Node, message: Message, frame: bytes) -> Sizes:
+    """Return the size of each variable-length node of a frame. Raises `LengthError` for a length that it cannot have."""
+    layout, actual = message.layout, len(frame)
+    if actual < layout.shortest:
+        raise LengthError(message, layout.shortest, actual)
+    counters = _counters(node, layout, frame)
+    sizes: dict[str, int] = {}
+    end = layout.length
+    for part in layout.parts[:-1]:
+        if not part.low <= counters[part.counter] <= part.high:
+            raise LengthError(message, layout.length if actual == layout.longest else layout.longest, actual)
+        sizes[part.name] = counters[part.counter] + part.plus
+        end += sizes[part.name] * part.step
+    if not layout.parts:
+        _check_length(message, layout.lengths, actual)
+        return sizes
+    last = layout.parts[-1]
+    _check_length(message, range(end + last.fewest * last.step, end + last.most * last.step + 1, last.step), actual)
+    sizes[last.name] = (actual - end) // last.step
+    if not last.is_rest and counters[last.counter] + last.plus != sizes[last.name]:
+        raise LengthError(message, max(0, end + (counters[last.counter] + last.plus) * last.step), actual)
+    return sizes
 
 
-def _gaps(message: Message, raw: Mapping[str, int | bytes]) -> list[tuple[int, int]]:
-    """Where the longest frame has bytes that one with these counts has not, and how many. Raises `CodecError`."""
-    found = []
-    for one in message.inner:
-        count = elements_of(one, raw)
-        found.append((one.begin + count * one.step, (one.most - count) * one.step))
-    return found
+def _counters(node: Node, layout: Layout, frame: bytes) -> dict[str, int]:
+    """Return the raw values of the scalars that count the elements of variable-length nodes."""
+    names = {part.counter for part in layout.parts if not part.is_rest}
+    if not names:
+        return {}
+    bits = int.from_bytes(frame, "little")
+    fields = layout.frame(node.orders, {part.name: 0 for part in layout.parts})  # the fixed part
+    return {field.name: _number(_read(field, bits)) for field in fields if field.name in names}
 
 
-def _number(raw: int | bytes) -> int:
+def _check_length(message: Message, lengths: range, actual: int) -> None:
+    """Raise `LengthError` for another length: with the longest possible one below, or the least."""
+    if actual not in lengths:
+        raise LengthError(message, max((one for one in lengths if one < actual), default=lengths[0]), actual)
+
+
+def _number(raw: Raw) -> int:
     assert isinstance(raw, int)
     return raw
 
 
-def count_of(message: Message, raw: Mapping[str, int | bytes]) -> int:
-    """How many elements the open end has. Raises `CodecError` if it cannot have so many."""
-    return 0 if message.tail is None else elements_of(message.tail, raw)
+def sizes_of_values(message: Message, raw: Mapping[str, Raw]) -> Sizes:
+    """Return the size of each variable-length node, as these values count them. Raises `CodecError`."""
+    return {part.name: size_of_values(part, raw) for part in message.layout.parts}
 
 
-def elements_of(part: Tail, raw: Mapping[str, int | bytes]) -> int:
-    """How many elements an open part has. Raises `CodecError` if it cannot have so many."""
-    told = _number(raw.get(part.counter, part.low))
-    if not part.low <= told <= part.high:
-        raise CodecError(f"{part.counter!r} takes {part.low} to {part.high}, not {told}")
-    return told + part.plus
+def size_of_values(part: VariablePart, raw: Mapping[str, Raw]) -> int:
+    """Return the number of elements, or of bytes, that these values count. Raises `CodecError` if there cannot be so many."""
+    value = _number(raw.get(part.counter, part.low))
+    if not part.low <= value <= part.high:
+        raise CodecError(f"{part.counter!r} takes {part.low} to {part.high}, not {value}")
+    return value + part.plus
 
 
-def counted(node: Node, message: Message, frame: bytes, count: int) -> bytes:
-    """The frame with another count in the field that counts the elements of its open end, if it has such a field."""
-    tail, counter = message.tail, message.counter
-    if tail is None or counter is None or counter.implied:
-        return frame
-    return frame_of(node, frame, {counter: count - tail.plus})
-
-
-def frame_of(node: Node, frame: bytes, values: Mapping[Field, int]) -> bytes:
-    """The frame with other values in some of its fields, which are numbers."""
+def frame_of(frame: bytes, values: Mapping[FrameField, int]) -> bytes:
+    """Return the frame with other values of some of its numbers."""
     bits = int.from_bytes(frame, "little")
     for field, value in values.items():
-        mine = _written(node, field, -1 if field.signed else (1 << field.bits) - 1)
-        bits = bits & ~mine | _written(node, field, value)
+        mine = _written(field, -1 if field.is_signed else (1 << field.bits) - 1)
+        bits = bits & ~mine | _written(field, value)
     return bits.to_bytes(len(frame), "little")
 
 
-def is_present(field: Field, raw: Mapping[str, int | bytes]) -> bool:
-    """Whether a field is there in a message of these raw values: what it depends on has one of the values for it."""
-    return all(raw.get(one.field, 0) in one.values for one in field.when)
+def is_present(field: FrameField, raw: Mapping[str, Raw]) -> bool:
+    """Return whether all conditions of a field hold in a message with these raw values."""
+    return not field.scalar.present_if or all(raw.get(need.field, 0) in need.values for need in field.scalar.present_if)
 
 
-def is_there(message: Message, field: Field, count: int) -> bool:
-    """Whether a frame holds a field, if its open end has ``count`` elements; bytes and text that are cut off are there."""
-    return not field.path or message.tail is None or field.at < 8 * (message.begin + count * message.tail.step)
+def which(icd: Icd, messages: Sequence[Message], frame: bytes) -> Message | None:
+    """Of messages that share an id return the one that a frame is of; None if it is of none of them.
 
-
-def is_sent(message: Message, field: Field, raw: Mapping[str, int | bytes]) -> bool:
-    """Whether the frame of these raw values holds a field: no element beyond those that are counted."""
-    part = next((one for one in message.inner if field.path and one.name == field.path[0].name), None)
-    if part is not None:
-        return field.at < 8 * (part.begin + elements_of(part, raw) * part.step)
-    return is_there(message, field, count_of(message, raw))
-
-
-def which(icd: Icd, known: Sequence[Message], frame: bytes) -> Message | None:
-    """Of messages that share an id the one that a frame is of; None if it is of none of them.
-
-    It is of a length and has the constants of that message, but for those that all of them have alike and for those in an
-    open end; of several that of the most constants. Raises `LengthError` if no message has that length and all have the same.
+    It is of a length and has the constants of that message, but for those that all of them have alike and for those of elements;
+    of several that of the most constants. Raises `LengthError` if no message has that length and all have the same.
     """
+    bits = int.from_bytes(frame, "little")
+    constants = {id(message): _constants(icd.node(message.node), message) for message in messages}
+    shared = set.intersection(*(set(places) for places in constants.values())) if constants else set()
     fitting = []
-    for message in known:
-        if len(frame) not in message.lengths:
+    for message in messages:
+        mine = constants[id(message)]
+        if len(frame) not in message.layout.lengths:
             continue
-        node, bits = icd.node(message.node), int.from_bytes(frame, "little")
-        constants = _in_every_frame(message)
-        telling = [one for one in constants if not all(_has_alike(icd, other, one, node) for other in known)]
-        if all(_read(node, one, bits) == one.const for one in telling):
-            fitting.append((len(constants), message))
+        if all(_read(field, bits) == field.const for place, field in mine.items() if place not in shared):
+            fitting.append((len(mine), message))
     if fitting:
-        return max(fitting, key=lambda one: one[0])[1]
-    if all(message.least == message.length == known[0].length != len(frame) for message in known):
-        raise LengthError(known[0], known[0].length, len(frame))
+        return max(fitting, key=lambda pair: pair[0])[1]
+    lengths = {length for message in messages for length in (message.layout.shortest, message.layout.longest)}
+    if len(lengths) == 1 and len(frame) not in lengths:
+        raise LengthError(messages[0], lengths.pop(), len(frame))
     return None
 
 
@@ -198,53 +206,77 @@ def which_if_any(icd: Icd, known: Sequence[Message], frame: bytes) -> Message | 
         return None
 
 
-def _in_every_frame(message: Message) -> list[Field]:
-    """The constants of a message, without those of elements and fields that not every frame has."""
-    fixed = [one for one in message.owners if one.const is not None and not one.when and one.at < 8 * message.fixed]
-    return [one for one in fixed if is_there(message, one, 0)]
+def encode(node: Node, message: Message, raw: Mapping[str, Raw]) -> bytes:
+    """Return the frame of values of the longest frame, reserved bits 0.
 
-
-def _has_alike(icd: Icd, message: Message, constant: Field, node: Node) -> bool:
-    """Whether a message has the constant that a field of another one, declared by ``node``, is."""
-    place = _runs(constant.at, constant.bits, *constant.orders(node))
-    owner = icd.node(message.node)
-    same = (one for one in _in_every_frame(message) if one.const == constant.const)
-    return any(_runs(one.at, one.bits, *one.orders(owner)) == place for one in same)
-
-
-def encode(node: Node, message: Message, raw: Mapping[str, int | bytes]) -> bytes:
-    """The frame, reserved bits 0. Values of views, and of what is not in the frame, are not looked at.
-
-    Raises `CodecError` for a missing, unknown or unfit value.
+    Values of overlays, of derived values and of what is not in the frame are ignored. Raises `CodecError` for a missing,
+    unknown or unfit value.
     """
-    known = {field.name for field in message.fields}
+    fields = message.layout.frame(node.orders)
+    names = {field.name for field in fields}
     for name in raw:
-        if name not in known:
+        if name not in names:
             raise CodecError(f"{message.name} has no field {name!r}")
-    for field in message.owners:
-        if field.name not in raw and is_present(field, raw):
+    for field in fields:
+        if field.is_raw and field.name not in raw and is_present(field, raw):
             raise CodecError(f"no value for {field.name!r}")
     return frame_with(node, message, raw)
 
 
-def new(node: Node, message: Message) -> dict[str, int | bytes]:
-    """The raw values of a new message; constants are in all elements of inner open parts, which a frame of it does not have."""
-    inner = {part.name for part in message.inner}
-    elements = {one.name: one.fresh for one in message.owners if one.path and one.path[0].name in inner}
-    return decode(node, message, encode(node, message, message.fresh)) | elements
+def initial_values(node: Node, message: Message) -> dict[str, Raw]:
+    """Return the raw values of a new message, by name, without overlays, derived values and what is absent."""
+    fields = [field for field in message.layout.frame(node.orders) if field.is_raw]
+    raw = {field.name: initial_value(message, field) for field in fields}
+    return {
+        field.name: raw[field.name] for field in fields if all(raw.get(c.field) in c.values for c in field.conditions)
+    }
 
 
-def frame_with(node: Node, message: Message, raw: Mapping[str, int | bytes]) -> bytes:
-    """The frame in which these fields have these values and all other bits are 0. Raises `CodecError` for an unfit value."""
-    bits, gaps, count = 0, _gaps(message, raw), count_of(message, raw)
-    for field in message.owners:
-        if field.name in raw and is_there(message, field, count) and is_present(field, raw):
-            bits |= _written(node, field, raw[field.name])
-    frame = bits.to_bytes(message.length, "little")
-    return frame if message.tail is None else _without(frame[: message.begin + count * message.tail.step], gaps)
+def initial_value(message: Message, field: FrameField) -> Raw:
+    """Return the raw value of a field of a new message: the only valid one, else the smallest; of bytes zeros."""
+    if field.is_bytes:
+        return bytes(field.bits // 8)
+    return field.const or message.layout.smallest_raw(field.name)
 
 
-def check_raw(field: AnyField, value: int | bytes) -> None:
+def new(node: Node, message: Message) -> dict[str, Raw]:
+    """Return the raw values of the longest frame for a new message.
+
+    Generated code sets the constants of all elements of variable-length nodes but the last one, also if a new message has none.
+    """
+    values = initial_values(node, message)
+    inner = {part.name for part in message.layout.parts[:-1]}
+    fields = message.layout.frame(node.orders)
+    elements = {
+        f.name: values[f.name] for f in fields if f.steps[0].element is not None and f.steps[0].node.name in inner
+    }
+    return decode(node, message, encode(node, message, values)) | elements
+
+
+def frame_with(node: Node, message: Message, raw: Mapping[str, Raw]) -> bytes:
+    """Return the frame in which these fields have these values of the longest frame, and all other bits are 0.
+
+    Raises `CodecError` for an unfit value.
+    """
+    layout, bits = message.layout, 0
+    sizes = sizes_of_values(message, raw)
+    for field in layout.frame(node.orders, sizes):
+        if field.is_raw and field.name in raw and is_present(field, raw):
+            bits |= _written(field, _shortened(field, raw[field.name]))
+    length = layout.length + sum(sizes[part.name] * part.step for part in layout.parts)
+    return bits.to_bytes(length, "little")
+
+
+def _shortened(field: FrameField, value: Raw) -> Raw:
+    """Return of bytes of the longest frame those that `field` has room for. Raises `CodecError` for another number of bytes."""
+    if field.scalar.length is None or not isinstance(value, (bytes, bytearray)):
+        return value
+    if len(value) != field.scalar.length.most:
+        raise CodecError(f"{field.name!r} takes {field.scalar.length.most} bytes")
+    return value[: field.bits // 8]
+
+
+def check_raw(field: AnyValue, value: int | bytes) -> None:
     """Raises `CodecError` unless the field can hold the raw value."""
     if field.is_bytes:
         if not isinstance(value, (bytes, bytearray)) or len(value) != field.bits // 8:
@@ -257,12 +289,12 @@ def check_raw(field: AnyField, value: int | bytes) -> None:
         raise CodecError(f"{field.name!r} takes {low} to {high}, not {value}")
 
 
-def physical(field: AnyField, raw: int) -> Fraction | None:
+def physical(field: AnyValue, raw: int) -> Fraction | None:
     """Exact physical value of an integer field with a scale, else None."""
     return field.scale.physical(raw) if field.scale else None
 
 
-def physical_double(field: AnyField, raw: int) -> float | None:
+def physical_double(field: AnyValue, raw: int) -> float | None:
     """The correctly rounded double of the physical value; of a curve, what its definition gives."""
     if field.curve is not None:
         return field.curve.double(float_value(field, raw) if field.type == "float" else raw)
@@ -270,7 +302,7 @@ def physical_double(field: AnyField, raw: int) -> float | None:
     return None if exact is None else to_double(exact)
 
 
-def value_double(field: AnyField, raw: int) -> float:
+def value_double(field: AnyValue, raw: int) -> float:
     """The physical value of a number, of one without a formula its raw value, as a double."""
     physical = physical_double(field, raw)
     if physical is not None:
@@ -278,7 +310,7 @@ def value_double(field: AnyField, raw: int) -> float:
     return float_value(field, raw) if field.type == "float" else float(raw)
 
 
-def raw_from_physical(field: AnyField, value: Fraction | int | float) -> int:
+def raw_from_physical(field: AnyValue, value: Fraction | int | float) -> int:
     """Nearest raw value, ties to even. Raises `CodecError` if it is not finite or does not fit."""
     if isinstance(value, float) and not math.isfinite(value):
         raise CodecError(f"{field.name!r} takes a finite number, not {value}")
@@ -292,17 +324,17 @@ def raw_from_physical(field: AnyField, value: Fraction | int | float) -> int:
     return raw
 
 
-def _raw_on_curve(field: AnyField, curve: Curve, value: float) -> int:
-    if not field.leads_back:
+def _raw_on_curve(field: AnyValue, curve: Curve, value: float) -> int:
+    if not field.is_invertible:
         raise CodecError(f"the physical value of {field.name!r} does not lead back to a raw value")
     if field.type == "float":
         inverse = curve.inverse(value)
         if not math.isfinite(inverse):
             raise CodecError(f"{field.name!r} cannot hold {value:g}")
         return float_bits(field, inverse)
-    raw = curve.nearest(value, *field.ends)
+    raw = curve.nearest(value, *field.settable_raws)
     if raw is None:
-        low, high = sorted(map(curve.double, field.ends))
+        low, high = sorted(map(curve.double, field.settable_raws))
         raise CodecError(f"{field.name!r} takes {low:g} to {high:g}, not {value:g}")
     return raw
 
@@ -312,7 +344,7 @@ def text(raw: bytes) -> str:
     return raw.split(b"\0", 1)[0].decode("ascii", "replace")
 
 
-def raw_from_text(field: AnyField, value: str) -> bytes:
+def raw_from_text(field: AnyValue, value: str) -> bytes:
     """The bytes of a text, filled with NUL. Raises `CodecError` if it is too long, not ASCII or has a NUL in it."""
     size = field.bits // 8
     if not value.isascii() or "\0" in value or len(value) > size:
@@ -320,7 +352,7 @@ def raw_from_text(field: AnyField, value: str) -> bytes:
     return value.encode("ascii").ljust(size, b"\0")
 
 
-def special_of(field: AnyField, raw: int) -> Special | None:
+def special_of(field: AnyValue, raw: int) -> Special | None:
     """The meaning that a raw value has, of floats the number: each NaN is the same, and so are both zeros."""
     if field.type != "float":
         return next((one for one in field.special if one.value == raw), None)
@@ -331,14 +363,14 @@ def special_of(field: AnyField, raw: int) -> Special | None:
     return None
 
 
-def float_value(field: AnyField, bits: int) -> float:
+def float_value(field: AnyValue, bits: int) -> float:
     """The number that the bits of a float field stand for."""
     packed = bits.to_bytes(field.bits // 8, "little")
     value: float = struct.unpack("<f" if field.bits == 32 else "<d", packed)[0]
     return value
 
 
-def float_bits(field: AnyField, value: float) -> int:
+def float_bits(field: AnyValue, value: float) -> int:
     """The bits of the nearest float of the field's width. Raises `CodecError` on overflow."""
     try:
         packed = struct.pack("<f" if field.bits == 32 else "<d", value)
@@ -374,26 +406,40 @@ def _runs(at: int, bits: int, byte_order: str, bit_order: str) -> tuple[tuple[in
     return tuple(runs)
 
 
-def _read(node: Node, field: Field, frame: int) -> int | bytes:
-    if field.is_bytes:
+def _read(field: FrameField, frame: int) -> Raw:
+    """Return the raw value of a field of a frame."""
+    scalar = field.scalar
+    if scalar.is_bytes:
         part = frame >> field.at // 8 * 8 & (1 << field.bits) - 1
         return part.to_bytes(field.bits // 8, "little")
     value = 0
-    for here, index, count in _runs(field.at, field.bits, *field.orders(node)):
+    for here, index, count in _runs(field.at, field.bits, field.byte_order, field.bit_order):
         value |= (frame >> here & (1 << count) - 1) << index
-    if field.signed and value >> (field.bits - 1):
+    if scalar.is_signed and value >> (field.bits - 1):
         value -= 1 << field.bits
     return value
 
 
-def _written(node: Node, field: Field, value: int | bytes) -> int:
+def _written(field: FrameField, value: Raw) -> int:
     """The frame's bits that the value sets."""
     check_raw(field, value)
-    if field.implied:
+    if not field.has_bits:
         return 0
     if isinstance(value, (bytes, bytearray)):
         return int.from_bytes(value, "little") << field.at // 8 * 8
     frame, value = 0, int(value)
-    for here, index, count in _runs(field.at, field.bits, *field.orders(node)):
+    for here, index, count in _runs(field.at, field.bits, field.byte_order, field.bit_order):
         frame |= (value >> index & (1 << count) - 1) << here
     return frame
+
+
+_Place: TypeAlias = tuple[tuple[tuple[int, int, int], ...], int]  # runs of bits, and the value that a message has there
+
+
+def _constants(node: Node, message: Message) -> dict[_Place, FrameField]:
+    """Return the constants that every frame of a message has, by their place and value."""
+    constants: dict[_Place, FrameField] = {}
+    for field in message.layout.frame(node.orders):
+        if field.has_bits and field.const is not None and not field.conditions and field.at < 8 * message.layout.length:
+            constants[_runs(field.at, field.bits, field.byte_order, field.bit_order), field.const] = field
+    return constants

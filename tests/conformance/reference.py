@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from icdgen import codec
-from icdgen.icd.model import Enum, Field, Icd, Message, Node
+from icdgen.icd.layout import FrameField
+from icdgen.icd.model import Enum, Icd, Message, Node
 from icdgen.protocol import ops
 from icdgen.vectors.make import known_text
 from icdgen.vectors.settings import bits_of
@@ -111,7 +112,7 @@ class Reference:
         if not isinstance(given, dict) or not isinstance(physical, dict):
             raise Refusal("request")
         node, message = self.message(request)
-        fields = {field.name: field for field in message.owners}
+        fields = {field.name: field for field in message.layout.frame(node.orders) if field.is_raw}
         for name in given:
             if name not in fields:
                 raise Refusal("unknown-field", field=name)
@@ -119,38 +120,36 @@ class Reference:
             if name not in fields or not settable(fields[name]):
                 raise Refusal("unknown-field", field=name)
         raw = {}
-        for field in message.owners:
+        for field in fields.values():
             if field.name in physical and field.type == "text":
                 value = hex_bytes(physical[field.name]).decode("utf-8")
                 raw[field.name] = fitting(field, codec.raw_from_text, value)
             elif field.name in physical:
                 value = struct.unpack(">d", hex_bytes(physical[field.name], 8))[0]
                 raw[field.name] = fitting(field, codec.raw_from_physical, value)
-            elif field.when and given.get(field.name) is None:
+            elif field.conditions and given.get(field.name) is None:
                 continue
             elif field.name in given:
                 raw[field.name] = raw_value(field, given[field.name])
             else:
                 raise Refusal("missing-field", field=field.name)
-        for part in message.open_parts:
+        for part in message.layout.parts:
             try:
-                codec.elements_of(part, raw)
+                codec.size_of_values(part, raw)
             except codec.CodecError as error:
                 raise Refusal("range", field=part.counter, detail=str(error)) from None
         return described(node, message, codec.decode(node, message, codec.encode(node, message, raw)))
 
     def constants(self, request: dict) -> dict:
         node, message = self.message(request)
-        default = codec.new(node, message)
+        default, fields = codec.new(node, message), message.layout.frame(node.orders)
         return {
             "name": message.name,
             "ids": list(message.ids),
             "length": message.length,
-            "default": {f.name: shown(f, default.get(f.name)) for f in message.fields},
-            "special": {
-                f.name: [shown(f, special.value) for special in f.special] for f in message.fields if f.special
-            },
-            "limits": {f.name: limits(f) for f in message.fields if f.limits},
+            "default": {f.name: shown(f, default.get(f.name)) for f in fields},
+            "special": {f.name: [shown(f, special.value) for special in f.special] for f in fields if f.special},
+            "limits": {f.name: limits(f) for f in fields if f.limits},
         }
 
     def enum(self, request: dict) -> dict:
@@ -172,9 +171,10 @@ class Reference:
             values = range(key(request, "from", int), key(request, "to", int) + 1)
         if len(values) > MOST_VALUES or any(type(value) is not int for value in values):
             raise Refusal("request")
-        _, message = self.message(request)
-        field = next((field for field in message.owners if field.name == name and settable(field)), None)
-        if field is None:
+        node, message = self.message(request)
+        fields = message.layout.frame(node.orders)
+        field = next((field for field in fields if field.is_raw and field.name == name), None)
+        if field is None or not settable(field):
             raise Refusal("unknown-field", field=name)
         found, failures = [], 0
         for raw in values:
@@ -185,7 +185,7 @@ class Reference:
         return {"physical": "".join(found), "failures": failures}
 
 
-def comes_back(field: Field, raw: int, physical: float) -> bool:
+def comes_back(field: FrameField, raw: int, physical: float) -> bool:
     """Whether setting the physical value gives the raw one again."""
     try:
         return codec.raw_from_physical(field, physical) == raw
@@ -207,7 +207,7 @@ def hex_bytes(text: object, size: int | None = None) -> bytes:
     return bytes.fromhex(text)
 
 
-def raw_value(field: Field, given: object) -> int | bytes:
+def raw_value(field: FrameField, given: object) -> int | bytes:
     """A raw value as it came in a request."""
     if field.type == "float":
         return int.from_bytes(hex_bytes(given, field.bits // 8), "big")
@@ -221,7 +221,7 @@ def raw_value(field: Field, given: object) -> int | bytes:
     return value
 
 
-def fitting(field: Field, call, value):
+def fitting(field: FrameField, call, value):
     """What ``call`` makes of the value; a refusal where it does not fit."""
     try:
         return call(field, value)
@@ -229,18 +229,18 @@ def fitting(field: Field, call, value):
         raise Refusal("range", field=field.name, detail=str(error)) from None
 
 
-def settable(field: Field) -> bool:
+def settable(field: FrameField) -> bool:
     """Whether a physical value sets it."""
-    return (field.has_formula and field.leads_back) or field.type == "text"
+    return (field.has_formula and field.is_invertible) or field.type == "text"
 
 
-def limits(field: Field) -> dict[str, str]:
+def limits(field: FrameField) -> dict[str, str]:
     """The limits of a field, as doubles."""
     found = {key: getattr(field.limits, key) for key in ("min", "max", "above", "below")}
     return {key: bits_of(value.numerator / value.denominator) for key, value in found.items() if value is not None}
 
 
-def shown(field: Field, value: int | bytes | None) -> object:
+def shown(field: FrameField, value: int | bytes | None) -> object:
     """A raw value as it stands in an answer; null where the field is not there."""
     if value is None:
         return None
@@ -251,7 +251,7 @@ def shown(field: Field, value: int | bytes | None) -> object:
     return bool(value) if field.type == "bool" else value
 
 
-def physical_value(field: Field, raw: int | bytes | None) -> str | None:
+def physical_value(field: FrameField, raw: int | bytes | None) -> str | None:
     """A physical value as it stands in an answer: a text in hex, null where the bytes are none or the field is not there."""
     if raw is None:
         return None
@@ -271,15 +271,14 @@ def named(enum: Enum, value: int | None) -> str | None:
 
 def described(node: Node, message: Message, raw: dict, names: bool = False) -> dict:
     """The answer to decode and encode."""
+    fields = message.layout.frame(node.orders)
     answer: dict = {
-        "raw": {field.name: shown(field, raw.get(field.name)) for field in message.fields},
-        "physical": {
-            f.name: physical_value(f, raw.get(f.name)) for f in message.fields if f.has_formula or f.type == "text"
-        },
+        "raw": {field.name: shown(field, raw.get(field.name)) for field in fields},
+        "physical": {f.name: physical_value(f, raw.get(f.name)) for f in fields if f.has_formula or f.type == "text"},
         "bytes": codec.encode(node, message, raw).hex(),
     }
     if names:
-        answer["names"] = {f.name: named(f.enum, raw.get(f.name)) for f in message.fields if f.enum}
+        answer["names"] = {f.name: named(f.enum, raw.get(f.name)) for f in fields if f.enum}
     return answer
 
 

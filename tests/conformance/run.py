@@ -98,24 +98,27 @@ def _batch(label: str, cases: Iterator[Case]) -> Iterator[Batch]:
 def _random(icd: Icd, message, cases: MessageCases, frames: int, seed: int) -> Iterator[Batch]:
     source = random.Random(f"{seed}/{message.node}/{message.name}")
     node, left = icd.node(message.node), frames
-    known = {field.name: field for field in message.fields}
+    fields = message.layout.frame(node.orders)
+    known = {field.name: field for field in fields}
+    parts = message.layout.parts
     while left:
         count = min(left, 500)
         left -= count
         found: list[Case] = []
         for _ in range(count):
             frame = source.randbytes(message.length)
-            if message.tail is not None:
-                frame = patterns.cut(message, node, frame, source.randint(message.tail.fewest, message.tail.most))
-            elif message.has_conditions and source.random() < 0.7:
-                field = source.choice([one for one in message.fields if one.when])
-                values = {known[one.field]: source.choice(one.values) for one in field.when}
-                frame = codec.frame_of(node, frame, values)
+            optional = [field for field in fields if field.conditions]
+            if parts:
+                frame = patterns.cut(message, node, frame, source.randint(parts[-1].fewest, parts[-1].most))
+            elif optional and source.random() < 0.7:
+                field = source.choice(optional)
+                values = {known[one.field]: source.choice(one.values) for one in field.conditions}
+                frame = codec.frame_of(frame, values)
             row = frame_row(node, message, "random frame", frame)
             vector = {
                 "why": "random frame", "bytes": row.frame.hex(), "encoded": row.encoded.hex(),
-                "raw": [raw_json(f, row.raw.get(f.name)) for f in message.fields],
-                "doubles": [row.doubles.get(f.name) for f in message.fields if f.has_formula],
+                "raw": [raw_json(f, row.raw.get(f.name)) for f in fields],
+                "doubles": [row.doubles.get(f.name) for f in fields if f.has_formula],
                 "texts": list(row.texts.values()),
             }  # fmt: skip
             found += cases.frame(vector)

@@ -71,10 +71,11 @@ def assert_values_are_those_of_cantools(read: run.Read, text: str, folder) -> in
             frame = dice.randbytes(ours.length)
             raw = codec.decode(node, ours, frame)
             for name in selectors:  # one that selects something, as often as not
-                chosen = next(one for one in ours.fields if one.name == name)
-                values = [value for one in ours.fields for need in one.when for value in need.values]
+                fields = ours.layout.frame(node.orders)
+                chosen = next(one for one in fields if one.name == name)
+                values = [value for one in fields for need in one.conditions for value in need.values]
                 if dice.random() < 0.7 and values:
-                    frame = codec.frame_of(node, frame, {chosen: dice.choice(values)})
+                    frame = codec.frame_of(frame, {chosen: dice.choice(values)})
                     raw = codec.decode(node, ours, frame)
             for scaled in (False, True):
                 with contextlib.suppress(DecodeError):  # of a selector's value that no signal has

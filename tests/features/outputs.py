@@ -200,7 +200,7 @@ def words_of(icd: Icd, frames: dict[str, list[bytes]]) -> dict[str, list[list[st
     node, found = icd.nodes[-1], {}
     for message in node.messages:
         rows = [frame(icd, node, message, data).rows for data in _some(frames[message.name], WORDS)]
-        found[message.name] = [[f"{row.field.name}={row.text}" for row in one if not row.field.view] for one in rows]
+        found[message.name] = [[f"{row.field.name}={row.text}" for row in one if row.field.is_raw] for one in rows]
         if any(row.field.special for row in rows[0]):
             found[message.name].append(
                 [

@@ -45,7 +45,7 @@ def source(icd: Icd, node_name: str = NODE) -> str:
     rows = {one.model.name: one for one in describe(icd).node(node).spoken}
 
     def of(messages, values) -> list[Row]:
-        return [_row(icd, rows[message.name], values(message)) for message in messages]
+        return [_row(icd, rows[message.name], values(icd, message)) for message in messages]
 
     commands = [m for m in known.telecommands.values() if m.kind != CONFIGURATION]
     starters = [one.name for one in icd.nodes if one.protocol.get("program_start", {}).get("application") == node.name]
@@ -87,9 +87,9 @@ def build(folder: Path) -> list[str]:
     return [str(tools.program(main, library, folder / "sim_client"))]
 
 
-def numbered(message: Message) -> dict[str, int | bytes]:
+def numbered(icd: Icd, message: Message) -> dict[str, int | bytes]:
     """A message in which hardly two fields have the same value, so that none can be taken for another."""
-    raw = allowed_values(message)
+    raw = allowed_values(icd, message)
     for number, field in enumerate(message.fields, 1):
         if field.const is None:
             raw[field.name] = _numbered(field, number, raw[field.name])

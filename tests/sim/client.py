@@ -50,7 +50,9 @@ def every_frame(client: Session) -> None:
 def every_setting(client: Session) -> None:
     for message in client.known.telecommands.values():
         if message.kind == CONFIGURATION:
-            raw = allowed_values(message) | {f.name: 1 for f in message.fields if f.type == "uint" and f.const is None}
+            raw = allowed_values(ICD, message) | {
+                f.name: 1 for f in message.fields if f.type == "uint" and f.const is None
+            }
             data = codec.encode(ICD.node(message.node), message, raw)
             outcome = send(client, message, data)
             if outcome["event"] != "done" or get(client, message) != data:
@@ -92,7 +94,7 @@ def done(client: Session, name: str, procedure):
 def every_telecommand(client: Session) -> None:
     others = [m for m in client.known.telecommands.values() if m.kind != CONFIGURATION]
     for message in sorted(others, key=lambda m: m.expects_reset):
-        data = codec.encode(ICD.node(message.node), message, allowed_values(message))
+        data = codec.encode(ICD.node(message.node), message, allowed_values(ICD, message))
         if message.expects_reset:
             reset(client, message, data)
         elif message.acknowledge:

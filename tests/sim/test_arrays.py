@@ -39,13 +39,13 @@ def icd(tmp_path_factory):
 )
 def test_values_of_an_array_come_as_a_list_and_of_an_element_as_a_number(icd, key, value, raw):
     found = of_fields(icd, icd.node("demo"), "Heat", key, value)
-    assert {one.index: fitting(message, one, given) for message, one, given in found} == raw
+    assert {one.steps[-1].element: fitting(message, one, given) for message, one, given in found} == raw
 
 
 def test_a_wave_of_an_array_moves_each_element(icd):
     wave = {"wave": "sine", "min": 0, "max": 1}
     found = of_fields(icd, icd.node("demo"), "Heat", "temperatures", wave)
-    assert [(one.index, given) for _, one, given in found] == [(0, wave), (1, wave), (2, wave)]
+    assert [(one.steps[-1].element, given) for _, one, given in found] == [(0, wave), (1, wave), (2, wave)]
 
 
 def test_too_few_values_are_refused(icd):

@@ -45,7 +45,7 @@ def test_every_telecommand_is_taken_and_every_configuration_reads_back_what_was_
         for message in client.known.telecommands.values():
             if message.expects_reset:
                 continue
-            raw = allowed_values(message)
+            raw = allowed_values(ICD, message)
             if message.kind == CONFIGURATION:
                 data = bytearray(byte % 251 + 1 for byte in range(message.length))
                 raw = codec.decode(ICD.node(message.node), message, bytes(data))
@@ -145,7 +145,7 @@ def test_a_reset_starts_the_boot_program_and_its_telecommand_the_application():
     with session("--boot", "60000") as client:
         reset = next(m for m in client.known.telecommands.values() if m.expects_reset)
         client.telecommand(client.known.telecommands[17], bytes(6))
-        data = codec.encode(ICD.node(reset.node), reset, allowed_values(reset))
+        data = codec.encode(ICD.node(reset.node), reset, allowed_values(ICD, reset))
         assert client.telecommand(reset, data)["event"] == "done"
         assert client.identify()[0]["node_type"] == ICD.node("bootloader").node_type
         start = ICD.protocol_of(ICD.node("bootloader"))["program_start"]["message"]
@@ -212,7 +212,7 @@ def test_unsolicited_logs_come_as_they_are_configured():
         role = ICD.protocol_of(client.node)["unsolicited_log"]["configured_by"]
         message = next(m for m in client.known.telecommands.values() if m.name == role["message"])
         bit = min(client.known.mask.bits)
-        raw = allowed_values(message) | {
+        raw = allowed_values(ICD, message) | {
             role["fields"]["mask"]: bytes([1 << bit]) + bytes(9),
             role["fields"]["period"]: 1,
         }

@@ -29,7 +29,7 @@ def test_a_client_that_leaves_out_telecommands_is_found():
 import sys
 from tests.sim import client
 reset = next(m for m in client.ICD.messages_of(client.STARTER) if m.name == "Reset")
-data = client.codec.encode(client.STARTER, reset, client.allowed_values(reset))
+data = client.codec.encode(client.STARTER, reset, client.allowed_values(client.ICD, reset))
 client.every_telecommand = lambda session: client.reset(session, reset, data)
 client.main(*sys.argv[1:])
 """

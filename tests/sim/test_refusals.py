@@ -58,10 +58,10 @@ def test_a_view_is_not_set_and_follows_what_is():
     own = frame.layout.fixed[0]
     seen = overlay_of(replace(own, name="Seen", bits=8, type="int", scale=None, unit=None))
     both = message_with_lists(replace(frame, layout=replace(frame.layout, fixed=(*frame.layout.fixed, seen))), {})
-    view = both.fields[-1]
     values = Values(replace(ICD, nodes=tuple(_with(node, frame, both) for node in ICD.nodes)), node)
     values.update(both, {own.name: -2})
     assert values.raw(both)["Seen"] == -2
+    view = values.icd.longest_frame(both)[-1]
     for wrong in (lambda: fitting(both, view, "1"), lambda: _check_wave("step 1", view, {"wave": "sine"})):
         with pytest.raises(UserError, match="a view has no bits of its own"):
             wrong()

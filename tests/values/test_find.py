@@ -90,19 +90,19 @@ def test_what_is_not_there_is_answered_with_what_could_be_meant(icd, node, key, 
 )
 def test_a_field_by_any_words_that_no_other_has(icd, message, key, name):
     found = find_message(icd, "top", message)
-    assert find_field(found, key, find_node(icd, "top").vocabulary).name == name
+    assert find_field(found, icd.longest_frame(found), key, find_node(icd, "top").vocabulary).name == name
 
 
 def test_words_of_several_fields_are_refused(icd):
     message = find_message(icd, "top", "Set Speed")
     with pytest.raises(Ambiguous, match="`speed` fits several fields: `Commanded X speed`, `Commanded Y speed`"):
-        find_field(message, "speed")
+        find_field(message, icd.longest_frame(message), "speed")
     with pytest.raises(NotFound) as caught:
-        find_field(message, "z")
+        find_field(message, icd.longest_frame(message), "z")
     assert caught.value.help == "fields: Commanded X speed, Commanded Y speed, Magic Number, Timeout"
     with pytest.raises(NotFound) as caught:
-        find_field(find_message(icd, "top", "42"), "z")
+        find_field(find_message(icd, "top", "42"), (), "z")
     assert caught.value.help == "it has no fields at all"
     for odd in ("", "?", "="):
         with pytest.raises(NotFound):
-            find_field(message, odd)
+            find_field(message, icd.longest_frame(message), odd)

@@ -30,8 +30,8 @@ def differences(icd: Icd, node: Node, file: Path, frames: int, seed: int) -> Ite
         declared = icd.node(message.node)
         for _ in range(frames):
             frame = chance.randbytes(message.length)
-            fixed = {one: one.const for one in message.fields if one.const is not None}
-            frame = codec.frame_of(declared, frame, fixed)
+            fixed = {one: one.const for one in message.layout.frame(declared.orders) if one.const is not None}
+            frame = codec.frame_of(frame, fixed)
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 data = message.telemetry_id.to_bytes(width, "big") + frame

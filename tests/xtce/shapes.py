@@ -60,9 +60,9 @@ def _compared(icd: Icd, root: str, files: list[Path], classes: list[str], frames
     chance, asked = random.Random(1), []
     telemetry = [one for one in icd.messages_of(node) if one.telemetry_id is not None]
     for message in telemetry:
-        fixed = {one: one.const for one in message.fields if one.const is not None}
+        fixed = {one: one.const for one in message.layout.frame(node.orders) if one.const is not None}
         for count in range(frames):
-            frame = codec.frame_of(node, chance.randbytes(message.length), fixed)
+            frame = codec.frame_of(chance.randbytes(message.length), fixed)
             head = struct.pack(">HHH", message.telemetry_id, 0xC000 | count, len(frame) - 1)
             asked.append((message, frame, head + frame))
     text = "".join(f"{packet.hex()}\n" for _, _, packet in asked)

@@ -19,6 +19,7 @@ from pathlib import Path
 from icdgen import codec
 from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.loading import load
+from icdgen.vectors import patterns
 from tests.xtce.decoding import alias
 from tests.xtce.meaning import has_open_end, is_ordered, line
 from tests.xtce.readback import SPACE, write
@@ -57,19 +58,17 @@ def _compared(icd: Icd, node: Node, file: Path, classes: list[str], frames: int)
     head, width = _head(file)
     for message in messages:
         for _ in range(frames):
-            frame, length = chance.randbytes(message.length), message.begin
-            fixed = {one: one.const for one in message.fields if one.const is not None}
-            if message.tail is not None and message.counter is not None and not message.counter.implied:
-                more = (
-                    chance.randint(0, min(MOST, message.tail.high - message.tail.low)) if has_open_end(message) else 0
-                )
-                fixed[message.counter] = message.tail.low + more
-                length += (message.tail.low + more + message.tail.plus) * message.tail.step
-            elif message.tail is not None:
-                length += message.tail.fewest * message.tail.step
-            frame = codec.frame_of(icd.node(message.node), frame, fixed)[:length]
-            if message.inner:
-                frame = codec.encode(icd.node(message.node), message, message.fresh)
+            owner = icd.node(message.node)
+            fields = message.layout.frame(owner.orders)
+            frame = chance.randbytes(message.length)
+            frame = codec.frame_of(frame, {one: one.const for one in fields if one.const is not None})
+            if len(message.layout.parts) == 1:
+                (part,) = message.layout.parts
+                has_more = has_open_end(message) and not part.is_rest
+                more = chance.randint(0, min(MOST, part.high - part.low)) if has_more else 0
+                frame = patterns.cut(message, owner, frame, part.fewest + more)
+            elif message.layout.parts:
+                frame = codec.encode(owner, message, codec.initial_values(owner, message))
             asked.append((message, frame, (message.telemetry_id << head).to_bytes(width, "big") + frame))
     root = ElementTree.parse(file).getroot()
     names = {one.get("name", ""): line(alias(one)) for one in root.iterfind(f".//{SPACE}Parameter")}
@@ -117,7 +116,7 @@ def _unlike(node: Node, message: Message, frame: bytes, theirs: Values) -> tuple
         name, index = line(field.name), None
         if name not in theirs and field.path and field.path[-1].index is not None:
             name, index = name.rpartition("[")[0], field.path[-1].index
-        if not codec.is_present(field, raw):
+        if field.name not in raw:
             if name in theirs:
                 return count, f"{message.name}: {field.name} is not there, theirs {theirs[name][0]}"
             continue

@@ -10,7 +10,8 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from icdgen.icd.division import bits_of
-from icdgen.icd.model import TELECOMMAND, TELEMETRY, Field, Icd, Message, Node
+from icdgen.icd.layout import FrameField
+from icdgen.icd.model import TELECOMMAND, TELEMETRY, Icd, Message, Node
 
 Spoken = tuple[Message, Node]  # and the node that declares it
 Place = tuple[int, ...]  # of each bit of a value the bit of the frame, counted from the least significant of each byte
@@ -21,7 +22,7 @@ class Variant(NamedTuple):
 
     message: Message
     node: Node  # that declares it
-    constants: tuple[Field, ...] = ()
+    constants: tuple[FrameField, ...] = ()
 
 
 class Ids(NamedTuple):
@@ -55,7 +56,7 @@ def variants(spoken: Sequence[Spoken]) -> tuple[Variant, ...]:
     made = []
     for (message, node), mine in zip(spoken, known, strict=True):
         telling = {place for place, value in mine.items() if (place, value) not in alike}
-        fields = (field for field in constants(message) if _place(field, node) in telling)
+        fields = (field for field in constants(message, node) if _place(field) in telling)
         made.append((len(mine), Variant(message, node, tuple(fields))))
     return tuple(variant for _, variant in sorted(made, key=lambda one: -one[0]))
 
@@ -75,30 +76,31 @@ def is_narrower(one: Spoken, other: Spoken) -> bool:
     return _meet(one, other) and _constants(*one).items() > _constants(*other).items()
 
 
-def constants(message: Message) -> tuple[Field, ...]:
-    """The fields that have one value only in every frame: none of an open end or that is not always there; zeros that are
-    cut off are there, too."""
-    end = 8 * message.fixed
-    steady = (one for one in message.owners if one.const is not None and not one.when)
-    return tuple(one for one in steady if message.tail is None or one.at < end)
+def constants(message: Message, node: Node) -> tuple[FrameField, ...]:
+    """Return the fields that have the same value in every frame: no optional ones, and none of variable-length nodes.
+
+    Zeros that a frame leaves out at its end count as part of it. `node` is the ICD node that declares the message.
+    """
+    end = 8 * message.layout.length
+    fields = (field for field in message.layout.frame(node.orders) if field.has_bits and field.at < end)
+    return tuple(field for field in fields if field.const is not None and not field.conditions)
 
 
 def common_length(group: Sequence[Variant]) -> int | None:
     """The length that all of them have: a frame of any other has the wrong length. None if they have several."""
-    lengths = {length for one in group for length in (one.message.least, one.message.length)}
+    lengths = {length for one in group for length in (one.message.layout.shortest, one.message.layout.longest)}
     return lengths.pop() if len(lengths) == 1 else None
 
 
 def _meet(one: Spoken, other: Spoken) -> bool:
     """Whether frames of the two can have the same length."""
-    return not set(one[0].lengths).isdisjoint(other[0].lengths)
+    return not set(one[0].layout.lengths).isdisjoint(other[0].layout.lengths)
 
 
 def _constants(message: Message, node: Node) -> dict[Place, int]:
-    return {_place(field, node): field.const or 0 for field in constants(message)}
+    return {_place(field): field.const or 0 for field in constants(message, node)}
 
 
-def _place(field: Field, node: Node) -> Place:
-    byte_order, bit_order = field.orders(node)
-    bits = bits_of(field.at, field.bits, byte_order, bit_order)
-    return tuple(bits if bit_order == "lsb0" else (bit // 8 * 8 + 7 - bit % 8 for bit in bits))
+def _place(field: FrameField) -> Place:
+    bits = bits_of(field.at, field.bits, field.byte_order, field.bit_order)
+    return tuple(bits if field.bit_order == "lsb0" else (bit // 8 * 8 + 7 - bit % 8 for bit in bits))

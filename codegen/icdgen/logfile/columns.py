@@ -9,7 +9,8 @@ from typing import Literal
 from icdgen import layout, naming
 from icdgen.describe.steps import Steps, steps
 from icdgen.icd.curve import Curve
-from icdgen.icd.model import Field, Icd, Message, Node
+from icdgen.icd.layout import FrameField
+from icdgen.icd.model import Icd, Message, Node
 from icdgen.layout import Piece
 from icdgen.protocol.facts import Facts, need
 from icdgen.protocol.sections import LogBit
@@ -24,7 +25,7 @@ class Column:
     name: str
     frame: str
     message: Message | None
-    field: Field | None  # None: the slot as it is
+    field: FrameField | None  # None: the slot as it is
     start: int  # of the slot
     length: int
     byte_order: str
@@ -104,17 +105,16 @@ def columns_of(icd: Icd, message: Message, start: int = 0, length: int | None = 
     owner, size = icd.node(message.node), message.length if length is None else length
     frame = _snake(message.identifier or message.name, owner.vocabulary)
     made: dict[str, Column] = {}
-    for field in message.fields:
+    for field in icd.longest_frame(message):
         of = field.derived.fields if field.derived is not None else ()
-        if field.implied or not made.keys() >= set(of) or (not of and field.at + field.bits > size * 8):
+        if field.role == "count" or not made.keys() >= set(of) or (not of and field.at + field.bits > size * 8):
             continue
         name = f"{frame}__{_snake(field.alias or field.name, owner.vocabulary)}"
         if field.unit:
             name += f"_{naming.snake(naming.words(field.unit.identifier))}"
         pieces = tuple(p._replace(byte=p.byte + start) for p in layout.pieces(field, owner))
         operands = tuple(made[one] for one in of)
-        order = field.orders(owner)[0]
-        made[field.name] = Column(name, message.name, message, field, start, size, order, pieces, operands)
+        made[field.name] = Column(name, message.name, message, field, start, size, field.byte_order, pieces, operands)
         yield made[field.name]
 
 

@@ -20,8 +20,8 @@ def recording_text(recording: Recording, tally: Tally, width: int | None) -> str
     for name, message in recording.messages.items():
         if tally.messages[name]:
             id = message.telemetry_id if recording.direction == "telemetry" else message.telecommand_id
-            said = (f"{tally.messages[name]:,}", f"{tally.sizes[name]:,}", str(message.field_count))
-            rows.append((str(id), message.name, *said))
+            fields = sum(field.role != "count" for field in recording.icd.longest_frame(message))
+            rows.append((str(id), message.name, f"{tally.messages[name]:,}", f"{tally.sizes[name]:,}", str(fields)))
     text = clean(f"{line}{times:,} message{'' if times == 1 else 's'}") + "\n"
     text += "\n" + render(_MESSAGES, rows, width) if rows else ""
     return text + "".join(f"\nnote: {note}\n" for note in tally.notes())

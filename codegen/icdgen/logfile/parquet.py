@@ -135,14 +135,14 @@ class ColumnReader:
         if column.kind == "float":
             return pa.float32() if column.field.bits == 32 else pa.float64()
         if column.kind == "enum":
-            if column.field.bits > 8 or column.field.signed:
+            if column.field.bits > 8 or column.field.is_signed:
                 return pa.dictionary(pa.int32(), pa.string())
             self.names = pa.array(self._named(range(1 << column.field.bits)))
             return pa.dictionary(pa.uint8(), pa.string())
         if column.steps:
             return pa.float64()
         size = next(size for size in (8, 16, 32, 64) if column.field.bits <= size)
-        return pa.type_for_alias(f"{'int' if column.field.signed else 'uint'}{size}")
+        return pa.type_for_alias(f"{'int' if column.field.is_signed else 'uint'}{size}")
 
     def read(self, data: bytes, count: int) -> pa.Array:
         import numpy as np
@@ -199,7 +199,7 @@ class ColumnReader:
         assert field
         if field.at % 8 == 0 and field.bits in (8, 16, 32, 64):
             little = column.byte_order == "little"
-            return numbers_at(data, self.stride, column.at, field.bits // 8, little, "i" if field.signed else "u")
+            return numbers_at(data, self.stride, column.at, field.bits // 8, little, "i" if field.is_signed else "u")
         if len(column.pieces) == 1:
             (piece,) = column.pieces
             value = numbers_at(data, self.stride, piece.byte, 1, True) & piece.mask
@@ -211,7 +211,7 @@ class ColumnReader:
             for piece in column.pieces:
                 part = (numbers_at(data, self.stride, piece.byte, 1, True) & piece.mask) >> piece.shift
                 value |= part.astype(np.uint64) << np.uint64(piece.at)
-        if field.signed:
+        if field.is_signed:
             up = np.int64(64 - field.bits)
             return value.astype(np.uint64).view(np.int64) << up >> up
         return value

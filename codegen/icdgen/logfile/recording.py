@@ -98,7 +98,7 @@ class Recording:
             id: [one.message for one in those] for id, those in getattr(ids_of(icd, node), direction).items()
         }
         self.messages = {key(one): one for those in self._known.values() for one in those}
-        self._alike = {name for name, one in self.messages.items() if one.tail is None and not one.has_conditions}
+        self._alike = {name for name, message in self.messages.items() if _has_equal_frames(message)}
         self.chosen = {key(one) for one in chosen} or set(self.messages)
         if strange := self.chosen - set(self.messages):
             names = ", ".join(sorted(name for _, name in strange))
@@ -183,11 +183,19 @@ def key(message: Message) -> Key:
     return message.node, message.name
 
 
+def _has_equal_frames(message: Message) -> bool:
+    """Return whether all frames of a message have the same fields."""
+    return not message.layout.parts and not any(node.present_if for node in message.layout.nodes)
+
+
 def _opened(node: Node, message: Message, data: bytes) -> Opened:
     """`Came.data`, ``there`` and ``ends``. Raises `icdgen.codec.LengthError` for data that the message cannot have."""
-    raw = codec.decode(node, message, data)
-    there = frozenset(one.name for one in message.fields if one.name in raw and codec.is_sent(message, one, raw))
-    ends = {
-        one.name: (one.begin or message.begin) + codec.elements_of(one, raw) * one.step for one in message.open_parts
-    }
-    return codec.spread(node, message, data) if message.inner else data, there, ends
+    raw = codec.decode_frame(node, message, data)
+    sizes = codec.sizes_of_values(message, raw)
+    begin = message.layout.length
+    padded, ends = data[:begin], {}
+    for part in message.layout.parts:
+        size = sizes[part.name] * part.step
+        padded += data[begin : begin + size].ljust(part.most * part.step, b"\0")
+        begin, ends[part.name] = begin + size, part.begin + size
+    return padded, frozenset(raw), ends

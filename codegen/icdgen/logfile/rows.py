@@ -51,13 +51,13 @@ def _raw(column: Column) -> Callable[[bytes], int]:
     assert column.field
     field, first, last = column.field, column.at, column.at + column.size
     if field.at % 8 == 0 and field.bits % 8 == 0:
-        order, signed = column.byte_order, field.signed
+        order, signed = column.byte_order, field.is_signed
         return lambda entry: int.from_bytes(entry[first:last], order, signed=signed)  # type: ignore[arg-type]
-    if len(column.pieces) == 1 and not field.signed:
+    if len(column.pieces) == 1 and not field.is_signed:
         (piece,) = column.pieces
         byte, shift, mask = piece.byte, piece.shift, (1 << piece.bits) - 1
         return lambda entry: entry[byte] >> shift & mask
-    pieces, sign = column.pieces, 1 << field.bits - 1 if field.signed else 0
+    pieces, sign = column.pieces, 1 << field.bits - 1 if field.is_signed else 0
 
     def read(entry: bytes) -> int:
         value = sum((entry[p.byte] & p.mask) >> p.shift << p.at for p in pieces)

@@ -15,7 +15,7 @@ MESSAGE = "message"  # the column with the name
 
 
 class Entry(NamedTuple):
-    """A column of the table: where it stands, and what it holds. ``is_cut``: bytes of which a frame need not have all."""
+    """A column of the table: its place and what it contains. ``is_cut``: it has bytes of variable length."""
 
     place: int
     column: Column
@@ -34,8 +34,7 @@ class Sheet:
         self.entries: dict[Key, list[Entry]] = {key(message): [] for message in messages}
         for place, column in enumerate(columns, 1 + len(self.roles)):
             assert column.message and column.field
-            parts = {part.name for part in column.message.open_parts}
-            is_cut = column.field.name in parts and column.kind == "bytes"
+            is_cut = column.field.scalar.length is not None and column.kind == "bytes"
             self.entries[key(column.message)].append(Entry(place, column, is_cut))
 
     @cached_property

@@ -47,7 +47,7 @@ def rows_of(
     rows = []
     for id, those in sorted(ids.items()):
         messages = [one.message for one in those]
-        least, most = min(one.least for one in messages), max(one.length for one in messages)
+        least, most = min(one.layout.shortest for one in messages), max(one.length for one in messages)
         first, name = messages[0], " or ".join(one.name for one in messages)
         reply = next((replies[one.name] for one in messages if one.name in replies), None)
         rows.append(StreamRow(id, least, most, bool(first.may_end_early), seeds.get(first.name, 0), reply, name))

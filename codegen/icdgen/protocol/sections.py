@@ -266,9 +266,9 @@ class Step:
     fields: dict[str, str] = field(default_factory=dict)
 
     def frame(self, node: Node, values: Mapping[str, int | bytes] | None = None) -> bytes:
-        """Its bytes with these values by role; the others are those of a fresh message."""
+        """Return its bytes with these values by role; the others are those of a new message."""
         given = {self.fields[role]: value for role, value in (values or {}).items()}
-        return codec.encode(node, self.message, self.message.fresh | given)
+        return codec.encode(node, self.message, codec.initial_values(node, self.message) | given)
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)

@@ -29,7 +29,7 @@ class Asked:
 
     def can_be(self, data: bytes) -> bool:
         """Whether bytes are as many as one of the messages has."""
-        return any(len(data) in message.lengths for message in self.messages)
+        return any(len(data) in message.layout.lengths for message in self.messages)
 
     def fits(self, one: Reading) -> bool:
         """Whether it is what was said; a configuration message is of every kind that it is sent as."""

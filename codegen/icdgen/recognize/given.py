@@ -32,7 +32,7 @@ def of_message(icd: Icd, speaker: Speaker, message: Message, data: bytes) -> Rea
     """The message, with its id before and a checksum after it if they are there. Raises `BadLength`."""
     plain = message.telecommand_id if message.telecommand_id is not None else message.telemetry_id
     assert plain is not None
-    if len(data) in message.lengths:
+    if len(data) in message.layout.lengths:
         wrong = match.miscounted(speaker, message, data)
         if wrong is not None:
             raise wrong
@@ -44,7 +44,7 @@ def of_message(icd: Icd, speaker: Speaker, message: Message, data: bytes) -> Rea
             right = match.checksum(other, plain if id is None else id, message, rest)
             if right is not None and rest[message.length :] == right:
                 return _reading(speaker, message, id, rest[: message.length], *taken, "CRC is right")
-        if id is not None and len(rest) in message.lengths and match.miscounted(speaker, message, rest) is None:
+        if id is not None and len(rest) in message.layout.lengths and match.miscounted(speaker, message, rest) is None:
             return _reading(speaker, message, id, rest, *taken)
     right = match.checksum(speaker, plain, message, data)
     if right is not None:

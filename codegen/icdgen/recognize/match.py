@@ -82,7 +82,7 @@ def _with_id(speaker: Speaker, id: int, data: bytes) -> Iterator[Reading]:
     for what, known in _directions(speaker):
         message = _message(speaker, known, id, data)
         yield from _with_checksum(speaker, what, id, message, data)
-        if message and what == TELEMETRY and not data and message.least:
+        if message and what == TELEMETRY and not data and message.layout.shortest:
             yield Reading(speaker, REQUEST, message, id)
 
 
@@ -108,7 +108,7 @@ def _with_checksum(speaker: Speaker, what: str, id: int, message: Message | None
     """The message, if the bytes are as many as it has, or the right checksum follows them."""
     if message is None:
         return
-    if len(data) in message.lengths and miscounted(speaker, message, data) is None:
+    if len(data) in message.layout.lengths and miscounted(speaker, message, data) is None:
         yield Reading(speaker, what, message, id, data)
         return
     right = checksum(speaker, id, message, data)
@@ -119,7 +119,7 @@ def _with_checksum(speaker: Speaker, what: str, id: int, message: Message | None
 def checksum(speaker: Speaker, id: int, message: Message, data: bytes) -> bytes | None:
     """The checksum that must follow the message's data; None if there is none, or no room for it."""
     form = speaker.facts.checksum
-    if form is None or message.tail is not None or len(data) != message.length + form.bytes:
+    if form is None or message.layout.parts or len(data) != message.length + form.bytes:
         return None
     return i2c_write(speaker.link, id, data[: message.length], crc=True)[-form.bytes :]
 
@@ -174,14 +174,14 @@ def why_not(apart: Sequence[Apart], unknown: NotFound) -> BadLength | NotFound:
         right = checksum(speaker, id, message, data)
         if right is not None:
             return wrong_checksum(message, right, data)
-        wrong = miscounted(speaker, message, data) if len(data) in message.lengths else None
+        wrong = miscounted(speaker, message, data) if len(data) in message.layout.lengths else None
         if wrong is not None:
             return wrong
     told = " or ".join(
         f"`{m.name}` ({describe(m, s.facts.stream)}) has {length_text(m)}" for s, m, _, _ in known.values()
     )
     _, first, id, data = next(iter(known.values()))
-    if len(known) > 1 and any(len(data) in message.lengths for _, message, _, data in known.values()):
+    if len(known) > 1 and any(len(data) in message.layout.lengths for _, message, _, data in known.values()):
         return none_of([message for _, message, _, _ in known.values()], f"the {len(data)} bytes after the id {id}")
     text = f"{told}, {len(data)} given after the id {id}"
     return BadLength(text, first.length, len(data), "bytes are missing, or too many")
@@ -199,8 +199,8 @@ def miscounted(speaker: Speaker, message: Message, data: bytes) -> BadLength | N
     try:
         codec.decode(speaker.icd.node(message.node), message, data)
     except codec.LengthError as error:
-        counter = message.counter
-        said = f"`{counter.name}` says" if counter and not message.inner else "they say"
+        parts = message.layout.parts
+        said = f"`{parts[0].counter}` says" if len(parts) == 1 else "they say"
         text = f"`{message.name}` of {error.actual} bytes: {error.expected} are needed for as many elements as {said}"
         return BadLength(text, error.expected, error.actual, "bytes are missing, or too many, or damaged")
     return None

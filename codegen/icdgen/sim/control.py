@@ -13,14 +13,15 @@ import yaml
 
 from icdgen import codec
 from icdgen.errors import UserError, unreadable
-from icdgen.icd.model import Field, Icd, Message, Node
+from icdgen.icd.layout import FrameField
+from icdgen.icd.model import Icd, Message, Node
 from icdgen.sim import faults
 from icdgen.sim.device_line import DeviceLine
 from icdgen.sim.values import raw_of
 from icdgen.values.encode import listed
 from icdgen.values.entry import typed
 from icdgen.values.errors import BadValue, NotFound
-from icdgen.values.find import by_name, find_array, find_field, find_message, open_part
+from icdgen.values.find import by_name, find_array, find_field, find_message
 
 Wave = Mapping[str, Any]  # as a script has it
 WAVES = ("sine", "ramp", "steps", "noise")
@@ -44,7 +45,7 @@ class Control:
     def __init__(self, icd: Icd, node: Node, line: DeviceLine, steps: list[Step]) -> None:
         self.icd, self.node, self.line = icd, node, line
         self.steps = sorted(steps, key=lambda step: step.at)
-        self.moving: list[tuple[Message, Field, Wave]] = []
+        self.moving: list[tuple[Message, FrameField, Wave]] = []
 
     @property
     def deadline(self) -> int | None:
@@ -76,7 +77,7 @@ class Control:
         for message, one, given in of_fields(self.icd, self.node, name, key, value):
             self._set(message, one, given)
 
-    def _set(self, message: Message, one: Field, value: object) -> None:
+    def _set(self, message: Message, one: FrameField, value: object) -> None:
         self.moving = [m for m in self.moving if (m[0].name, m[1].name) != (message.name, one.name)]
         if isinstance(value, Mapping):
             self.moving.append((message, one, value))
@@ -122,28 +123,29 @@ class Control:
         return "ok"
 
 
-def of_fields(icd: Icd, node: Node, name: str, key: str, value: object) -> list[tuple[Message, Field, object]]:
-    """A field of a frame and its value; of an array, each element and its own, from a list or a text of one.
+def of_fields(icd: Icd, node: Node, name: str, key: str, value: object) -> list[tuple[Message, FrameField, object]]:
+    """Return a field of a frame and its value; of an array, each element and its own, from a list or a text of one.
 
-    Of an open part it may be a shorter list, and what counts its elements comes first. Raises `icdgen.errors.UserError`.
+    Of variable length it may be a shorter list, and the counter comes first. Raises `icdgen.errors.UserError`.
     """
     message = locate_message(icd, node, name)
     vocabulary = icd.node(message.node).vocabulary
-    elements = find_array(message, key, vocabulary)
-    parts = by_name([one for one in message.members if open_part(message, one.name)], key, vocabulary)
-    part = open_part(message, parts[0].name) if parts else None
+    fields = icd.longest_frame(message)
+    elements = find_array(fields, key, vocabulary)
+    nodes = by_name(message.layout.sequence, key, vocabulary)
+    part = next((part for part in message.layout.parts if nodes and part.node is nodes[0]), None)
     is_none = part is not None and str(value).strip() == "[]"
     if not elements and not is_none:
-        return [(message, find_field(message, key, vocabulary), value)]
+        return [(message, find_field(message, fields, key, vocabulary), value)]
     if isinstance(value, Mapping):
         return [(message, one, value) for one in elements]
     texts = [] if is_none else listed(key, str(value), len(elements), part is not None)
-    found: list[tuple[Message, Field, object]] = [
+    found: list[tuple[Message, FrameField, object]] = [
         (message, one, text) for one, text in zip(elements, texts, strict=False)
     ]
     if part is None:
         return found
-    counter = next(one for one in message.fields if one.name == part.counter)
+    counter = next(field for field in fields if field.name == part.counter)
     return [(message, counter, len(texts) - part.plus), *found]
 
 
@@ -158,12 +160,12 @@ def locate_message(icd: Icd, node: Node, name: str) -> Message:
     raise wrong[0]
 
 
-def fitting(message: Message, one: Field, value: object) -> int | bytes:
+def fitting(message: Message, one: FrameField, value: object) -> int | bytes:
     """The raw value of what a user gave. Raises `icdgen.errors.UserError`."""
-    if one.view:
+    if one.role in ("overlay", "derived"):
         raise UserError(f"{message.name}, {one.name}: a view has no bits of its own", "set the fields that have them")
     text = "true" if value is True else "false" if value is False else str(value)
-    raw = typed(one, text, is_open=open_part(message, one.name) is not None)
+    raw = typed(one, text)
     if isinstance(raw, int) and one.type != "float" and not one.raw_min <= raw <= one.raw_max:
         raise UserError(f"{message.name}, {one.name}: {value} does not fit", f"{one.bits} bits hold the raw value")
     return raw
@@ -227,8 +229,8 @@ def _step(path: Path, number: int, row: object, icd: Icd, node: Node) -> Step:
     )
 
 
-def _check_wave(where: str, one: Field, wave: Wave) -> None:
-    if one.view:
+def _check_wave(where: str, one: FrameField, wave: Wave) -> None:
+    if one.role in ("overlay", "derived"):
         raise UserError(f"{where}: a view has no bits of its own", "let the fields move that have them")
     numbers = [wave.get(key, 1) for key in ("min", "max", "period")]
     if set(wave) - {"wave", "min", "max", "period"} or wave.get("wave", "sine") not in WAVES or one.is_bytes:

@@ -120,7 +120,7 @@ class Program:
 
     def misfit(self, message: Message, raw: Mapping[str, int | bytes]) -> int | None:
         """Index of the first field whose value is not taken."""
-        for index, field in enumerate(message.fields):
+        for index, field in enumerate(self.icd.longest_frame(message)):
             value = raw.get(field.name)  # not every field is there in every message
             wrong = isinstance(value, int) and (
                 bool(violations(field, value)) and codec.special_of(field, value) is None
@@ -154,7 +154,8 @@ class Program:
                 self.transfers.telecommand(now, known, raw)
             self.programs.telecommand(now, known, raw)
         except Refused as refused:
-            return self._refusal("parameter", refused.index)
+            names = [field.name for field in self.icd.longest_frame(known)]
+            return self._refusal("parameter", names.index(refused.field) if refused.field else 0)
         if known.name == self._log_role().get("message"):
             self._plan_log(now)
         code, reset = self.known.errors.get("none", 0), known if known.expects_reset else None
@@ -180,7 +181,7 @@ class Program:
         step = self.known.statistics
         if step is None or step.message.name != message.name:
             return {}
-        bits = {field.name: field.bits for field in message.fields}
+        bits = {field.name: field.bits for field in self.icd.longest_frame(step.message)}
         found: Raw = {}
         for role, name in step.fields.items():
             count = self.counts.get(role, 0)

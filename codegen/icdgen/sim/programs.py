@@ -30,7 +30,7 @@ class Programs:
                 continue
             program = int(raw[form.request.fields["program"]])
             if form.programs and program not in form.programs:
-                raise Refused(_index(message, form.request.fields["program"]))
+                raise Refused(form.request.fields["program"])
             self.busy[name] = now + self.busy_ms
             if form is self.known.program_copy:
                 self.failed = not self._copy(program)
@@ -63,7 +63,3 @@ class Programs:
             return False
         self.storage.put(self.copy_to, bytes(data))
         return True
-
-
-def _index(message: Message, field: str) -> int:
-    return next(index for index, one in enumerate(message.fields) if one.name == field)

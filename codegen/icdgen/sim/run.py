@@ -149,7 +149,7 @@ def _file(icd: Icd, node: Node, text: str) -> tuple[tuple[int, int], File]:
     key, _, path = text.partition("=")
     kind, colon, counter = key.rpartition(":")
     number = numbers.integer(counter.strip())
-    type_ = _type(known, kind.strip()) if path and colon else None
+    type_ = _type(icd, known, kind.strip()) if path and colon else None
     if type_ is None or number is None or not (0 <= type_ <= 255 and 0 <= number <= 255):
         raise UserError(f"`{text}` is no file of the device", "TYPE:COUNTER=PATH, for instance 2:1=log.bin")
     if known.index and type_ == known.index.file_type:
@@ -166,15 +166,16 @@ def _file(icd: Icd, node: Node, text: str) -> tuple[tuple[int, int], File]:
     return (type_, number), File(data, packed)
 
 
-def _type(known: facts.Facts, text: str) -> int | None:
+def _type(icd: Icd, known: facts.Facts, text: str) -> int | None:
     """The number of a file type by itself or by its name."""
     from icdgen.values.entry import from_physical
 
     load = known.files.download.load if known.files and known.files.download else None
-    one = next((f for f in load.message.fields if f.name == load.fields.get("type")), None) if load else None
-    if one is None:
+    fields = icd.longest_frame(load.message) if load else ()
+    field = next((field for field in fields if load and field.name == load.fields.get("type")), None)
+    if field is None:
         raise UserError("the ICD describes no files", "leave --file out")
-    return from_physical(one, text)  # type: ignore[return-value]
+    return from_physical(field, text)  # type: ignore[return-value]
 
 
 def _saver(folder: Path | None) -> Callable[[int, bytes], None] | None:

@@ -17,11 +17,11 @@ Raw = dict[str, "int | bytes"]
 
 
 class Refused(Exception):
-    """A parameter is wrong: the one at ``index``."""
+    """A parameter is wrong: the field of that name, the first one without a name."""
 
-    def __init__(self, index: int = 0) -> None:
-        super().__init__(index)
-        self.index = index
+    def __init__(self, field: str | None = None) -> None:
+        super().__init__(field)
+        self.field = field
 
 
 class Packet(NamedTuple):
@@ -148,7 +148,7 @@ class Transfers:
     def _burst(self, now: int, values: Raw) -> None:
         if self.form.download and values.get("length", 0) != self.form.download.message_length:
             self.bad = True
-            raise Refused(0)
+            raise Refused()
         count = self.known.packets_of(len(self.block))
         self.burst = list(range(count))
         if not values.get("ignore_hole_map") and self.known.hole_map:

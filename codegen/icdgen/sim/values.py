@@ -8,7 +8,8 @@ from math import ceil, floor
 
 from icdgen import codec
 from icdgen.icd.curve import Curve
-from icdgen.icd.model import Field, Icd, Message, Node
+from icdgen.icd.layout import FrameField
+from icdgen.icd.model import Icd, Message, Node
 from icdgen.values.frame import violations
 
 
@@ -19,7 +20,7 @@ class Values:
         self.icd = icd
         self.messages = {m.name: m for m in icd.messages_of(node)}
         self.frames = {
-            m.name: self.encode(m, allowed_values(m)) for m in self.messages.values() if m.telemetry_id is not None
+            m.name: self.encode(m, allowed_values(icd, m)) for m in self.messages.values() if m.telemetry_id is not None
         }
 
     def frame(self, message: Message) -> bytes:
@@ -39,17 +40,18 @@ class Values:
         return codec.decode(self.icd.node(message.node), message, self.frame(message))
 
     def update(self, message: Message, raw: Mapping[str, int | bytes]) -> dict[str, int | bytes]:
-        """Sets some fields; what was set, with what counts elements of open parts. Raises `icdgen.codec.CodecError`.
+        """Sets some fields. Returns the values set, with those of counters. Raises `icdgen.codec.CodecError`.
 
-        Of bytes and text at an open end there are as many as are set; an element is there once it is set.
+        Variable-length bytes and text get the length of what is set; an array gets all elements up to one that is set.
         """
         before, given = self.raw(message), dict(raw)
-        for part in message.open_parts:
-            octets, count = given.get(part.name), codec.elements_of(part, {**before, **raw})
+        steps = [field.steps[0] for field in self.icd.longest_frame(message) if field.name in raw]
+        for part in message.layout.parts:
+            octets, count = given.get(part.name), codec.size_of_values(part, {**before, **raw})
             if isinstance(octets, bytes):
                 given[part.name], count = octets.ljust(part.most, b"\0"), len(octets)
-            paths = (one.path[0] for one in message.fields if one.path and one.name in raw)
-            count = max([count, *((one.index or 0) + 1 for one in paths if one.name == part.name)])
+            elements = (step.element for step in steps if step.node is part.node)
+            count = max([count, *(element + 1 for element in elements if element is not None)])
             given.setdefault(part.counter, count - part.plus)
         self.put(message, self.encode(message, {**before, **given}))
         return given
@@ -64,21 +66,21 @@ class Values:
                 yield inner, part.at // 8, part.at // 8 + inner.length
 
 
-def allowed_values(message: Message) -> dict[str, int | bytes]:
-    """Values that the ICD allows, 0 where it does; views read what comes of them."""
-    return {field.name: _allowed_value(field) for field in message.owners}
+def allowed_values(icd: Icd, message: Message) -> dict[str, int | bytes]:
+    """Return values of the longest frame that the ICD allows, 0 where it does; overlays read the same bits."""
+    return {field.name: _allowed_value(message, field) for field in icd.longest_frame(message) if field.is_raw}
 
 
-def _allowed_value(field: Field) -> int | bytes:
+def _allowed_value(message: Message, field: FrameField) -> int | bytes:
     if field.is_bytes:
         return bytes(field.bits // 8)
     for raw in _candidates(field):
         if field.raw_min <= raw <= field.raw_max and not violations(field, raw):
             return raw
-    return field.fresh
+    return codec.initial_value(message, field)
 
 
-def _candidates(field: Field) -> Iterable[int]:
+def _candidates(field: FrameField) -> Iterable[int]:
     if field.const is not None:
         yield field.const
     yield 0
@@ -97,7 +99,7 @@ def _candidates(field: Field) -> Iterable[int]:
         yield from (floor(raw), ceil(raw), floor(raw) - 1, ceil(raw) + 1)
 
 
-def _on_curve(field: Field, bound: Fraction) -> Iterable[int]:
+def _on_curve(field: FrameField, bound: Fraction) -> Iterable[int]:
     """Raw values about that of a physical one."""
     for step in (0, 1, -1):
         try:
@@ -106,7 +108,7 @@ def _on_curve(field: Field, bound: Fraction) -> Iterable[int]:
             continue
 
 
-def raw_of(field: Field, value: float) -> int:
+def raw_of(field: FrameField, value: float) -> int:
     """The raw value nearest to a physical one, held within what the field can hold."""
     if field.curve is not None:
         return _held(field, field.curve, value)
@@ -117,11 +119,11 @@ def raw_of(field: Field, value: float) -> int:
     return min(max(raw, field.raw_min), field.raw_max)
 
 
-def _held(field: Field, curve: Curve, value: float) -> int:
+def _held(field: FrameField, curve: Curve, value: float) -> int:
     """Of a curve; 0 where it does not lead back."""
-    if not field.leads_back:
+    if not field.is_invertible:
         return 0
     if field.type == "float":
         return codec.float_bits(field, curve.inverse(value))
-    ends = sorted(map(curve.double, field.ends))
+    ends = sorted(map(curve.double, field.settable_raws))
     return codec.raw_from_physical(field, min(max(value, ends[0]), ends[1]))

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from fractions import Fraction
 
 from icdgen import codec
 from icdgen.describe.comments import condition_text
 from icdgen.errors import UserError
-from icdgen.icd.model import Field, Icd, Message, Tail
+from icdgen.icd.layout import FrameField, VariablePart, struct_layout_of
+from icdgen.icd.model import Icd, Message
 from icdgen.values import numbers
 from icdgen.values.entry import members, out_of_range, typed, without_unit
 from icdgen.values.errors import BadValue
-from icdgen.values.find import by_name, find_array, find_field, find_message, find_node, open_part
+from icdgen.values.find import by_name, find_array, find_field, find_message, find_node
 from icdgen.values.frame import Frame, frame, outside, unlisted
 
 _EACH = "give each field as name=value"
@@ -30,27 +31,29 @@ def encode(
     """
     node = find_node(icd, node_name)
     message = find_message(icd, node_name, key, kind)
+    fields = icd.longest_frame(message)
     wrong = _Wrong()
     given: dict[str, str] = {}
     is_empty = False  # the open end is said to have no element
     for assignment in assignments:
         with wrong.collect():
-            pairs = split(message, assignment, node.vocabulary)
+            pairs = split(message, fields, assignment, node.vocabulary)
             is_empty = is_empty or not pairs
             for field, text in pairs:
                 if field.name in given:
                     raise BadValue(f"`{field.name}` is given twice: {given[field.name]} and {text}")
                 given[field.name] = text
     misnamed = bool(wrong.messages)
-    values, notes = _values(message, given, raw, wrong)
-    needed = (one for one in message.owners if one.const is None and _is_needed(one, given, values))
+    values, notes = _values(message, fields, given, raw, wrong)
+    needed = (one for one in fields if one.is_raw and one.const is None and _is_needed(one, given, values))
     missing = [one.name for one in needed if one.name not in given]
     with wrong.collect():
-        _are_there(message, given, values)
-    for part in message.open_parts:
-        missing = _without_open(message, part, missing, given, is_empty)
+        _are_there(message, fields, given, values)
+    for part in message.layout.parts:
+        elements = [field for field in fields if field.steps[0].node is part.node]
+        missing = _without_elements(part, elements, missing, given, is_empty)
         with wrong.collect():
-            _count(message, part, given, values)
+            _count(part, elements, given, values)
     if not misnamed:
         with wrong.collect():
             _require(missing)
@@ -64,16 +67,18 @@ def _require(names: list[str]) -> None:
         raise BadValue("no value for " + ", ".join(f"`{name}`" for name in names), _EACH)
 
 
-def _is_needed(field: Field, given: dict[str, str], values: dict[str, int | bytes]) -> bool:
+def _is_needed(field: FrameField, given: dict[str, str], values: dict[str, int | bytes]) -> bool:
     """Whether a field must be given: one that is not always there, if what it depends on is given and says so."""
-    return all(one.field in given for one in field.when) and codec.is_present(field, values)
+    return all(one.field in given for one in field.conditions) and codec.is_present(field, values)
 
 
-def _are_there(message: Message, given: dict[str, str], values: dict[str, int | bytes]) -> None:
+def _are_there(
+    message: Message, fields: Sequence[FrameField], given: dict[str, str], values: dict[str, int | bytes]
+) -> None:
     """Raises `BadValue` for what is given and not there."""
-    for field in message.fields:
+    for field in fields:
         if field.name in given and not codec.is_present(field, values):
-            needs = " and ".join(condition_text(one, message) for one in field.when)
+            needs = " and ".join(condition_text(one, message) for one in field.conditions)
             raise BadValue(f"`{field.name}` is not there: it is only if {needs}", f"leave `{field.name}` out")
 
 
@@ -101,64 +106,75 @@ class _Wrong:
             raise BadValue("\n".join(f"{message} ({own})" if own else message for message, own in pairs), help)
 
 
-def _without_open(message: Message, part: Tail, missing: list[str], given: dict[str, str], is_empty: bool) -> list[str]:
-    """What is missing: of an open part its name alone, unless some of it is given; how many there are follows from that."""
-    own = {one.name for one in message.fields if one.name == part.name or (one.path and one.path[0].name == part.name)}
-    left = [name for name in missing if name not in own and name != part.counter]
-    is_given = is_empty or part.counter in given or bool(own & given.keys())
-    return left if is_given else [*left, part.name]
+def _without_elements(
+    part: VariablePart, elements: list[FrameField], missing: list[str], given: dict[str, str], is_empty: bool
+) -> list[str]:
+    """Return what is missing: of a variable-length node only its name, unless some of it or its counter is given."""
+    names = {field.name for field in elements}
+    missing = [name for name in missing if name not in names and name != part.counter]
+    is_given = is_empty or part.counter in given or bool(names & given.keys())
+    return missing if is_given else [*missing, part.name]
 
 
-def _count(message: Message, tail: Tail, given: dict[str, str], values: dict[str, int | bytes]) -> None:
-    """Counts the elements that are given, unless a number is. Raises `BadValue` where they have a gap or another number."""
-    is_octets = tail.name in values
-    elements = [one for one in message.fields if one.path and one.path[0].name == tail.name]
-    indexes = [one.path[0].index or 0 for one in elements]
-    there = list(dict.fromkeys(index for index, one in zip(indexes, elements, strict=True) if one.name in given))
-    count = len(there)
-    if is_octets and isinstance(octets := values[tail.name], bytes):
-        count = len(octets) if tail.name in given else 0
-        values[tail.name] = octets.ljust(tail.most, b"\0")
-    if there and there[-1] != count - 1:
-        raise BadValue(f"`{tail.name}[{there[-1]}]` is given, and not all elements before it")
-    left = [one.name for index, one in zip(indexes, elements, strict=True) if index < count and one.const is None]
-    _require([name for name in left if name not in given])
-    if count < tail.fewest:
-        least = f"{tail.fewest} element{'s' * (tail.fewest != 1)}"
-        raise BadValue(f"`{tail.name}` has at least {least}, {count} given", _EACH)
-    if tail.counter not in given:
-        values[tail.counter] = count - tail.plus
-    elif values[tail.counter] != count - tail.plus:
-        given_text = f"{count} element{'s' * (count != 1)} of `{tail.name}` {'are' if count != 1 else 'is'} given"
-        raise BadValue(f"`{tail.counter}` is {given[tail.counter]}, and {given_text}", f"leave `{tail.counter}` out")
+def _count(
+    part: VariablePart, elements: list[FrameField], given: dict[str, str], values: dict[str, int | bytes]
+) -> None:
+    """Sets the counter of a variable-length node to the number of elements, or bytes, that are given.
+
+    Raises `BadValue` where an element is left out, or the counter is given with another number.
+    """
+    if not part.is_array:
+        octets = values[part.name]
+        assert isinstance(octets, bytes)
+        count = len(octets) if part.name in given else 0
+        values[part.name] = octets.ljust(part.most, b"\0")
+    else:
+        indexes = list(dict.fromkeys(field.steps[0].element or 0 for field in elements if field.name in given))
+        count = len(indexes)
+        if indexes and indexes[-1] != count - 1:
+            raise BadValue(f"`{part.name}[{indexes[-1]}]` is given, and not all elements before it")
+        present = (field for field in elements if (field.steps[0].element or 0) < count)
+        _require([field.name for field in present if field.const is None and field.name not in given])
+    if count < part.fewest:
+        least = f"{part.fewest} element{'s' * (part.fewest != 1)}"
+        raise BadValue(f"`{part.name}` has at least {least}, {count} given", _EACH)
+    if part.counter not in given:
+        values[part.counter] = count - part.plus
+    elif values[part.counter] != count - part.plus:
+        given_text = f"{count} element{'s' * (count != 1)} of `{part.name}` {'are' if count != 1 else 'is'} given"
+        raise BadValue(f"`{part.counter}` is {given[part.counter]}, and {given_text}", f"leave `{part.counter}` out")
 
 
-def split(message: Message, assignment: str, vocabulary: tuple[str, ...]) -> list[tuple[Field, str]]:
+def split(
+    message: Message, fields: Sequence[FrameField], assignment: str, vocabulary: tuple[str, ...]
+) -> list[tuple[FrameField, str]]:
     """The field and the text of its value, or those of all elements of an array: ``temperatures=[1, 2.5, 3]``.
 
-    A field's name may itself hold a ``=``. Raises `NotFound`, `Ambiguous`, `BadValue`.
+    `fields` are those of the longest frame. A field's name may itself hold a ``=``. Raises `NotFound`, `Ambiguous`,
+    `BadValue`.
     """
-    exact = [f for f in message.fields if assignment.startswith(f.name + "=")]
+    exact = [f for f in fields if assignment.startswith(f.name + "=")]
     if exact:
         field = max(exact, key=lambda f: len(f.name))
         return [(field, assignment[len(field.name) + 1 :].strip())]
     name, equals, text = assignment.partition("=")
     if not equals:
         raise BadValue(f"`{assignment}` is not of the form name=value", "for instance `speed=100`")
-    elements = find_array(message, name.strip(), vocabulary)
+    elements = find_array(fields, name.strip(), vocabulary)
     if elements:
-        is_open = open_part(message, elements[0].path[0].name) is not None
-        texts = listed(name.strip(), text, len(elements), is_open)
+        has_variable_length = elements[0].steps[0].node in message.layout.sequence
+        texts = listed(name.strip(), text, len(elements), has_variable_length)
         return list(zip(elements[: len(texts)], texts, strict=True))
-    structs = by_name([one for one in message.members if one.struct is not None], name, vocabulary)
+    structs = by_name([node for node in message.layout.nodes if struct_layout_of(node)], name, vocabulary)
     if structs:
-        is_open = open_part(message, structs[0].name) is not None
-        if is_open and text.strip() == "[]":
+        has_variable_length = structs[0] in message.layout.sequence
+        if has_variable_length and text.strip() == "[]":
             return []
-        none = f", or `{name.strip()}=[]` for none" if is_open else ""
-        help = f"for instance `{structs[0].elements[0].name}=1`{none}"
+        none = f", or `{name.strip()}=[]` for none" if has_variable_length else ""
+        first = next(field for field in fields if field.steps[0].node is structs[0])
+        help = f"for instance `{first.name}=1`{none}"
         raise BadValue(f"`{name.strip()}` is made of structs, whose fields are given one by one", help)
-    return [(find_field(message, name.strip(), vocabulary), text.strip())]
+    return [(find_field(message, fields, name.strip(), vocabulary), text.strip())]
 
 
 def listed(name: str, text: str, count: int, is_open: bool = False) -> list[str]:
@@ -177,19 +193,19 @@ def listed(name: str, text: str, count: int, is_open: bool = False) -> list[str]
 
 
 def _values(
-    message: Message, given: dict[str, str], raw: bool, wrong: _Wrong
+    message: Message, fields: Sequence[FrameField], given: dict[str, str], raw: bool, wrong: _Wrong
 ) -> tuple[dict[str, int | bytes], dict[str, str]]:
     """Raw value of each field, and a note where a value was rounded."""
     values: dict[str, int | bytes] = {}
     notes: dict[str, str] = {}
-    for field in message.fields:
-        values[field.name] = field.fresh
+    for field in fields:
+        if field.is_raw:
+            values[field.name] = codec.initial_value(message, field)
         if field.name not in given:
             continue
         text = given[field.name]
         with wrong.collect(f"{field.name}: "):
-            is_open = open_part(message, field.name) is not None
-            values[field.name] = value = typed(field, text, raw, is_open)
+            values[field.name] = value = typed(field, text, raw)
             if isinstance(value, bytes):
                 continue
             _check(field, value, text, raw)
@@ -200,14 +216,14 @@ def _values(
     return values, notes
 
 
-def _differs(field: Field, raw: int, exact: Fraction) -> bool:
+def _differs(field: FrameField, raw: int, exact: Fraction) -> bool:
     """Whether the physical value of a raw one is another than the one that was given."""
     if field.curve is not None:
         return codec.physical_double(field, raw) != float(exact)
     return codec.physical(field, raw) != exact
 
 
-def _check(field: Field, value: int, text: str, raw: bool) -> None:
+def _check(field: FrameField, value: int, text: str, raw: bool) -> None:
     """Raise `BadValue` for a value that the field cannot have: of physical values by type and limits together."""
     fits = field.raw_min <= value <= field.raw_max
     if raw:

@@ -7,7 +7,9 @@ from fractions import Fraction
 
 from icdgen import codec, naming
 from icdgen.describe.bounds import bounds, range_text
-from icdgen.icd.model import Enum, Field, Member
+from icdgen.icd.layout import FrameField
+from icdgen.icd.model import Enum, Member
+from icdgen.icd.places import AnyValue
 from icdgen.values import numbers
 from icdgen.values.errors import BadHex, BadValue
 from icdgen.values.find import by_name
@@ -16,17 +18,17 @@ from icdgen.values.hexadecimal import parse_hex
 _TRUTH = {"true": 1, "yes": 1, "on": 1, "1": 1, "false": 0, "no": 0, "off": 0, "0": 0}
 
 
-def members(field: Field) -> str:
+def members(field: AnyValue) -> str:
     """The members of the field's enumeration, for the end of a message."""
     return "; members: " + ", ".join(f"{m.values} {m.name}" for m in field.enum.members) if field.enum else ""
 
 
-def out_of_range(field: Field, text: str) -> str:
+def out_of_range(field: AnyValue, text: str) -> str:
     """The message for a physical value beyond the type or the limits."""
     return f"takes {range_text(field) or f'{field.raw_min} to {field.raw_max}'}, not {text}"
 
 
-def raw_value(field: Field, text: str) -> int | bytes:
+def raw_value(field: FrameField, text: str) -> int | bytes:
     """The raw value itself; the bits of a float as ``0x...``. Raises `BadValue`; does not look at the range."""
     _settable(field)
     if field.is_bytes:
@@ -43,60 +45,61 @@ def raw_value(field: Field, text: str) -> int | bytes:
     return value
 
 
-def from_physical(field: Field, text: str) -> int | bytes:
+def from_physical(field: FrameField, text: str) -> int | bytes:
     """The raw value of a text, else the one nearest to a physical value. Raises `BadValue`; does not look at the range."""
     _settable(field)
     return _READERS.get(field.type, _integer)(field, text)
 
 
-def typed(field: Field, text: str, raw: bool = False, is_open: bool = False) -> int | bytes:
-    """The raw value of either; of open bytes and text as much as is given. Raises `BadValue`."""
-    if is_open and (raw or field.type == "bytes"):
-        return _bytes(field, text, is_open)
+def typed(field: FrameField, text: str, raw: bool = False) -> int | bytes:
+    """The raw value of either; of variable-length bytes and text as much as is given. Raises `BadValue`."""
+    has_variable_length = field.scalar.length is not None
+    if has_variable_length and (raw or field.type == "bytes"):
+        return _bytes(field, text)
     value = (raw_value if raw else from_physical)(field, text)
-    return value[: len(text)] if is_open and isinstance(value, bytes) else value
+    return value[: len(text)] if has_variable_length and isinstance(value, bytes) else value
 
 
-def _settable(field: Field) -> None:
+def _settable(field: FrameField) -> None:
     if field.derived is not None:
         of = ", ".join(f"`{name}`" for name in field.derived.fields)
         raise BadValue(f"it is derived from {of or 'numbers'}", "set the fields that it is derived from")
-    if field.view:
+    if field.role == "overlay":
         raise BadValue("a view has no bits of its own", "set the fields that have them")
 
 
-def _bool(field: Field, text: str) -> int:
+def _bool(field: FrameField, text: str) -> int:
     if text.lower() not in _TRUTH:
         raise BadValue(f"`{text}` is neither true nor false (nor yes, no, on, off, 1, 0)")
     return _TRUTH[text.lower()]
 
 
-def _bytes(field: Field, text: str, is_open: bool = False) -> bytes:
-    """Bytes; of what is open there may be fewer than the field has room for."""
+def _bytes(field: FrameField, text: str) -> bytes:
+    """Bytes; of variable length there may be fewer than the longest frame has room for."""
     try:
         value = parse_hex(text)
     except BadHex as error:
         raise BadValue(str(error)) from None
-    room = field.bits // 8
-    if len(value) > room or (len(value) < room and not is_open):
-        wanted = f"up to {room} bytes are taken" if is_open else f"{room} bytes are needed"
+    room, has_variable_length = field.bits // 8, field.scalar.length is not None
+    if len(value) > room or (len(value) < room and not has_variable_length):
+        wanted = f"up to {room} bytes are taken" if has_variable_length else f"{room} bytes are needed"
         raise BadValue(f"{wanted}, {len(value)} given")
     return value
 
 
-def _text(field: Field, text: str) -> bytes:
+def _text(field: FrameField, text: str) -> bytes:
     try:
         return codec.raw_from_text(field, text)
     except codec.CodecError:
         raise BadValue(f"`{text}` is not of up to {field.bits // 8} ASCII characters") from None
 
 
-def _special(field: Field, text: str) -> int | None:
+def _special(field: FrameField, text: str) -> int | None:
     """The value that has the text as its meaning."""
     return next((s.value for s in field.special if s.meaning.casefold() == text.casefold()), None)
 
 
-def _float(field: Field, text: str, raw: bool = False) -> int:
+def _float(field: FrameField, text: str, raw: bool = False) -> int:
     if text[:2] in ("0x", "0X"):
         value = numbers.integer(text)
         if raw and value is not None:
@@ -117,7 +120,7 @@ def _float(field: Field, text: str, raw: bool = False) -> int:
     return value
 
 
-def _integer(field: Field, text: str) -> int:
+def _integer(field: FrameField, text: str) -> int:
     if (special := _special(field, text)) is not None:
         return special
     if field.curve is not None:
@@ -132,24 +135,24 @@ def _integer(field: Field, text: str) -> int:
     return exact.numerator
 
 
-def _on_curve(field: Field, text: str) -> int:
+def _on_curve(field: FrameField, text: str) -> int:
     try:
         return codec.raw_from_physical(field, _exact(field, text))
     except codec.CodecError as error:
-        if field.leads_back and range_text(field):
+        if field.is_invertible and range_text(field):
             raise BadValue(out_of_range(field, text)) from None
-        help = "" if field.leads_back else "--raw takes the raw value"
+        help = "" if field.is_invertible else "--raw takes the raw value"
         raise BadValue(str(error).removeprefix(f"{field.name!r} "), help) from None
 
 
-def _exact(field: Field, text: str) -> Fraction:
+def _exact(field: FrameField, text: str) -> Fraction:
     exact = numbers.rational(without_unit(field, text))
     if exact is None:
         raise BadValue(f"`{text}` is not a number" + (f" (in {field.unit.symbol})" if field.unit else ""))
     return exact
 
 
-def without_unit(field: Field, text: str) -> str:
+def without_unit(field: AnyValue, text: str) -> str:
     """``12.5 deg`` or ``12.5deg`` without the unit."""
     symbol = field.unit_symbol
     if not symbol or not text.endswith(symbol):
@@ -158,11 +161,11 @@ def without_unit(field: Field, text: str) -> str:
     return number if number[-1:].isdigit() else text
 
 
-def _enum(field: Field, text: str) -> int:
+def _enum(field: FrameField, text: str) -> int:
     return _integer(field, text) if field.enum is None else _member(field, field.enum, text)
 
 
-def _member(field: Field, enum: Enum, text: str) -> int:
+def _member(field: FrameField, enum: Enum, text: str) -> int:
     known = enum.members
     number = numbers.integer(text)
     found = {m.values: m.value for m in by_name(known, text, ())}
@@ -185,6 +188,6 @@ def _has_words(member: Member, text: str) -> bool:
     return bool(wanted) and set(wanted) <= set(naming.words(member.name))
 
 
-_READERS: dict[str, Callable[[Field, str], int | bytes]] = {
+_READERS: dict[str, Callable[[FrameField, str], int | bytes]] = {
     "bool": _bool, "bytes": _bytes, "text": _text, "float": _float, "enum": _enum
 }  # fmt: skip

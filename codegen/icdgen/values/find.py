@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
 from icdgen import naming
 from icdgen.describe.ids import id_text
-from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Field, Icd, Message, Node, Tail
-from icdgen.icd.paths import arrays_of, name_of
+from icdgen.icd.layout import FrameField, PathStep, alias_of_steps, name_of_steps
+from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Icd, Message, Node
 from icdgen.protocol import facts
 from icdgen.protocol.envelope import Stream
 from icdgen.suggest import close_words
@@ -35,7 +35,25 @@ class _HasName(Protocol):
     def aliases(self) -> tuple[str, ...]: ...
 
 
-_Named = TypeVar("_Named", bound=_HasName)
+@dataclass(frozen=True, slots=True)
+class ArrayOfFields:
+    """The elements of an array of scalars in a frame; in a struct those of one place: ``Satellites[2].Angles``."""
+
+    steps: tuple[PathStep, ...]  # from the node of the message to the array as a whole
+    elements: list[FrameField]
+
+    @property
+    def name(self) -> str:
+        """Return the name, with the path to it."""
+        return name_of_steps(self.steps)
+
+    @property
+    def alias(self) -> str | None:
+        """Return the name with identifiers in place of names; None without any."""
+        return alias_of_steps(self.steps)
+
+
+_Named = TypeVar("_Named", bound="_HasName | FrameField | ArrayOfFields")
 
 
 def find_node(icd: Icd, name: str) -> Node:
@@ -120,31 +138,34 @@ def _by_id(messages: Sequence[Message], key: str, kind: str | None) -> list[Mess
     return [m for m in messages if wanted in _ids(m, kind)]
 
 
-def find_field(message: Message, key: str, vocabulary: tuple[str, ...] = ()) -> Field:
+def find_field(
+    message: Message, fields: Sequence[FrameField], key: str, vocabulary: tuple[str, ...] = ()
+) -> FrameField:
     """The field by name (in any case), identifier, or words that no other field has: ``x`` for Commanded X speed.
 
-    Raises `NotFound` or `Ambiguous`, with suggestions.
+    `fields` are those of the longest frame of the message. Raises `NotFound` or `Ambiguous`, with suggestions.
     """
-    found = by_name(message.fields, key, vocabulary) or _by_words(message.fields, key, vocabulary)
+    found = by_name(fields, key, vocabulary) or _by_words(fields, key, vocabulary)
     if len(found) == 1:
         return found[0]
     if found:
         listed = ", ".join(f"`{f.name}`" for f in found)
         raise Ambiguous(f"`{key}` fits several fields: {listed}", "give more of the name")
-    help = _suggest_named(key, message.fields) or _list_fields(message)
+    help = _suggest_named(key, fields) or _list_fields(fields)
     raise NotFound(f"{message.name} has no field `{key}`", help)
 
 
-def find_array(message: Message, key: str, vocabulary: tuple[str, ...] = ()) -> tuple[Field, ...]:
+def find_array(fields: Sequence[FrameField], key: str, vocabulary: tuple[str, ...] = ()) -> list[FrameField]:
     """The elements of the array of that name, in any case, or of that identifier; none if there is no such array."""
-    arrays = arrays_of(message.fields)
-    found = by_name(arrays, key, vocabulary)
-    return found[0].elements if len(found) == 1 else ()
-
-
-def open_part(message: Message, name: str) -> Tail | None:
-    """The open part of that very name."""
-    return next((part for part in message.open_parts if part.name == name), None)
+    arrays: list[ArrayOfFields] = []
+    for field in fields:
+        *before, last = field.steps
+        if last.element == 0:
+            arrays.append(ArrayOfFields((*before, PathStep(last.node)), []))
+        if last.element is not None:
+            arrays[-1].elements.append(field)
+    matches = by_name(arrays, key, vocabulary)
+    return matches[0].elements if len(matches) == 1 else []
 
 
 def by_name(items: Sequence[_Named], key: str, vocabulary: tuple[str, ...]) -> list[_Named]:
@@ -185,19 +206,20 @@ def _ids(message: Message, kind: str | None) -> tuple[int | None, ...]:
     return {TELECOMMAND: (message.telecommand_id,), TELEMETRY: (message.telemetry_id,)}.get(kind or "", message.ids)
 
 
-def _names(item: _HasName) -> Iterable[str]:
-    return filter(None, (item.name, item.alias if isinstance(item, Field) else item.identifier))
+def _names(item: _HasName | FrameField | ArrayOfFields) -> Iterable[str]:
+    other = item.alias if isinstance(item, FrameField | ArrayOfFields) else item.identifier
+    return filter(None, (item.name, other))
 
 
-def _aliases(item: _HasName) -> Iterable[str]:
+def _aliases(item: _HasName | FrameField | ArrayOfFields) -> Iterable[str]:
     """Aliases of an item; of an element or a field of a struct with the path to it, and alone if no array is on the path."""
-    if not isinstance(item, Field) or not item.path:
+    if not isinstance(item, FrameField | ArrayOfFields):
         return item.aliases
-    *before, last = item.path
-    alone = [replace(last, name=alias).text for alias in item.aliases]
-    head = name_of(tuple(before))
+    *before, last = item.steps
+    alone = [last.text(alias) for alias in last.node.aliases]
+    head = name_of_steps(before)
     with_path = [f"{head}.{alias}" for alias in alone] if before else []
-    return with_path if any(step.count for step in before) else [*with_path, *alone]
+    return with_path if any(step.element is not None for step in before) else [*with_path, *alone]
 
 
 def _joined(text: str, vocabulary: tuple[str, ...]) -> str:
@@ -209,7 +231,7 @@ def _is_indexed(key: str, name: str) -> bool:
     return not (given := _INDEX.findall(key)) or given == _INDEX.findall(name)
 
 
-def _by_words(fields: Sequence[Field], key: str, vocabulary: tuple[str, ...]) -> list[Field]:
+def _by_words(fields: Sequence[FrameField], key: str, vocabulary: tuple[str, ...]) -> list[FrameField]:
     wanted = set(naming.words(key, vocabulary))
     if not wanted:
         return []
@@ -231,14 +253,14 @@ def _message_help(icd: Icd, node: Node, messages: Sequence[Message], key: str, k
     return close or f"`icdgen show {node.name}` lists what there is"
 
 
-def _list_fields(message: Message) -> str:
-    names = [f.name for f in message.fields]
+def _list_fields(fields: Sequence[FrameField]) -> str:
+    names = [f.name for f in fields]
     if len(names) > MOST_LISTED:
         return f"it has {len(names)} fields; `icdgen show` lists them"
     return f"fields: {', '.join(names)}" if names else "it has no fields at all"
 
 
-def _suggest_named(key: str, items: Sequence[_HasName]) -> str:
+def _suggest_named(key: str, items: Sequence[_HasName] | Sequence[FrameField]) -> str:
     """Names near the key; an item whose alias is near is listed by its name."""
     known = {alias: item.name for item in items for alias in _aliases(item)} | {item.name: item.name for item in items}
     close = dict.fromkeys(known[text] for text in close_words(key, known))

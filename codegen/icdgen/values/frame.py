@@ -12,7 +12,9 @@ from icdgen.describe.bounds import bounds
 from icdgen.describe.display import digits_of, integer_text, number_text
 from icdgen.describe.numbers import bit_range, exact_text, value_text
 from icdgen.icd import floats
-from icdgen.icd.model import Field, Icd, Message, Node
+from icdgen.icd.layout import FrameField
+from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.places import AnyValue
 from icdgen.protocol import facts
 from icdgen.protocol.envelope import Stream
 
@@ -21,7 +23,7 @@ from icdgen.protocol.envelope import Stream
 class Row:
     """One field. ``raw`` is as in `icdgen.codec`: an int (the bits, for a float) or bytes."""
 
-    field: Field
+    field: FrameField
     raw: int | bytes
     remarks: tuple[str, ...] = ()
 
@@ -133,21 +135,19 @@ class Frame:
 def frame(icd: Icd, node: Node, message: Message, data: bytes, notes: dict[str, str] | None = None) -> Frame:
     """Reads ``data``. ``notes`` are further remarks by field name. Raises `codec.LengthError`."""
     owner = icd.node(message.node)  # its byte and bit order hold
-    values = codec.decode(owner, message, data)
-    rows, ends = [], {part.name: part for part in message.open_parts}
-    for field in message.fields:
-        if field.implied or field.name not in values or not codec.is_sent(message, field, values):
+    values = codec.decode_frame(owner, message, data)
+    rows = []
+    for field in codec.fields_of_frame(owner, message, values):
+        if field.role == "count":
             continue
         raw = values[field.name]
-        if field.name in ends and isinstance(raw, bytes):
-            raw = raw[: codec.elements_of(ends[field.name], values)]
         extra = (notes or {}).get(field.name)
         rows.append(Row(field, raw, (*remarks(field, raw), *((extra,) if extra else ()))))
     form = facts.of(icd, node).stream
     return Frame(node, message, data, tuple(rows), tuple(_reserved(owner, message, data)), form)
 
 
-def remarks(field: Field, raw: int | bytes) -> list[str]:
+def remarks(field: AnyValue, raw: int | bytes) -> list[str]:
     """What a reader should know about a value: its special meaning, or that the ICD does not allow it."""
     if isinstance(raw, bytes):
         return []
@@ -155,12 +155,12 @@ def remarks(field: Field, raw: int | bytes) -> list[str]:
     return violations(field, raw) if special is None else [special.meaning]
 
 
-def violations(field: Field, raw: int) -> list[str]:
+def violations(field: AnyValue, raw: int) -> list[str]:
     """In which way the raw value is not one that the ICD allows: constants, members, limits."""
     return [*unlisted(field, raw), *outside(field, raw)]
 
 
-def unlisted(field: Field, raw: int) -> list[str]:
+def unlisted(field: AnyValue, raw: int) -> list[str]:
     """In which way the raw value is not one of those that a constant or an enumeration lists."""
     reasons = []
     if field.const is not None and raw != field.const:
@@ -170,7 +170,7 @@ def unlisted(field: Field, raw: int) -> list[str]:
     return reasons
 
 
-def outside(field: Field, raw: int) -> list[str]:
+def outside(field: AnyValue, raw: int) -> list[str]:
     """Which limits the raw value does not keep."""
     if field.limits is None:
         return []

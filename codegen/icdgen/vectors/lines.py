@@ -54,7 +54,7 @@ def _message(vectors: MessageVectors, rest: enumerate[str]) -> MessageLines:
     found = MessageLines(next(number for number, line in rest if line.startswith('{"name":')))
     for number, line in rest:
         if line == '"fields": [':
-            found.fields = {one.name: next(rest)[0] for one in vectors.message.fields}
+            found.fields = {one.name: next(rest)[0] for one in vectors.fields}
         elif line.startswith('"refused_lengths": '):
             found.lengths = number
         elif line == '"vectors": [':

@@ -9,6 +9,7 @@ from fractions import Fraction
 from typing import Any
 
 from icdgen import codec
+from icdgen.icd.layout import FrameField, VariablePart
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Icd, Message, Node
 from icdgen.vectors import patterns, shared
 from icdgen.vectors.settings import Settings, bits_of, settings
@@ -36,6 +37,7 @@ class MessageVectors:
     """All that is demanded of the code of one message."""
 
     message: Message
+    fields: tuple[FrameField, ...]  # of the longest frame
     # of a fresh message: 0, empty, or what ``const`` says; of views, what they read; without what is not there
     default: Raw
     rows: tuple[Row, ...]
@@ -72,66 +74,83 @@ def message_vectors(node: Node, message: Message) -> MessageVectors:
     frames = dict.fromkeys(frame for _, frame in patterns.frames(message, node))
     whys = {frame: why for why, frame in reversed(list(patterns.frames(message, node)))}
     rows = [frame_row(node, message, whys[frame], frame) for frame in frames]
-    for number, raw in enumerate(patterns.raw_columns(message)):
+    for number, raw in enumerate(patterns.raw_columns(message, node)):
         frame = codec.encode(node, message, raw)
         if frame not in frames:
             frames[frame] = None
             rows.append(frame_row(node, message, f"chosen values {number}", frame))
-    settable = [field for field in message.owners if (field.has_formula and field.leads_back) or field.type == "text"]
+    fields = message.layout.frame(node.orders)
+    raw_fields = [field for field in fields if field.is_raw]
+    settable = [field for field in raw_fields if (field.has_formula and field.is_invertible) or field.type == "text"]
     return MessageVectors(
         message=message,
+        fields=fields,
         default=codec.new(node, message),
         rows=tuple(rows),
         lengths=_refused(message),
         miscounted=tuple(_miscounted(node, message)),
-        unfit={field.name: unfit for field in message.owners if (unfit := patterns.unfit(message, field))},
+        unfit={field.name: unfit for field in raw_fields if (unfit := patterns.unfit(message, field))},
         settings={field.name: settings(field) for field in settable},
     )
 
 
 def _refused(message: Message) -> tuple[int, ...]:
     """Lengths that no frame has: none at all, and one byte less or more than one that frames have."""
-    begin = message.least if message.inner else message.begin
-    ends = {end + step for end in (begin, message.least, message.least + 1, message.length) for step in (-1, 1)}
-    ends = {message.length - 1, message.length + 1} if message.tail is None else ends
-    return tuple(sorted({0, *(max(end, 0) for end in ends)} - set(message.lengths)))
+    layout = message.layout
+    least = layout.shortest if len(layout.parts) > 1 else layout.length
+    ends = {end + step for end in (least, layout.shortest, layout.shortest + 1, layout.longest) for step in (-1, 1)}
+    if not layout.parts:
+        ends = {layout.longest - 1, layout.longest + 1}
+    return tuple(sorted({0, *(max(end, 0) for end in ends)} - set(layout.lengths)))
 
 
 def _miscounted(node: Node, message: Message) -> Iterator[bytes]:
     """Frames that say one element more or less than they have, or more than there can be."""
-    tail, counter = message.tail, message.counter
-    if tail is None or counter is None:
+    if not message.layout.parts:
         return
-    for count in (tail.fewest, tail.most) if message.inner else ():
-        yield from _miscounted_inside(node, message, count)
-    if counter.implied or message.inner:
+    last = message.layout.parts[-1]
+    if len(message.layout.parts) > 1:
+        for count in (last.fewest, last.most):
+            yield from _miscounted_inside(node, message, count)
+        return
+    if last.is_rest:
         return
     frame = patterns.random_frame(message, "miscounted")
-    few, most, low, high = tail.fewest, tail.most, counter.raw_min + tail.plus, counter.raw_max + tail.plus
+    counter = _counter(message, node, last)
+    few, most, low, high = last.fewest, last.most, counter.raw_min + last.plus, counter.raw_max + last.plus
     top = 1 << counter.bits - 1  # which a narrower field does not see
-    told_of = [(few, few + 1), (most, most - 1), (most - 1, most), (most, high), (few, few + top), (most, most + top)]
-    for count, told in (*told_of, *([(few, few - 1), (most, low)] if tail.plus else ())):
-        if told != count >= few and low <= told <= high:
-            yield codec.counted(node, message, frame, told)[: message.begin + count * tail.step]
+    pairs = [(few, few + 1), (most, most - 1), (most - 1, most), (most, high), (few, few + top), (most, most + top)]
+    for count, stated in (*pairs, *([(few, few - 1), (most, low)] if last.plus else ())):
+        if stated != count >= few and low <= stated <= high:
+            wrong = patterns.with_counts(message, node, frame, {last.name: stated})
+            yield wrong[: last.begin + count * last.step]
 
 
 def _miscounted_inside(node: Node, message: Message, count: int) -> Iterator[bytes]:
     """Frames of so many elements at the end that count others wrongly, and such as are cut."""
-    frame = patterns.cut(message, node, patterns.random_frame(message, "miscounted inside"), count)
-    raw, fields = codec.decode(node, message, frame), {field.name: field for field in message.fields}
-    wrong = [frame[:-1], frame[: message.fixed]]
-    for part in message.open_parts:
-        counter = fields[part.counter]
-        steps = (-1, 1, part.most, 1 << counter.bits - 1)
-        for told in (codec.elements_of(part, raw) - part.plus + step for step in steps):
-            if not counter.implied and counter.raw_min <= told <= counter.raw_max:
-                wrong.append(codec.frame_of(node, frame, {counter: told}))
-    highest = {fields[one.counter]: one.high for one in message.open_parts if not fields[one.counter].implied}
+    longest = patterns.random_frame(message, "miscounted inside")
+    frame = patterns.cut(message, node, longest, count)
+    sizes = codec.sizes_of_frame(node, message, frame)
+    wrong = [frame[:-1], frame[: message.layout.length]]
+    highest: dict[FrameField, int] = {}
+    for part in message.layout.parts:
+        if part.is_rest:
+            continue
+        counter = _counter(message, node, part)
+        highest[counter] = part.high
+        for step in (-1, 1, part.most, 1 << counter.bits - 1):
+            stated = sizes[part.name] - part.plus + step
+            if counter.raw_min <= stated <= counter.raw_max:
+                wrong.append(codec.frame_of(frame, {counter: stated}))
     for counter, high in highest.items():
         if high < counter.raw_max:  # more than there can be, in a frame that is as long as any
-            counts = highest | {counter: high + 1}
-            wrong.append(codec.frame_of(node, patterns.random_frame(message, "miscounted inside"), counts))
+            wrong.append(codec.frame_of(longest, highest | {counter: high + 1}))
     yield from (one for one in dict.fromkeys(wrong) if not _is_frame(node, message, one))
+
+
+def _counter(message: Message, node: Node, part: VariablePart) -> FrameField:
+    """Return the field that counts the elements of a variable-length node."""
+    return next(field for field in message.layout.frame(node.orders) if field.name == part.counter)
 
 
 def _is_frame(node: Node, message: Message, frame: bytes) -> bool:
@@ -143,7 +162,7 @@ def _is_frame(node: Node, message: Message, frame: bytes) -> bool:
 def frame_row(node: Node, message: Message, why: str, frame: bytes) -> Row:
     """What the reference codec makes of a frame."""
     raw: dict[str, Any] = codec.decode(node, message, frame)
-    present = [field for field in message.fields if field.name in raw]
+    present = [field for field in message.layout.frame(node.orders) if field.name in raw]
     exact = ((field.name, codec.physical(field, raw[field.name])) for field in present)
     physical = {name: value for name, value in exact if value is not None}
     scaled = (field for field in present if field.has_formula)

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from functools import lru_cache
 from itertools import pairwise
 
 from icdgen import codec
-from icdgen.icd.model import Field, Message, Node, Tail
-from icdgen.icd.places import AnyField
+from icdgen.icd.layout import FrameField, VariablePart
+from icdgen.icd.model import Message, Node
+from icdgen.icd.places import AnyValue
 
 RANDOM_FRAMES = 4
 
@@ -39,33 +40,34 @@ def frames(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
     yield from _alternatives(message, node)
     if message.may_end_early:
         yield from _ended_early(message)
-    if message.tail is None:
+    if not message.layout.parts:
         yield from _longest(message)
         return
-    counts = _counts(message.tail)
-    few = message.tail.fewest
+    last = message.layout.parts[-1]
+    counts, few = _counts(last), last.fewest
     yield f"all zeros, {few or 'no'} element{'s' * (few > 1)}", cut(message, node, bytes(message.length), few)
     for number, (why, frame) in enumerate(_longest(message)):
-        yield why, cut(message, node, frame, message.tail.most)
+        yield why, cut(message, node, frame, last.most)
         count = counts[number % len(counts)]
         yield f"{why}, elements: {count}", cut(message, node, frame, count)
 
 
 def _alternatives(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
     """Frames for every value on which it depends whether a field is there, and for those beside it."""
-    known, told = {field.name: field for field in message.fields}, set()
-    for field in message.fields:
-        chosen = {known[one.field]: one.values[0] for one in field.when}
-        for one in field.when:
-            selector = known[one.field]
-            near = sorted({value + step for value in one.values for step in (-1, 0, 1)})
+    fields = {field.name: field for field in message.layout.frame(node.orders)}
+    yielded = set()
+    for field in fields.values():
+        chosen = {fields[condition.field]: condition.values[0] for condition in field.conditions}
+        for condition in field.conditions:
+            selector = fields[condition.field]
+            near = sorted({value + step for value in condition.values for step in (-1, 0, 1)})
             for value in (number for number in near if selector.raw_min <= number <= selector.raw_max):
                 values = {**chosen, selector: value}
-                why = ", ".join(f"{on.name} {number}" for on, number in values.items())
-                if why not in told:
-                    told.add(why)
-                    yield why, codec.frame_of(node, random_frame(message, f"alternative {why}"), values)
-                    yield f"{why}, all others ones", codec.frame_of(node, b"\xff" * message.length, values)
+                why = ", ".join(f"{field.name} {number}" for field, number in values.items())
+                if why not in yielded:
+                    yielded.add(why)
+                    yield why, codec.frame_of(random_frame(message, f"alternative {why}"), values)
+                    yield f"{why}, all others ones", codec.frame_of(b"\xff" * message.length, values)
 
 
 def _ended_early(message: Message) -> Iterator[tuple[str, bytes]]:
@@ -77,30 +79,42 @@ def _ended_early(message: Message) -> Iterator[tuple[str, bytes]]:
     yield "ended early, zeros", bytes(longest - 1)
 
 
-def _counts(tail: Tail) -> list[int]:
+def _counts(part: VariablePart) -> list[int]:
     """Numbers of elements that are worth a frame."""
-    few, most = tail.fewest, tail.most
-    found = (few + 1, most - 1, few, (few + most + 1) // 2, few + 2, most)
-    return list(dict.fromkeys(max(few, min(one, most)) for one in found))
+    few, most = part.fewest, part.most
+    counts = (few + 1, most - 1, few, (few + most + 1) // 2, few + 2, most)
+    return list(dict.fromkeys(max(few, min(count, most)) for count in counts))
 
 
 def cut(message: Message, node: Node, frame: bytes, count: int) -> bytes:
-    """The longest frame as one of so many elements."""
-    assert message.tail is not None
-    frame = _chosen_counts(message, node, frame, count)
-    frame = codec.counted(node, message, frame, count)[: message.begin + count * message.tail.step]
-    return codec.squeezed(node, message, frame) if message.inner else frame
+    """Shorten the longest frame to one with `count` elements of the last variable-length node.
+
+    Of each other variable-length node it has all elements if it has all of the last one, else any number.
+    """
+    *inner, last = message.layout.parts
+    counts: dict[str, int] = {}
+    for place, part in enumerate(inner):
+        choices = _counts(part)
+        is_longest = count == last.most
+        counts[part.name] = part.most if is_longest else choices[(sum(frame) + place) % len(choices)]
+    counts[last.name] = count
+    return shortened(message, with_counts(message, node, frame, counts), counts)
 
 
-def _chosen_counts(message: Message, node: Node, frame: bytes, count: int) -> bytes:
-    """The longest frame with a number of elements of each inner open part: all where its end has all, else any."""
-    fields, chosen = {field.name: field for field in message.fields}, {}
-    for place, part in enumerate(message.inner):
-        counts = _counts(part)
-        is_whole = message.tail is not None and count == message.tail.most
-        there = part.most if is_whole else counts[(sum(frame) + place) % len(counts)]
-        chosen[fields[part.counter]] = there - part.plus
-    return codec.frame_of(node, frame, chosen) if chosen else frame
+def with_counts(message: Message, node: Node, frame: bytes, counts: Mapping[str, int]) -> bytes:
+    """Return the longest frame with these numbers of elements in the fields that count them."""
+    fields = {field.name: field for field in message.layout.frame(node.orders)}
+    values = {}
+    for part in message.layout.parts:
+        if part.name in counts and not part.is_rest:
+            values[fields[part.counter]] = counts[part.name] - part.plus
+    return codec.frame_of(frame, values)
+
+
+def shortened(message: Message, frame: bytes, sizes: Mapping[str, int]) -> bytes:
+    """Return the longest frame without the bytes that one of these sizes lacks."""
+    parts = (frame[part.begin : part.begin + sizes[part.name] * part.step] for part in message.layout.parts)
+    return frame[: message.layout.length] + b"".join(parts)
 
 
 def _longest(message: Message) -> Iterator[tuple[str, bytes]]:
@@ -128,7 +142,7 @@ def random_frame(message: Message, seed: str) -> bytes:
     return hashlib.shake_128(f"{message.node}/{message.name}/{seed}".encode()).digest(message.length)
 
 
-def values(field: AnyField) -> list[int | bytes]:
+def values(field: AnyValue) -> list[int | bytes]:
     """The raw values of a field that are worth a frame each, without repetition."""
     if field.is_bytes:
         size = field.bits // 8
@@ -145,10 +159,10 @@ def values(field: AnyField) -> list[int | bytes]:
     return list(dict.fromkeys(v for v in _numbers(field) if field.raw_min <= v <= field.raw_max))
 
 
-def _numbers(field: AnyField) -> Iterator[int]:
+def _numbers(field: AnyValue) -> Iterator[int]:
     low, high = field.raw_min, field.raw_max
     yield from (0, low, high)
-    if field.signed:
+    if field.is_signed:
         yield from (-1, 1, low + 1)
     for pattern in _DISTINCT:
         value = pattern >> (64 - field.bits)
@@ -166,13 +180,13 @@ def _numbers(field: AnyField) -> Iterator[int]:
     yield from (number for near in _near(field) for number in (math.floor(near), math.ceil(near)))
 
 
-def _near_bits(field: AnyField) -> Iterator[int]:
+def _near_bits(field: AnyValue) -> Iterator[int]:
     for number in _near(field):
         with suppress(codec.CodecError):
             yield codec.float_bits(field, number)
 
 
-def _near(field: AnyField) -> Iterator[float]:
+def _near(field: AnyValue) -> Iterator[float]:
     """The points of a table, and what lies between them and beyond."""
     points = [raw for raw, _ in field.curve.points] if field.curve is not None else []
     if points:
@@ -180,29 +194,30 @@ def _near(field: AnyField) -> Iterator[float]:
         yield from ((one + other) / 2 for one, other in pairwise(points))
 
 
-def raw_columns(message: Message) -> Iterator[dict[str, int | bytes]]:
-    """Raw values of all fields but views, so that each takes each of its values; neighbours are out of step."""
-    counted = {part.counter: _counted(part) for part in message.open_parts}
-    columns = [counted.get(field.name) or values(field) for field in message.owners]
-    alternatives = dict.fromkeys(tuple((one.field, one.values[0]) for one in field.when) for field in message.owners)
+def raw_columns(message: Message, node: Node) -> Iterator[dict[str, int | bytes]]:
+    """Raw values of the longest frame, so that each field takes each of its values; neighbours are out of step."""
+    fields = [field for field in message.layout.frame(node.orders) if field.is_raw]
+    counters = {part.counter: _counter_values(part) for part in message.layout.parts}
+    columns = [counters.get(field.name) or values(field) for field in fields]
+    alternatives = dict.fromkeys(tuple((one.field, one.values[0]) for one in field.conditions) for field in fields)
     for row in range(max(map(len, columns), default=0)):
         raw = {
             field.name: column[(row + index) % len(column)]
-            for index, (field, column) in enumerate(zip(message.owners, columns, strict=True))
+            for index, (field, column) in enumerate(zip(fields, columns, strict=True))
         }
         yield raw
         for chosen in filter(None, alternatives):
             yield {**raw, **dict(chosen)}
 
 
-def _counted(tail: Tail) -> list[int | bytes]:
-    """Values of the field that counts: every second time all elements are there."""
-    return [one - tail.plus for count in _counts(tail) for one in (tail.most, count)]
+def _counter_values(part: VariablePart) -> list[int | bytes]:
+    """Values of a field that counts: every second time all elements are there."""
+    return [number - part.plus for count in _counts(part) for number in (part.most, count)]
 
 
-def unfit(message: Message, field: Field) -> list[int]:
+def unfit(message: Message, field: FrameField) -> list[int]:
     """Raw values that encoding must refuse."""
-    for part in message.open_parts:
+    for part in message.layout.parts:
         if field.name == part.counter:
             return list(dict.fromkeys((part.high + 1, part.low - 1, field.raw_max + 1, field.raw_min - 1)))
     if field.type not in ("uint", "int", "enum"):

@@ -11,7 +11,8 @@ from functools import lru_cache
 from icdgen import codec
 from icdgen.icd.curve import Curve
 from icdgen.icd.formula import Scale
-from icdgen.icd.model import Field
+from icdgen.icd.layout import Scalar
+from icdgen.icd.places import AnyValue
 
 # Refused by every field but floats: NaN (quiet, signalling, negative), the infinities, and numbers beyond any raw value.
 NEVER = (
@@ -34,7 +35,7 @@ def float_of(bits: str) -> float:
 Settings = list[tuple[str, "int | bytes | None"]]
 
 
-def settings(field: Field) -> Settings:
+def settings(field: AnyValue) -> Settings:
     """Doubles (as their bits) or texts, and the raw value that setting each must give; None where it must be refused."""
     if field.type == "text":
         return [(text, _raw(field, text)) for text in _texts(field.bits // 8)]
@@ -44,7 +45,7 @@ def settings(field: Field) -> Settings:
 @lru_cache(maxsize=1 << 12)
 def _settings(type: str, bits: int, scale: Scale | None, curve: Curve | None) -> dict[str, int | bytes | None]:
     """Those of all fields of this type, width and formula: many have the same."""
-    field = Field("", 0, bits, type, scale=scale, curve=curve)
+    field = Scalar(name="", type=type, bits=bits, scale=scale, curve=curve)
     found: dict[str, int | bytes | None] = {}
     for value in _doubles(field) if curve is None else _on_curve(field, curve):
         if math.isfinite(value):
@@ -62,14 +63,14 @@ def _texts(size: int) -> Iterator[str]:
     yield from ("\x80", "\u00e9", "\u4f4d", "\U0001f6f0")
 
 
-def _raw(field: Field, given: str | float) -> int | bytes | None:
+def _raw(field: AnyValue, given: str | float) -> int | bytes | None:
     try:
         return codec.raw_from_text(field, given) if isinstance(given, str) else codec.raw_from_physical(field, given)
     except codec.CodecError:
         return None
 
 
-def _doubles(field: Field) -> Iterator[float]:
+def _doubles(field: Scalar) -> Iterator[float]:
     low, high = field.raw_min, field.raw_max
     yield from (-0.0, 5e-324)
     for raw in (low - 1, high, (low + high) // 2, low + (high - low) // 3):
@@ -78,14 +79,14 @@ def _doubles(field: Field) -> Iterator[float]:
     yield from _ties(field)
 
 
-def _on_curve(field: Field, curve: Curve) -> Iterator[float]:
+def _on_curve(field: Scalar, curve: Curve) -> Iterator[float]:
     """Beside the physical values of some raw values, half way between those of neighbours, and beyond the ends."""
     yield from (-0.0, 5e-324, 1e300, -1e300)
     if field.type == "float":
         numbers = (0.0, 1.0, -1.5, 0.1, 1e-3, -123456.789, 3.4028234663852886e38, 1e-45)
         yield from (curve.double(one) for one in numbers)
         return
-    low, high = field.ends
+    low, high = field.settable_raws
     for raw in sorted({low, (low + high) // 2, low + (high - low) // 3, high - 1}):
         here, there = curve.double(raw), curve.double(raw + 1)
         middle = here + (there - here) / 2
@@ -93,13 +94,13 @@ def _on_curve(field: Field, curve: Curve) -> Iterator[float]:
         yield from (math.nextafter(one, way) for one in (here, middle, there) for way in (-math.inf, math.inf))
 
 
-def _above(field: Field, raw: int) -> Fraction:
+def _above(field: Scalar, raw: int) -> Fraction:
     """The exact physical value half way between ``raw`` and the next raw value."""
     assert field.scale is not None
     return field.scale.physical(raw + Fraction(1, 2))
 
 
-def _ties(field: Field) -> Iterator[float]:
+def _ties(field: Scalar) -> Iterator[float]:
     """Doubles that lie exactly half way between two raw values, an even and an odd one below, at both ends of the range."""
     assert field.scale is not None
     half, offset = field.scale.factor / 2, field.scale.offset

@@ -57,11 +57,12 @@ def _row(icd: Icd, direction: str, id: int, messages: list[Message], frame: byte
 
 def _frames(icd: Icd, messages: list[Message]) -> Iterator[bytes]:
     """Of each message its constants among zeros, ones and random bytes, and each bit of them changed; other lengths."""
-    lengths = sorted({length for message in messages for length in (message.least, message.length)})
+    lengths = sorted({length for message in messages for length in (message.layout.shortest, message.length)})
     yield from (bytes(size) for size in sorted({near for n in lengths for near in (0, max(n - 1, 0), n, n + 1)}))
     yield from (b"\xff" * size for size in lengths)
     for message in messages:
-        node, known = icd.node(message.node), constants(message)
+        node = icd.node(message.node)
+        known = constants(message, node)
         for around in (bytes(message.length), b"\xff" * message.length, patterns.random_frame(message, "shared id")):
             if message.may_end_early:
                 yield from (around[:1], around[: (message.length + 1) // 2])
@@ -74,15 +75,14 @@ def _frames(icd: Icd, messages: list[Message]) -> Iterator[bytes]:
         for field in known:
             for bit in range(field.bits):
                 mine = int(whole[field.name]) & (1 << field.bits) - 1 ^ 1 << bit
-                signed = mine - (mine >> field.bits - 1 << field.bits if field.signed else 0)
+                signed = mine - (mine >> field.bits - 1 << field.bits if field.is_signed else 0)
                 yield codec.frame_with(node, message, whole | {field.name: signed})
 
 
 def _cut(message: Message, node: Node, frame: bytes) -> list[bytes]:
     """The longest frame; where frames differ in length, also without an element, with one and with half of them."""
-    tail = message.tail
-    if tail is None:
+    if not message.layout.parts:
         return [frame]
-    few = tail.fewest
-    counts = dict.fromkeys((tail.most, few, min(few + 1, tail.most), max(few, (tail.most + 1) // 2)))
+    few, most = message.layout.parts[-1].fewest, message.layout.parts[-1].most
+    counts = dict.fromkeys((most, few, min(few + 1, most), max(few, (most + 1) // 2)))
     return [patterns.cut(message, node, frame, count) for count in counts]

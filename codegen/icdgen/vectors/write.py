@@ -8,7 +8,8 @@ from fractions import Fraction
 from functools import lru_cache
 
 from icdgen import __version__
-from icdgen.icd.model import Field, Tail
+from icdgen.icd.layout import FrameField, VariablePart
+from icdgen.icd.places import AnyValue
 from icdgen.vectors.make import FORMAT, MessageVectors, NodeVectors, Row
 from icdgen.vectors.settings import NEVER
 from icdgen.vectors.shared import SharedRow
@@ -56,7 +57,7 @@ def _digits(denominator: int) -> int | None:
     return None
 
 
-def raw_json(field: Field, value: int | bytes | None) -> int | str | None:
+def raw_json(field: AnyValue, value: int | bytes | None) -> int | str | None:
     """A raw value as it stands in the vectors and in the testee protocol (there, of a bool, true or false)."""
     if isinstance(value, bytes):
         return value.hex()
@@ -91,25 +92,26 @@ def _message(vectors: MessageVectors) -> str:
     head["length"] = message.length
     if message.may_end_early:
         head["may_end_early"] = message.may_end_early
-    if message.tail is not None:
-        head["tail"] = _open_part(message.tail, {"least": message.begin})
-    if message.inner:
-        head["inner"] = [_open_part(one, {"begin": one.begin}) for one in message.inner]
+    if message.layout.parts:
+        *inner, last = message.layout.parts
+        head["tail"] = _variable_part(last, {"least": last.begin})
+        if inner:
+            head["inner"] = [_variable_part(part, {"begin": part.begin}) for part in inner]
     parts = [_json(head)[1:-1]]
-    parts.append(_array("fields", [_field(vectors, field) for field in message.fields]))
+    parts.append(_array("fields", [_field(vectors, field) for field in vectors.fields]))
     parts.append(f'"refused_lengths": {_json(list(vectors.lengths))}')
     if vectors.miscounted:
         parts.append(f'"refused_frames": {_json([frame.hex() for frame in vectors.miscounted])}')
-    parts.append(_array("vectors", [_row(message.fields, row) for row in vectors.rows]))
+    parts.append(_array("vectors", [_row(vectors.fields, row) for row in vectors.rows]))
     return "{" + ",\n".join(parts) + "}"
 
 
-def _open_part(part: Tail, begin: dict[str, int]) -> dict[str, object]:
+def _variable_part(part: VariablePart, begin: dict[str, int]) -> dict[str, object]:
     row = {"part": part.name, "counter": part.counter, **begin, "step": part.step, "most": part.most}
     return row | ({"plus": part.plus} if part.plus else {})
 
 
-def _field(vectors: MessageVectors, field: Field) -> str:
+def _field(vectors: MessageVectors, field: FrameField) -> str:
     row: dict[str, object] = {"name": field.name, "type": field.type, "bits": field.bits}
     if field.enum is not None:
         row["enum"] = field.enum.name
@@ -117,12 +119,12 @@ def _field(vectors: MessageVectors, field: Field) -> str:
         row["factor"], row["offset"] = str(field.scale.factor), str(field.scale.offset)
     if field.curve is not None:
         row |= field.curve.plain
-    if field.view:
+    if field.role in ("overlay", "derived"):
         row["view"] = True
-    if field.derived is not None:
-        row["derived"] = field.formula
-    if field.when:
-        row["when"] = {one.field: list(one.values) for one in field.when}
+    if field.role == "derived":
+        row["derived"] = field.scalar.formula
+    if field.conditions:
+        row["when"] = {condition.field: list(condition.values) for condition in field.conditions}
     row["default"] = raw_json(field, vectors.default.get(field.name))
     if field.special:
         row["special"] = [raw_json(field, special.value) for special in field.special]
@@ -136,7 +138,7 @@ def _field(vectors: MessageVectors, field: Field) -> str:
     return _json(row)
 
 
-def _row(fields: tuple[Field, ...], row: Row) -> str:
+def _row(fields: tuple[FrameField, ...], row: Row) -> str:
     line: dict[str, object] = {"why": row.why, "bytes": row.frame.hex()}
     if row.encoded != row.frame:
         line["encoded"] = row.encoded.hex()

@@ -37,7 +37,7 @@ def frames(message: Message, node: Node) -> list[tuple[str, str]]:
     found: dict[bytes, str] = {}
     for why, frame in patterns.frames(message, node):
         found.setdefault(frame, why)
-    for index, raw in enumerate(patterns.raw_columns(message)):
+    for index, raw in enumerate(patterns.raw_columns(message, node)):
         found.setdefault(codec.encode(node, message, raw), f"chosen values {index}")
     return [(why, frame.hex(" ").upper()) for frame, why in found.items()]
 

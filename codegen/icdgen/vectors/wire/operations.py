@@ -43,7 +43,7 @@ def _allowed(name: str, form: Operation) -> Requests:
 def _ends(known: Facts, name: str, form: Operation) -> Requests:
     step, pause, end = form.progress, form.poll_interval, 1 + form.timeout
     program = form.programs[0] if form.programs else 1
-    bits = {field.name: field.bits for field in step.message.fields}
+    bits = {field.name: field.bits for field in step.message.layout.frame(known.node.orders)}
     begin: Script = [{"at": 0}, {"at": 1, "event": ACKNOWLEDGED}]
     found = {"size": 0x12345678, "checksum": 0x9ABCDEF0}
 
