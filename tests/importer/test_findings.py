@@ -8,8 +8,8 @@ import re
 import pytest
 from reportlab.pdfgen.canvas import Canvas
 
+from icdgen.import_results.findings import CERTAIN
 from icdgen.importer import findings
-from icdgen.importer.document import CERTAIN
 from tests.conftest import ROOT
 from tests.importer.test_command import TEXT, icdgen
 from tests.importer.test_text import ENUM, MESSAGE, found, read

@@ -7,8 +7,9 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
+from icdgen.import_results.findings import Trouble
 from icdgen.importer import icd_trees, references
-from icdgen.importer.document import Document, Trouble
+from icdgen.importer.document import Document
 from icdgen.importer.model import Found, NodeParts, ReadEnum, ReadList, ReadMessage, Survey
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import folded, squeezed, table_name

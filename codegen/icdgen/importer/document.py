@@ -9,11 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from icdgen.import_results.findings import CERTAIN as CERTAIN
-from icdgen.import_results.findings import DOUBTFUL as DOUBTFUL
-from icdgen.import_results.findings import LIKELY as LIKELY
-from icdgen.import_results.findings import Spot as Spot
-from icdgen.import_results.findings import Trouble as Trouble
+from icdgen.import_results.findings import Spot, Trouble
 from icdgen.importer.words import plain, squeezed
 
 

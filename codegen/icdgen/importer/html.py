@@ -8,7 +8,8 @@ import io
 from collections import Counter
 from collections.abc import Iterator
 
-from icdgen.importer.document import CERTAIN, Box, Cell, SourceTable, Trouble
+from icdgen.import_results.findings import CERTAIN, Trouble
+from icdgen.importer.document import Box, Cell, SourceTable
 from icdgen.importer.model import Found
 from icdgen.importer.run import Result
 

@@ -8,7 +8,8 @@ from typing import Any
 from icdgen.icd import units
 from icdgen.icd.fmt.emit import Spelled
 from icdgen.icd.units import SIGNS, SPELLINGS, STANDARD
-from icdgen.importer.document import Document, SourceTable, Trouble
+from icdgen.import_results.findings import Trouble
+from icdgen.importer.document import Document, SourceTable
 from icdgen.importer.model import Listed, NodeParts, ReadEnum, ReadField, ReadMessage
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import squeezed, table_name

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
+from icdgen.import_results.findings import Spot, Trouble
 from icdgen.importer.descriptions import Described
-from icdgen.importer.document import SourceTable, Spot, Trouble
+from icdgen.importer.document import SourceTable
 from icdgen.importer.profile import NodeWords
 
 

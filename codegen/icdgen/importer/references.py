@@ -6,7 +6,7 @@ import itertools
 from typing import Any
 
 from icdgen.icd.wire_ids import DEFAULT_BITS
-from icdgen.importer.document import DOUBTFUL, LIKELY, Trouble
+from icdgen.import_results.findings import DOUBTFUL, LIKELY, Trouble
 from icdgen.importer.model import Listed, NodeParts, ReadEnum, ReadField, ReadMessage
 from icdgen.importer.words import plain, squeezed, table_name
 

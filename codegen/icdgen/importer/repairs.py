@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 
-from icdgen.importer.document import Cell, SourceRow, SourceTable, Spot, Trouble
+from icdgen.import_results.findings import Spot, Trouble
+from icdgen.importer.document import Cell, SourceRow, SourceTable
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import number
 

@@ -8,9 +8,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from icdgen.import_results.findings import CERTAIN, DOUBTFUL, LIKELY, Trouble
 from icdgen.import_results.targets import Target
 from icdgen.importer import assemble, profile, reading, repairs, sources
-from icdgen.importer.document import CERTAIN, DOUBTFUL, LIKELY, Document, SourceTable, Trouble
+from icdgen.importer.document import Document, SourceTable
 from icdgen.importer.model import UNKNOWN, Survey
 from icdgen.importer.rules import interpret
 from icdgen.importer.rules.interpret import Interpretation

@@ -15,7 +15,8 @@ from typing import Any
 
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.errors import UserError
-from icdgen.importer.document import Document, Spot, Trouble
+from icdgen.import_results.findings import Spot, Trouble
+from icdgen.importer.document import Document
 from icdgen.importer.pages import flow, tables
 from icdgen.importer.pages.extract import Page, extract
 from icdgen.importer.profile import Profile

@@ -15,7 +15,8 @@ from typing import Any
 
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.errors import UserError
-from icdgen.importer.document import Block, Cell, Document, Heading, SourceRow, SourceTable, Spot, Text, Trouble
+from icdgen.import_results.findings import Spot, Trouble
+from icdgen.importer.document import Block, Cell, Document, Heading, SourceRow, SourceTable, Text
 from icdgen.importer.reading.utf8 import utf8_text
 
 CODE = "IMP002"

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from icdgen.importer.document import SourceTable, Trouble
+from icdgen.import_results.findings import Trouble
+from icdgen.importer.document import SourceTable
 from icdgen.importer.rules.cells import find_columns
 from icdgen.importer.rules.interpret import Interpretation
 from icdgen.importer.rules.notes import Notes

@@ -8,9 +8,10 @@ from decimal import Decimal
 from itertools import pairwise
 from typing import Any
 
+from icdgen.import_results.findings import Spot
 from icdgen.importer import descriptions, formulas
 from icdgen.importer.descriptions import Described
-from icdgen.importer.document import SourceTable, Spot
+from icdgen.importer.document import SourceTable
 from icdgen.importer.profile import Profile
 from icdgen.importer.rules import bit_order
 from icdgen.importer.rules.bit_order import Bit, Order

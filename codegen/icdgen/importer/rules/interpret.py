@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from icdgen.importer.document import SourceTable, Spot, Trouble
+from icdgen.import_results.findings import Spot, Trouble
+from icdgen.importer.document import SourceTable
 from icdgen.importer.model import BACKGROUND, UNKNOWN, Found, Survey
 from icdgen.importer.profile import Profile
 from icdgen.importer.rules import attach, build, lists

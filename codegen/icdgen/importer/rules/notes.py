@@ -6,7 +6,7 @@ from collections import defaultdict
 from dataclasses import dataclass, field
 
 from icdgen.diagnostics import Place
-from icdgen.importer.document import DOUBTFUL, LIKELY, Spot, Trouble
+from icdgen.import_results.findings import DOUBTFUL, LIKELY, Spot, Trouble
 from icdgen.importer.rules.rule import Rule
 
 

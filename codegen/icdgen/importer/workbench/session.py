@@ -12,8 +12,9 @@ from icdgen.diagnostics import Findings
 from icdgen.errors import UserError
 from icdgen.icd import source
 from icdgen.import_results import report, targets
+from icdgen.import_results.findings import Trouble
 from icdgen.importer import profile, run
-from icdgen.importer.document import Document, SourceTable, Trouble
+from icdgen.importer.document import Document, SourceTable
 from icdgen.importer.rules.language import ROLES
 from icdgen.importer.rules.parts import Part
 from icdgen.importer.rules.selection import heading_rows, texts_of
