@@ -15,9 +15,9 @@ from typing import Any, NamedTuple
 
 from icdgen import codec
 from icdgen.backends.assurance.changes import with_layout
-from icdgen.icd.layout import FrameField, Layout, Orders, overlay_of
+from icdgen.icd.layout import FixedNode, Layout, NodePlace, overlay_of
 from icdgen.icd.layout_copies import with_enum
-from icdgen.icd.model import Enum, Field, Message, Node
+from icdgen.icd.model import Enum, Message, Node
 from icdgen.vectors.lines import MessageLines
 from icdgen.vectors.make import MessageVectors, Raw, Row, known_text
 from icdgen.vectors.settings import NEVER, bits_of, float_of
@@ -43,32 +43,32 @@ class MessageWatch:
 
     def layout(self, now: Message) -> list[int]:
         """Return the lines that notice another layout of the message."""
-        olds = self.message.fields
-        if [old.name for old in olds] != [field.name for field in now.fields]:
+        olds, news = self.message.layout.scalars, now.layout.scalars
+        if [old.name for old in olds] != [new.name for new in news]:
             return self.places(now, self.node)
-        changed = [
-            (index, old, new) for index, (old, new) in enumerate(zip(olds, now.fields, strict=True)) if old != new
-        ]
+        pairs = enumerate(zip(olds, news, strict=True))
+        changed = [(index, old, new) for index, (old, new) in pairs if _content(old) != _content(new)]
         if len(changed) > 1 and any(_place(old) != _place(new) for _, old, new in changed):
             # A field can take bits that another one leaves.
             lines = [self.lines.fields[old.name] for _, old, new in changed if self._line_notices(old, new)]
             return lines + self.places(now, self.node)
         return [line for index, _, new in changed for line in self.field(index, new, now)]
 
-    def field(self, index: int, now: Field, message: Message) -> list[int]:
+    def field(self, index: int, now: NodePlace, message: Message) -> list[int]:
         """Return the lines that notice another field at an index of the message, which then is ``message``."""
-        old = self.message.fields[index]
+        old = self.message.layout.scalars[index]
         if now.derived is not None:
             pairs = zip(self.lines.rows, self.vectors.rows, strict=True)
             return [
                 line for line, row in pairs if codec.derived(message, row.raw).get(now.name) != row.raw.get(now.name)
             ]
-        found = [self.lines.fields[old.name]] if self._line_notices(old, now) else []
-        frame = message.layout.frame(self.node.orders)
-        needed = {one.field for one in (*old.when, *now.when)}
-        alone = self._alone(frame[index], *(one for one in frame if one.name in needed))
+        lines = [self.lines.fields[old.name]] if self._line_notices(old, now) else []
+        needed = {condition.field for condition in (*old.when, *now.when)}
+        alone = self._alone(now, *(place for place in message.layout.scalars if place.name in needed))
         rows = zip(self.lines.rows, self._long_rows, self._of_others[index], strict=True)
-        return found + [number for number, row, others in rows if _notices(row, old, now, self.node, alone, others)]
+        return lines + [
+            number for number, row, other_bits in rows if _notices(row, old, now, self.node, alone, other_bits)
+        ]
 
     def enum(self, old: Enum, new: Enum) -> list[int]:
         """Return the lines that notice that an enumeration is another."""
@@ -80,25 +80,18 @@ class MessageWatch:
         pairs = zip(self.lines.rows, self.vectors.rows, strict=True)
         return [number for number, row in pairs if _answer(node, now, row.frame) != (row.raw, row.encoded)]
 
-    def _alone(self, *fields: FrameField) -> Message:
+    def _alone(self, *fields: NodePlace) -> Message:
         """Return the message with the longest frame in which only these fields are."""
-        scalars = (
-            replace(
-                field.scalar,
-                name=field.name,
-                at=field.at,
-                bits=field.bits,
-                length=None,
-                orders=Orders(field.byte_order, field.bit_order),
+        fixed: list[FixedNode] = []
+        for field in fields:
+            scalar = replace(
+                field.scalar, name=field.name, at=field.at, bits=field.bits, length=None, orders=field.declared_orders
             )
-            for field in fields
-        )
-        fixed = tuple(
-            overlay_of(scalar) if field.role == "overlay" else scalar
-            for scalar, field in zip(scalars, fields, strict=True)
-        )
+            fixed.append(overlay_of(scalar) if field.view else scalar)
         layout = self.message.layout
-        return with_layout(self.message, Layout(layout.name, layout.longest, fixed, may_end_early=layout.may_end_early))
+        return with_layout(
+            self.message, Layout(layout.name, layout.longest, tuple(fixed), may_end_early=layout.may_end_early)
+        )
 
     def id(self, key: str) -> list[int]:
         """Lines that notice another id: frames are asked for by the id, by the set id where there are two."""
@@ -109,33 +102,40 @@ class MessageWatch:
         """Lines that notice another length."""
         return [self.lines.head, self.lines.lengths, *self.lines.rows]
 
-    def _line_notices(self, old: Field, now: Field) -> bool:
+    def _line_notices(self, old: NodePlace, now: NodePlace) -> bool:
         if self._is_fresh(old) and _shown(old, old.fresh) != _shown(now, now.fresh):
             return True
-        if [one.value for one in old.special] != [one.value for one in now.special] or old.limits != now.limits:
+        if [special.value for special in old.special] != [
+            special.value for special in now.special
+        ] or old.limits != now.limits:
             return True
         unfit = self.vectors.unfit.get(old.name, ())
-        if any(part.counter == old.name for part in self.message.open_parts):
+        if any(part.counter == old.name for part in self.message.layout.parts):
             unfit = [value for value in unfit if not old.raw_min <= value <= old.raw_max]
         if any(_attempt(codec.check_raw, now, value) is not _REFUSED for value in unfit):
             return True
         given = self.vectors.settings.get(old.name, [])
         if not given or old.type == "text":
-            return any(_attempt(codec.raw_from_text, now, said) != _given(raw) for said, raw in given)
-        if not (now.has_formula and now.leads_back):
+            return any(_attempt(codec.raw_from_text, now, text) != _given(raw) for text, raw in given)
+        if not (now.has_formula and now.is_invertible):
             return True
-        asked = [*given, *((bits, None) for bits in NEVER if old.type != "float")]
-        return any(_attempt(codec.raw_from_physical, now, float_of(bits)) != _given(raw) for bits, raw in asked)
+        attempts = [*given, *((bits, None) for bits in NEVER if old.type != "float")]
+        return any(_attempt(codec.raw_from_physical, now, float_of(bits)) != _given(raw) for bits, raw in attempts)
 
-    def _is_fresh(self, field: Field) -> bool:
-        """Whether a new message has it: of an open end it has no element."""
-        if field.when and field.name not in self.message.fresh:
+    def _is_fresh(self, field: NodePlace) -> bool:
+        """Return whether a new message has a field: it has no elements of a variable-length array."""
+        if field.when and field.name not in self._initial:
             return False
-        return field.implied or field.at < 8 * self._fresh_length
+        return field.is_count or field.at < 8 * self._initial_length
 
     @cached_property
-    def _fresh_length(self) -> int:
-        return len(codec.encode(self.node, self.message, self.message.fresh))
+    def _initial(self) -> dict[str, int | bytes]:
+        """Raw values of a new message."""
+        return codec.initial_values(self.node, self.message)
+
+    @cached_property
+    def _initial_length(self) -> int:
+        return len(codec.encode(self.node, self.message, self._initial))
 
     @cached_property
     def _long_rows(self) -> list[LongRow]:
@@ -153,20 +153,20 @@ class MessageWatch:
     def _in_longest(self, frame: bytes, raw: Raw) -> bytes:
         """Return the longest frame, with the bytes of a frame of these values where they stand in it."""
         layout = self.message.layout
-        longest, rest = frame[: layout.length].ljust(layout.length, b"\0"), frame[layout.length :]
+        longest, remaining = frame[: layout.length].ljust(layout.length, b"\0"), frame[layout.length :]
         for part in layout.parts:
             count = raw[part.counter]
             assert isinstance(count, int), "a counter is a number"
             size = (count + part.plus) * part.step
-            longest, rest = longest + rest[:size].ljust(part.most * part.step, b"\0"), rest[size:]
+            longest, remaining = longest + remaining[:size].ljust(part.most * part.step, b"\0"), remaining[size:]
         return longest
 
     @cached_property
     def _of_others(self) -> list[list[int]]:
         """Of each field, the bits that all other fields set in each row's frame."""
         columns = []
-        for field in self.message.layout.frame(self.node.orders):
-            if not field.has_bits:
+        for field in self.message.layout.scalars:
+            if field.view or field.is_count:
                 columns.append([0] * len(self.vectors.rows))
                 continue
             alone = self._alone(replace(field, scalar=replace(field.scalar, present_if=())))
@@ -181,7 +181,7 @@ class MessageWatch:
         return [list(column) for column in zip(*by_row, strict=True)]
 
 
-def _notices(long: LongRow, old: Field, now: Field, node: Node, alone: Message, others: int) -> bool:
+def _notices(long: LongRow, old: NodePlace, now: NodePlace, node: Node, alone: Message, other_bits: int) -> bool:
     """Return whether a row of the vectors fails with another field.
 
     `alone` is the message with this field only; `others` are the bits of all other fields.
@@ -200,14 +200,19 @@ def _notices(long: LongRow, old: Field, now: Field, node: Node, alone: Message, 
     if now.type == "text" or now.type != old.type or _formula(now) != _formula(old) or now.bits != old.bits:
         if _physical(now, read) != _physical(old, raw):
             return True
-        if old.leads_back and (not now.leads_back or _set_back(now, read) != _set_back(old, raw)):
+        if old.is_invertible and (not now.is_invertible or _set_back(now, read) != _set_back(old, raw)):
             return True  # what does not lead back is not asked to
-    return (_number(frame) | others) & long.sent != _number(long.encoded)
+    return (_number(frame) | other_bits) & long.sent != _number(long.encoded)
 
 
-def _place(field: Field) -> tuple[object, ...]:
-    """What says where its bits are."""
-    return (field.at, field.bits, field.count, field.byte_order, field.bit_order)
+def _place(field: NodePlace) -> tuple[object, ...]:
+    """Return what gives the bits of a field."""
+    return field.at, field.bits, field.declared_orders
+
+
+def _content(field: NodePlace) -> tuple[object, ...]:
+    """Return all that the ICD says about a field."""
+    return field.scalar, field.derived, *_place(field)
 
 
 def _answer(node: Node, message: Message, frame: bytes) -> tuple[Raw, bytes] | None:
@@ -235,12 +240,12 @@ def _number(frame: bytes) -> int:
     return int.from_bytes(frame, "little")
 
 
-def _shown(field: Field, raw: Any) -> object:
+def _shown(field: NodePlace, raw: Any) -> object:
     """A raw value in the form in which a language answers: a truth value is no number."""
     return (field.type == "bool", raw_json(field, raw))
 
 
-def _name(field: Field, raw: Any) -> object:
+def _name(field: NodePlace, raw: Any) -> object:
     """Name of the member; whether there are names at all."""
     if field.enum is None:
         return None
@@ -248,18 +253,18 @@ def _name(field: Field, raw: Any) -> object:
     return member.name if member else ""
 
 
-def _physical(field: Field, raw: Any) -> object:
+def _physical(field: NodePlace, raw: Any) -> object:
     if field.type == "text":
         return (known_text(raw),)
     double = codec.physical_double(field, raw)
     return None if double is None else bits_of(double)
 
 
-def _set_back(field: Field, raw: Any) -> object:
+def _set_back(field: NodePlace, raw: Any) -> object:
     """What setting the physical value of the raw value gives."""
     double = None if field.view else codec.physical_double(field, raw)
     return None if double is None else _attempt(codec.raw_from_physical, field, double)
 
 
-def _formula(field: Field) -> object:
+def _formula(field: NodePlace) -> object:
     return field.scale, field.curve
