@@ -351,7 +351,7 @@ class _ReducedIcd:
         from icdgen.describe import describe
 
         message, node = self.messages[id(pair.owner)], self.nodes[id(pair)]
-        field = next(place for place in message.layout.places if place.node is node)
+        field = next(place for place in message.layout.places if place.node.source is node.source)
         if field.type == "enum" and field.enum is None:
             return f"u{field.bits}" if language == "rust" else "int"
         members = describe(self.icd).message(message).all_members
