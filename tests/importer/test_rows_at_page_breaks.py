@@ -149,6 +149,27 @@ def test_a_group_heading_that_ends_a_page_below_the_rules_of_its_list_is_one(tmp
     assert groups(tmp_path / "pump.pdf") == {"Pump Setting": None, "Valve Setting": "Access"}
 
 
+def test_group_headings_over_all_columns_do_not_part_a_table_whose_sides_run_along_it(tmp_path):
+    columns = (40, 80, 120, 210, 400)
+    sheet = Sheet(tmp_path / "pump.pdf")
+    sheet.line(250, "Table 1: List of Pump Configuration Messages", bold=True)
+    sheet.line(273, "Set ID", "Get ID", *TITLES[2:], columns=columns)
+    sheet.across(262, 34, 470)
+    sheet.across(278, 34, 470)
+    sheet.down(262, 278, 34, 76, 116, 206, 396, 470)
+    sheet.page()
+    sheet.across(50, 34, 470)  # below the running head, as wide as the table
+    sheet.down(50, 120, 34, 470)  # the sides; top and bottom are on other pages
+    for top, group, row in ((50, "Access", MESSAGES[0]), (85, "Control", MESSAGES[1])):
+        sheet.line(top + 11, group, bold=True)
+        sheet.line(top + 27, *row, columns=columns)
+        sheet.down(top + 16, top + 33, 76, 116, 206, 396)
+    formats(sheet, 160)
+    sheet.page()
+    sheet.canvas.save()
+    assert groups(tmp_path / "pump.pdf") == {"Pump Setting": "Access", "Valve Setting": "Control"}
+
+
 def test_a_table_whose_first_cell_is_empty_is_read_or_reported(tmp_path):
     sheet = Sheet(tmp_path / "pump.pdf")
     formats(sheet, 60)

@@ -120,16 +120,42 @@ def regions(page: Page) -> list[Region]:
     groups: dict[int, tuple[list[Rule], list[Rule]]] = {}
     for i, rule in enumerate([*across, *down]):
         groups.setdefault(root(i), ([], []))[i >= len(across)].append(rule)
-    made = []
+    made: list[Region] = []
+    frames: list[Region] = []  # two sides without a column between them
     for flats, steeps in groups.values():
         if not steeps:
             continue
         xs = [r.at for r in steeps] + [x for r in flats for x in (r.start, r.end)]
         ys = [r.at for r in flats] + [y for r in steeps for y in (r.start, r.end)]
         region = Region(min(xs), min(ys), max(xs), max(ys), flats, steeps)
-        if len(distinct([*(r.at for r in steeps), region.x0, region.x1], 3.0)) >= 3 and region.bottom - region.top > 6:
-            made.append(region)
-    return _stacked(_outermost(sorted(made, key=lambda r: (r.top, r.x0))))
+        if region.bottom - region.top > 6:
+            has_columns = len(distinct([*(r.at for r in steeps), region.x0, region.x1], 3.0)) >= 3
+            (made if has_columns else frames).append(region)
+    made = _within_frames(sorted(made, key=lambda r: (r.top, r.x0)), frames)
+    return _stacked(_outermost(made))
+
+
+def _within_frames(regions: list[Region], frames: list[Region]) -> list[Region]:
+    """Regions one below the other put together where two sides run along all of them, and rows over all columns part them.
+
+    A frame around a page or a text is none: there, more than a row stands between the regions.
+    """
+    for frame in frames:
+        inner = [
+            one for one in regions if frame.x0 < one.x0 and one.x1 < frame.x1 and frame.top <= one.top < frame.bottom
+        ]
+        ends = [frame.top, *(y for one in inner for y in (one.top, one.bottom)), frame.bottom]
+        columns = {tuple(round(x) for x in distinct([rule.at for rule in one.down])) for one in inner}
+        if (
+            len(inner) > 1
+            and len(columns) == 1
+            and all(0 <= b - a < ROW for a, b in zip(ends[::2], ends[1::2], strict=True))
+        ):
+            across = [rule for one in (frame, *inner) for rule in one.across]
+            down = [rule for one in (frame, *inner) for rule in one.down]
+            whole = Region(frame.x0, frame.top, frame.x1, frame.bottom, across, down)
+            regions = sorted([*(one for one in regions if one not in inner), whole], key=lambda r: (r.top, r.x0))
+    return regions
 
 
 def _stacked(regions: list[Region]) -> list[Region]:
