@@ -101,8 +101,9 @@ def _field(one: ReadField, prose: bool) -> dict[str, Any]:
         "at": one.at, **sized, "name": one.name, "type": one.type, **one.facts,
         **_given(
             count=one.count, enum=one.enum, unit=SIGNS.get(said.unit, said.unit), formula=said.formula,
-            formula_for=said.formula_for, const=said.const and Spelled(said.const),
+            formula_for=said.formula_for,
         ),
+        **({"const": Spelled(said.const)} if said.const else {}),  # which may be 0
         **_prose(one.name, said.rest, prose),
     }  # fmt: skip
 

@@ -121,6 +121,19 @@ def test_members_keep_commas_in_names_and_leave_nothing_silently(tmp_path):
     assert "`members` leaves `off`" in found(result, "IMP104")[0] and result.failed
 
 
+@pytest.mark.parametrize(("text", "value"), [("0", 0), ("0x5A", 90), ("5Ah", 90), ("7", 7)])
+def test_a_constant_is_the_one_valid_value_also_if_it_is_0(tmp_path, text, value):
+    rows = f"Byte\tName\tType\tMust be\n0\tKey\tu8\t{text}\n"
+    tree = read(tmp_path, HEADING + rows, RULE.replace("Type: type}", "Type: type, Must be: const}"))[1]
+    assert tree["messages"][0]["fields"][0]["const"] == value
+    result, _ = read(
+        tmp_path,
+        HEADING + rows.replace(f"{text}\n", "key\n"),
+        RULE.replace("Type: type}", "Type: type, Must be: const}"),
+    )
+    assert "`const` is `key`, which is not a number" in found(result, "IMP023")[0]
+
+
 def test_a_rule_takes_over_the_keys_of_another(tmp_path):
     rows = "Byte\tName\tType\n0\tMode\tu8\n"
     text = f"Replies\n\n{HEADING}{rows}\nCommands\n\nMotor start (0x22)\n\n{rows}"

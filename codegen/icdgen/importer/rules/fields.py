@@ -244,15 +244,17 @@ class FieldReader:
         unit = tidy_unit(roles.get("unit")).strip("()")
         if unit.casefold() not in _EMPTY:
             made.unit = unit
-        made.const = roles.get("const") or made.const
-        if made.const and whole_number(made.const) is None:
-            self.error(
-                "IMP023",
-                f"{where}: `const` is `{made.const[:40]}`, which is not a number",
-                spot,
-                "correct the pattern or the table file",
-            )
-            made.const = ""
+        if const := roles.get("const"):
+            raw = whole_number(const)
+            if raw is None:
+                self.error(
+                    "IMP023",
+                    f"{where}: `const` is `{const[:40]}`, which is not a number",
+                    spot,
+                    "correct the pattern or the table file",
+                )
+            else:
+                made.const = const if re.fullmatch(r"0[xX][0-9A-Fa-f]+", const) else str(raw)
         formula = roles.get("formula")
         if formula.casefold() not in _EMPTY:
             scaled = formulas.per_step(formula, descriptions.names(self.profile))
