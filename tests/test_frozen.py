@@ -7,7 +7,8 @@ import dataclasses
 import pytest
 
 from icdgen.frozen import dataclass as frozen
-from icdgen.icd.model import Field, Limits, Member
+from icdgen.icd.layout import Scalar
+from icdgen.icd.model import Limits, Member
 
 
 def _fields(dataclass):
@@ -65,4 +66,6 @@ def test_without_eq_an_object_is_equal_to_itself_alone():
 
 def test_a_field_of_another_class_is_never_equal():
     assert Member(1, "a") != Limits() and Member(1, "a") == Member(1, "a")
-    assert dataclasses.replace(Field("a", 0, 8, "uint"), at=8) == Field("a", 8, 8, "uint")
+    assert dataclasses.replace(Scalar(name="a", at=0, bits=8, type="uint"), at=8) == Scalar(
+        name="a", at=8, bits=8, type="uint"
+    )

@@ -19,6 +19,7 @@ from typing import TypeAlias
 
 from icdgen.icd.curve import Curve
 from icdgen.icd.layout import (
+    AnyScalar,
     Derived,
     FrameField,
     Layout,
@@ -29,7 +30,6 @@ from icdgen.icd.layout import (
     VariablePart,
 )
 from icdgen.icd.model import Icd, Message, Node
-from icdgen.icd.places import AnyValue
 
 Raw: TypeAlias = "int | bytes"
 
@@ -276,7 +276,7 @@ def _shortened(field: FrameField, value: Raw) -> Raw:
     return value[: field.bits // 8]
 
 
-def check_raw(field: AnyValue, value: int | bytes) -> None:
+def check_raw(field: AnyScalar, value: int | bytes) -> None:
     """Raises `CodecError` unless the field can hold the raw value."""
     if field.is_bytes:
         if not isinstance(value, (bytes, bytearray)) or len(value) != field.bits // 8:
@@ -289,12 +289,12 @@ def check_raw(field: AnyValue, value: int | bytes) -> None:
         raise CodecError(f"{field.name!r} takes {low} to {high}, not {value}")
 
 
-def physical(field: AnyValue, raw: int) -> Fraction | None:
+def physical(field: AnyScalar, raw: int) -> Fraction | None:
     """Exact physical value of an integer field with a scale, else None."""
     return field.scale.physical(raw) if field.scale else None
 
 
-def physical_double(field: AnyValue, raw: int) -> float | None:
+def physical_double(field: AnyScalar, raw: int) -> float | None:
     """The correctly rounded double of the physical value; of a curve, what its definition gives."""
     if field.curve is not None:
         return field.curve.double(float_value(field, raw) if field.type == "float" else raw)
@@ -302,7 +302,7 @@ def physical_double(field: AnyValue, raw: int) -> float | None:
     return None if exact is None else to_double(exact)
 
 
-def value_double(field: AnyValue, raw: int) -> float:
+def value_double(field: AnyScalar, raw: int) -> float:
     """The physical value of a number, of one without a formula its raw value, as a double."""
     physical = physical_double(field, raw)
     if physical is not None:
@@ -310,7 +310,7 @@ def value_double(field: AnyValue, raw: int) -> float:
     return float_value(field, raw) if field.type == "float" else float(raw)
 
 
-def raw_from_physical(field: AnyValue, value: Fraction | int | float) -> int:
+def raw_from_physical(field: AnyScalar, value: Fraction | int | float) -> int:
     """Nearest raw value, ties to even. Raises `CodecError` if it is not finite or does not fit."""
     if isinstance(value, float) and not math.isfinite(value):
         raise CodecError(f"{field.name!r} takes a finite number, not {value}")
@@ -324,7 +324,7 @@ def raw_from_physical(field: AnyValue, value: Fraction | int | float) -> int:
     return raw
 
 
-def _raw_on_curve(field: AnyValue, curve: Curve, value: float) -> int:
+def _raw_on_curve(field: AnyScalar, curve: Curve, value: float) -> int:
     if not field.is_invertible:
         raise CodecError(f"the physical value of {field.name!r} does not lead back to a raw value")
     if field.type == "float":
@@ -344,7 +344,7 @@ def text(raw: bytes) -> str:
     return raw.split(b"\0", 1)[0].decode("ascii", "replace")
 
 
-def raw_from_text(field: AnyValue, value: str) -> bytes:
+def raw_from_text(field: AnyScalar, value: str) -> bytes:
     """The bytes of a text, filled with NUL. Raises `CodecError` if it is too long, not ASCII or has a NUL in it."""
     size = field.bits // 8
     if not value.isascii() or "\0" in value or len(value) > size:
@@ -352,7 +352,7 @@ def raw_from_text(field: AnyValue, value: str) -> bytes:
     return value.encode("ascii").ljust(size, b"\0")
 
 
-def special_of(field: AnyValue, raw: int) -> Special | None:
+def special_of(field: AnyScalar, raw: int) -> Special | None:
     """The meaning that a raw value has, of floats the number: each NaN is the same, and so are both zeros."""
     if field.type != "float":
         return next((one for one in field.special if one.value == raw), None)
@@ -363,14 +363,14 @@ def special_of(field: AnyValue, raw: int) -> Special | None:
     return None
 
 
-def float_value(field: AnyValue, bits: int) -> float:
+def float_value(field: AnyScalar, bits: int) -> float:
     """The number that the bits of a float field stand for."""
     packed = bits.to_bytes(field.bits // 8, "little")
     value: float = struct.unpack("<f" if field.bits == 32 else "<d", packed)[0]
     return value
 
 
-def float_bits(field: AnyValue, value: float) -> int:
+def float_bits(field: AnyScalar, value: float) -> int:
     """The bits of the nearest float of the field's width. Raises `CodecError` on overflow."""
     try:
         packed = struct.pack("<f" if field.bits == 32 else "<d", value)

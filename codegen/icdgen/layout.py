@@ -9,9 +9,8 @@ import re
 from functools import lru_cache
 from typing import NamedTuple
 
-from icdgen.icd.layout import FrameField
-from icdgen.icd.model import Field, Message, Node, Struct
-from icdgen.icd.places import AnyField
+from icdgen.icd.layout import FrameField, NodePlace
+from icdgen.icd.model import Message, Node, Struct
 from icdgen.icd.variants import Variant
 
 
@@ -47,7 +46,7 @@ def pieces_at(at: int, bits: int, byte_order: str, bit_order: str) -> tuple[Piec
     return tuple(pieces if byte_order == "little" else reversed(pieces))
 
 
-def pieces(field: AnyField | FrameField, node: Node) -> tuple[Piece, ...]:
+def pieces(field: FrameField | NodePlace, node: Node) -> tuple[Piece, ...]:
     """Return the pieces of a number, none of a derived one. Bytes are whole bytes in order: see `byte_range`.
 
     `node` is the ICD node whose orders a field has that declares none.
@@ -57,7 +56,7 @@ def pieces(field: AnyField | FrameField, node: Node) -> tuple[Piece, ...]:
     return pieces_at(field.at, field.bits, field.byte_order or node.byte_order, field.bit_order or node.bit_order)
 
 
-def mask(field: AnyField | FrameField, node: Node) -> int:
+def mask(field: FrameField | NodePlace, node: Node) -> int:
     """The bits of the frame that the field has; bit w of byte b is bit 8 * b + w."""
     if field.is_bytes:
         return ((1 << field.bits) - 1) << field.at
@@ -83,7 +82,7 @@ def signs(variant: Variant) -> tuple[Sign, ...]:
     return tuple(Sign(byte, *found) for byte, found in sorted(masks.items()))
 
 
-def byte_range(field: FrameField | Field) -> range:
+def byte_range(field: FrameField | NodePlace) -> range:
     """The bytes that the field touches."""
     return range(field.at // 8, (field.at + field.bits + 7) // 8)
 

@@ -14,7 +14,8 @@ import pytest
 from hypothesis import given, settings
 
 from icdgen import backends
-from icdgen.icd.model import Field, Icd, Struct
+from icdgen.icd.layout import Layout
+from icdgen.icd.model import Icd
 from icdgen.loading import load
 from icdgen.render import Renderer
 from icdgen.vectors.make import make
@@ -70,19 +71,19 @@ class Pack:
     def messages_of(self, change: dict[str, str]) -> list[str]:
         """The message that a change is part of; those in which the struct stands that it is part of."""
         node, part = self.icd.node(change["node"]), change["part of"]
-        holders = (m.name for m in node.messages if any(s.name == part for f in m.members for s in structs(f)))
+        holders = (m.name for m in node.messages if any(s.name == part for s in structs(m.layout)))
         return list(dict.fromkeys([*(m.name for m in node.messages if m.name == part), *holders]))
 
     def listed(self, change: dict[str, str]) -> dict[str, set[int]]:
         return noticed(change["vectors"])
 
 
-def structs(field: Field) -> Iterator[Struct]:
-    """The struct of a field and those that stand in it."""
-    if field.struct is not None:
-        yield field.struct
-        for member in field.struct.members:
-            yield from structs(member)
+def structs(layout: Layout) -> Iterator[Layout]:
+    """The layouts of the structs that stand in a message or a struct, and of those in them."""
+    for place in layout.places:
+        if place.struct is not None:
+            yield place.struct
+            yield from structs(place.struct)
 
 
 def _value(text: str) -> str:

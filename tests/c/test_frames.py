@@ -15,7 +15,8 @@ from pathlib import Path
 import pytest
 
 from icdgen import codec
-from icdgen.icd.model import Field, Icd, Message, Node
+from icdgen.icd.layout import NodePlace
+from icdgen.icd.model import Icd, Message, Node
 from tests.c import harness
 
 RANDOM = os.environ.get("ICDGEN_RANDOM_FRAMES", "10000")
@@ -92,7 +93,7 @@ def samples(node: Node, message: Message):
         yield source.randbytes(length)
 
 
-def extremes(field: Field):
+def extremes(field: NodePlace):
     if field.is_bytes:
         return [bytes(range(1, field.bits // 8 + 1)) if field.bits < 2040 else b"\x5a" * (field.bits // 8)]
     if field.type == "float":

@@ -14,7 +14,6 @@ from icdgen.backends.c import CBackend
 from icdgen.backends.c.declared_names import FILE
 from icdgen.backends.c.text import comment, literal, plain
 from icdgen.describe import describe
-from icdgen.icd.flat import message_with_lists
 from icdgen.icd.model import Icd
 from icdgen.loading import load
 from tests.c import harness, odd
@@ -33,7 +32,7 @@ def without_a_field(icd: Icd, node_name: str, message_name: str, field_name: str
     def fewer(message):
         fixed = tuple(one for one in message.layout.fixed if one.name != field_name)
         layout = dataclasses.replace(message.layout, fixed=fixed)
-        return message_with_lists(dataclasses.replace(message, layout=layout), {})
+        return dataclasses.replace(message, layout=layout)
 
     def changed(node):
         messages = tuple(fewer(m) if m.name == message_name else m for m in node.messages)

@@ -23,7 +23,8 @@ from icdgen.backends.c import physical
 from icdgen.backends.c.names import stem
 from icdgen.backends.c.types import type_of
 from icdgen.describe import FieldDescription, describe
-from icdgen.icd.model import Field, Icd
+from icdgen.icd.layout import NodePlace
+from icdgen.icd.model import Icd
 from tests.c import harness, odd
 
 REFUSED = 0x5245465553454421
@@ -86,13 +87,13 @@ def row(field: FieldDescription) -> dict[str, object]:
     return found
 
 
-def _survives(field: Field) -> bool:
+def _survives(field: NodePlace) -> bool:
     """Whether doubles tell all physical values apart, so that the way back leads to the same raw value."""
     ends = (field.scale.physical(raw) / field.scale.factor for raw in (field.raw_min, field.raw_max))
     return max(map(abs, ends)) < 2**52
 
 
-def tables(field: Field, wide: int):
+def tables(field: NodePlace, wide: int):
     """What the test program compares with, as bytes; ``wide`` values of a field of more than 16 bits."""
     source = random.Random(f"{field.scale}{field.bits}")
     raws = raw_values(field, wide, source)
@@ -117,7 +118,7 @@ def tables(field: Field, wide: int):
     yield table(words(numbers), words([set_by_codec(field, Fraction(value, per)) for value in numbers]))
 
 
-def storage_ends(field: Field) -> tuple[int, int]:
+def storage_ends(field: NodePlace) -> tuple[int, int]:
     bits = next(b for b in (8, 16, 32, 64) if field.bits <= b)
     return (-(1 << (bits - 1)), (1 << (bits - 1)) - 1) if field.signed else (0, (1 << bits) - 1)
 
@@ -130,14 +131,14 @@ def words(values: list[int]) -> bytes:
     return array("Q", [value & 0xFFFFFFFFFFFFFFFF for value in values]).tobytes()
 
 
-def set_by_codec(field: Field, value: float | Fraction) -> int:
+def set_by_codec(field: NodePlace, value: float | Fraction) -> int:
     try:
         return codec.raw_from_physical(field, value)
     except codec.CodecError:
         return REFUSED
 
 
-def raw_values(field: Field, wide: int, source: random.Random) -> list[int]:
+def raw_values(field: NodePlace, wide: int, source: random.Random) -> list[int]:
     if field.bits <= 16:
         return list(range(field.raw_min, field.raw_max + 1))
     near = [field.raw_min, field.raw_min + 1, -1, 0, 1, field.raw_max - 1, field.raw_max]
@@ -146,7 +147,7 @@ def raw_values(field: Field, wide: int, source: random.Random) -> list[int]:
     return near + small + [source.randint(field.raw_min, field.raw_max) for _ in range(wide // 2)]
 
 
-def physical_values(field: Field, count: int, source: random.Random) -> list[float]:
+def physical_values(field: NodePlace, count: int, source: random.Random) -> list[float]:
     """Doubles at and beside ties, at and beyond the limits, and the strangest ones."""
     values = [math.nan, -math.nan, math.inf, -math.inf, 0.0, -0.0, 5e-324, -5e-324, 2.2e-308, 1.7e308, -1.7e308]
     values += [2.0**exponent * sign for exponent in range(-70, 130, 3) for sign in (1, -1)]
@@ -159,7 +160,7 @@ def physical_values(field: Field, count: int, source: random.Random) -> list[flo
     return values
 
 
-def whole_values(field: Field, per: int, count: int, source: random.Random) -> list[int]:
+def whole_values(field: NodePlace, per: int, count: int, source: random.Random) -> list[int]:
     values = [0, 1, -1, 2**31 - 1, -(2**31), 2**63 - 1, -(2**63)]
     raws = [field.raw_min, field.raw_max] * 3 + [source.randint(field.raw_min, field.raw_max) for _ in range(count)]
     for raw in raws:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from icdgen import codec
 from icdgen.icd.curve import Curve, of_plain
-from icdgen.icd.model import Field
+from icdgen.icd.layout import Scalar
 from icdgen.vectors.ids import worth_asking
 from icdgen.vectors.write import raw_json
 from tests.conformance.compare import Maybe, Not
@@ -332,7 +332,7 @@ def nearest(field: dict, bits: str) -> int | str | None:
 
 
 def _on_curve(field: dict, curve: Curve, bits: str) -> int | str | None:
-    one = Field("", 0, field["bits"], field["type"], curve=curve)
+    one = Scalar(name="", at=0, bits=field["bits"], type=field["type"], curve=curve)
     try:
         raw = codec.raw_from_physical(one, struct.unpack(">d", bytes.fromhex(bits))[0])
     except codec.CodecError:

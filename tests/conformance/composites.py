@@ -123,12 +123,12 @@ def cases(icd: Icd, count: int = 4) -> Iterator[Case]:
             for _ in range(count if message.contains else 0):
                 frame = random_bytes(message.length)
                 raw = codec.decode(node, message, frame)
-                values = {field.at: raw[field.name] for field in message.owners}
+                values = {field.at: raw[field.name] for field in message.layout.raw_fields}
                 given: list[Given] = []
                 for one in message.contains:
                     part = known[one.message]
-                    if part.owners:
+                    if part.layout.raw_fields:
                         index = sum(other.part is part for other in given)
-                        theirs = {field.name: values[one.at + field.at] for field in part.owners}
+                        theirs = {field.name: values[one.at + field.at] for field in part.layout.raw_fields}
                         given.append(Given(part, index, codec.encode(icd.node(part.node), part, theirs)))
                 yield Case(message, frame, tuple(given))

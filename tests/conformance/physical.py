@@ -17,7 +17,8 @@ from functools import cache
 from pathlib import Path
 
 from icdgen import codec
-from icdgen.icd.model import Field, Icd, Message
+from icdgen.icd.layout import NodePlace, Scalar
+from icdgen.icd.model import Icd, Message
 from icdgen.vectors.settings import bits_of
 from tests.conformance.build import BuildError, build
 from tests.conformance.driver import Testee
@@ -50,7 +51,7 @@ class Chunk:
     failures: int
 
 
-def scaled_fields(icd: Icd) -> Iterator[tuple[Message, Field]]:
+def scaled_fields(icd: Icd) -> Iterator[tuple[Message, NodePlace]]:
     for node in icd.nodes:
         for message in node.messages:
             for field in message.fields:
@@ -58,14 +59,14 @@ def scaled_fields(icd: Icd) -> Iterator[tuple[Message, Field]]:
                     yield message, field
 
 
-def chunks(field: Field, count: int, whole: int, near: int = 1000) -> list[Chunk]:
+def chunks(field: NodePlace, count: int, whole: int, near: int = 1000) -> list[Chunk]:
     """Everything to ask of a field; fields of one kind share it."""
     return _chunks(field.scale, field.curve, field.type, field.bits, count, whole, near)
 
 
 @cache
 def _chunks(scale, curve, type_: str, bits: int, count: int, whole: int, near: int) -> list[Chunk]:
-    field = Field("any", 0, bits, type_, scale=scale, curve=curve)
+    field = Scalar(name="any", at=0, bits=bits, type=type_, scale=scale, curve=curve)
     low, high = field.raw_min, field.raw_max
     if bits <= whole:
         return [_chunk(field, {"from": low, "to": high}, tuple(range(low, high + 1)))]
@@ -77,13 +78,13 @@ def _chunks(scale, curve, type_: str, bits: int, count: int, whole: int, near: i
     return [_chunk(field, {"values": part}, part) for part in parts]
 
 
-def _chunk(field: Field, request: dict, raw: tuple[int, ...]) -> Chunk:
+def _chunk(field: NodePlace, request: dict, raw: tuple[int, ...]) -> Chunk:
     doubles = [codec.physical_double(field, one) for one in raw]
     failures = sum(not comes_back(field, one, value) for one, value in zip(raw, doubles, strict=True))
     return Chunk(request, raw, "".join(map(bits_of, doubles)), failures)
 
 
-def sweep(testee: Testee, total: Total, message: Message, field: Field, chunk: Chunk, notes: list[str]) -> None:
+def sweep(testee: Testee, total: Total, message: Message, field: NodePlace, chunk: Chunk, notes: list[str]) -> None:
     """One request, compared."""
     about = {
         "node": message.node,

@@ -69,7 +69,11 @@ def test_physical_values_are_the_same_to_the_last_bit(strange):
     totals, notes = physical.run(["c", "javascript", "python", "rust-debug"], strange.icd, 100, whole=10, near=50)
     assert notes == []
     scaled = [
-        f for node in strange.icd.nodes for m in node.messages for f in m.owners if f.has_formula and f.leads_back
+        f
+        for node in strange.icd.nodes
+        for m in node.messages
+        for f in m.layout.raw_fields
+        if f.has_formula and f.leads_back
     ]
     assert all(total.fields == len(scaled) > 20 and total.values > 20_000 for total in totals)
 

@@ -6,7 +6,7 @@ import pytest
 
 from icdgen.describe import describe
 from icdgen.describe.integer_scale import part_of_unit
-from icdgen.icd.model import Field
+from icdgen.icd.layout import Scalar
 from icdgen.icd.units import STANDARD, Unit
 from icdgen.loading import load
 from tests.conformance.icds import shipped
@@ -59,12 +59,12 @@ def test_the_reason_stands_with_the_title():
     ],
 )
 def test_a_part_of_a_unit_is_called_what_people_call_it(symbol, per, name, words):
-    field = Field(name="One", at=0, bits=8, type="uint", unit=STANDARD[symbol])
+    field = Scalar(name="One", at=0, bits=8, type="uint", unit=STANDARD[symbol])
     assert part_of_unit(field, per) == (name, words)
 
 
 def test_a_unit_of_the_icd_itself_is_not_taken_apart():
-    field = Field(name="One", at=0, bits=8, type="uint", unit=Unit("klick", "km", "length"))
+    field = Scalar(name="One", at=0, bits=8, type="uint", unit=Unit("klick", "km", "length"))
     assert part_of_unit(field, 1000) == ("m", "thousandths of klick")
 
 

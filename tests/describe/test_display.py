@@ -18,7 +18,8 @@ from icdgen.backends.html.plan import enum_plan, message_plan
 from icdgen.describe.display import number_text
 from icdgen.diff.inputs import shown as shown_input
 from icdgen.icd import floats
-from icdgen.icd.model import Field, Icd
+from icdgen.icd.layout import NodePlace
+from icdgen.icd.model import Icd
 from icdgen.show.machine import SCHEMA, to_json
 from icdgen.show.people import to_text
 from icdgen.values.entry import from_physical
@@ -56,12 +57,12 @@ BY_NUMBER = ["Quadratic", "Thirds", "Fahrenheit", "Binary", "Hundredths", "Sixte
 
 
 @pytest.fixture(scope="module")
-def fields(tmp_path_factory) -> dict[str, Field]:
+def fields(tmp_path_factory) -> dict[str, NodePlace]:
     icd = icd_of(SENSOR, tmp_path_factory.mktemp("sensor"))
     return {field.name: field for field in icd.nodes[0].messages[0].fields}
 
 
-def float_raw(field: Field, number: float) -> int:
+def float_raw(field: NodePlace, number: float) -> int:
     value = from_physical(field, repr(number))
     assert isinstance(value, int)
     return value
@@ -197,7 +198,7 @@ def charger(tmp_path_factory):
     return icd_of(FORMATS, tmp_path_factory.mktemp("charger"))
 
 
-def raw_of(field: Field, number: float) -> int:
+def raw_of(field: NodePlace, number: float) -> int:
     return floats.bits_of(number, field.bits) if field.type == "float" else int(number)
 
 

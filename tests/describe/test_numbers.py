@@ -14,17 +14,18 @@ from icdgen.describe.numbers import bit_range, byte_range, exact_text, factor_te
 from icdgen.describe.steps import steps
 from icdgen.describe.storage import Storage, holding
 from icdgen.icd.formula import Scale
-from icdgen.icd.model import Field, Limits
+from icdgen.icd.layout import NodePlace, Scalar
+from icdgen.icd.model import Limits
 
 fractions = st.fractions(min_value=-1000, max_value=1000, max_denominator=1000)
 scales = st.builds(Scale, fractions.filter(bool), fractions)
 
 
 @st.composite
-def scaled(draw) -> tuple[Field, int]:
+def scaled(draw) -> tuple[NodePlace, int]:
     """A field with a scale, and a raw value that it can hold."""
     kind, bits = draw(st.sampled_from(["uint", "int"])), draw(st.integers(1, 64))
-    field = Field("it", 0, bits, kind, scale=draw(scales))
+    field = Scalar(name="it", at=0, bits=bits, type=kind, scale=draw(scales))
     return field, draw(st.integers(field.raw_min, field.raw_max))
 
 
@@ -54,8 +55,8 @@ def test_no_value_lies_outside_the_span(case):
 
 
 def test_what_no_double_holds_is_not_called_exact():
-    assert not steps(Field("wide", 0, 64, "uint", scale=Scale(Fraction(3)))).exact_in_doubles
-    assert steps(Field("small", 0, 16, "int", scale=Scale(Fraction(1, 100)))).exact_in_doubles
+    assert not steps(Scalar(name="wide", at=0, bits=64, type="uint", scale=Scale(Fraction(3)))).exact_in_doubles
+    assert steps(Scalar(name="small", at=0, bits=16, type="int", scale=Scale(Fraction(1, 100)))).exact_in_doubles
 
 
 LIMITS = Limits(min=Fraction(1), below=Fraction(3))
@@ -70,16 +71,23 @@ def test_each_limit_tells_whether_a_value_keeps_it(value, kept):
 
 
 def test_the_ends_are_those_of_the_type_unless_an_inclusive_limit_is_narrower():
-    field = Field("it", 0, 8, "uint", scale=Scale(Fraction(-1, 2)), limits=Limits(min=Fraction(-5), above=Fraction(-9)))
+    field = Scalar(
+        name="it",
+        at=0,
+        bits=8,
+        type="uint",
+        scale=Scale(Fraction(-1, 2)),
+        limits=Limits(min=Fraction(-5), above=Fraction(-9)),
+    )
     assert allowed_ends(field) == (-5, 0)
-    assert allowed_ends(Field("it", 0, 32, "float")) == (None, None)
+    assert allowed_ends(Scalar(name="it", at=0, bits=32, type="float")) == (None, None)
 
 
 @pytest.mark.parametrize("bits", range(1, 65))
 def test_the_storage_holds_what_it_must_and_is_not_twice_as_wide_as_need_be(bits):
     for signed in (False, True):
         storage = Storage(holding(bits), signed)
-        field = Field("it", 0, bits, "int" if signed else "uint")
+        field = Scalar(name="it", at=0, bits=bits, type="int" if signed else "uint")
         assert storage.min <= field.raw_min and field.raw_max <= storage.max
         assert storage.bits == 8 or storage.bits // 2 < bits
 

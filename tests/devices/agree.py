@@ -13,7 +13,7 @@ from fractions import Fraction
 from icdgen import codec
 from icdgen.icd.build import special
 from icdgen.icd.formula import coefficients, parse
-from icdgen.icd.model import Field
+from icdgen.icd.layout import Scalar
 from tests.conformance.driver import Answering
 from tests.devices.definition import Definition, NotHeld, Values
 
@@ -166,7 +166,7 @@ def _means_something(raw: object, part: dict) -> bool:
     if part["type"] != "float":
         return any(one["value"] == raw for one in part.get("special", ()))
     named = (special("float", part["bits"], one["value"], one["meaning"]) for one in part.get("special", ()))
-    one = Field("", 0, part["bits"], "float", special=tuple(found for found in named if found))
+    one = Scalar(name="", at=0, bits=part["bits"], type="float", special=tuple(found for found in named if found))
     return codec.special_of(one, int(str(raw), 16)) is not None
 
 

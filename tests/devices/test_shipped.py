@@ -66,7 +66,7 @@ def definitions(node: str, reads: Callable[[str, bytes], Values]) -> list[Defini
     """The messages of one length each of an ICD, with the library's reading of them."""
     found = []
     for message in devices().node(node).messages:
-        fields = [plain(one.source) for one in message.members if not one.view]
+        fields = [plain(one.source) for one in message.layout.places if not one.view]
         scaled = {one["name"] for one in fields if "formula" in one}
 
         def read(data: bytes, name: str = message.name) -> Values:
@@ -78,7 +78,7 @@ def definitions(node: str, reads: Callable[[str, bytes], Values]) -> list[Defini
         def physical(data: bytes, read: Callable[[bytes], Values] = read, scaled: set[str] = scaled) -> Values:
             return {key: value for key, value in read(data).items() if key in scaled}
 
-        if message.tail is None:
+        if not message.layout.parts:
             id = message.ids[0]
             found.append(Definition(message.name, id, message.kind, message.length, fields, raw=raw, physical=physical))
     return found
@@ -208,7 +208,7 @@ def test_the_satellites_of_a_ubx_frame_are_read_as_by_pyubx2(testee: Testee, cou
     chance = random.Random(count)
     data = chance.randbytes(5) + bytes([count]) + chance.randbytes(2 + 12 * count)
     theirs, ours = ubx_message("NAV-SAT", data), decoded(testee, "ublox", "telemetry", 0x0135, data)
-    names = [one.name for one in devices().node("ublox").structs[0].fields]
+    names = [one.name for one in devices().node("ublox").structs[0].layout.scalars]
     assert len(names) == 26 and {key: ours[key] for key in ("iTOW", "version", "numSvs")} == {
         key: theirs[key] for key in ("iTOW", "version", "numSvs")
     }

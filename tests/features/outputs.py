@@ -295,7 +295,7 @@ def _columns(subject: Subject) -> object:
         ]
         if not frames:
             continue
-        given = frames if len(message.lengths) > 1 else b"".join(frames)
+        given = frames if len(message.layout.lengths) > 1 else b"".join(frames)
         columns, table = cls.decode_many(given), cls.decode_table(given)
         assert len(table) == len(frames)
         said.append(

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from icdgen import codec
 from icdgen.icd import curve, formula
 from icdgen.icd.curve import Curve
-from icdgen.icd.model import Field
+from icdgen.icd.layout import Scalar
 from icdgen.loading import load
 
 COEFFICIENTS = st.lists(st.floats(-1e9, 1e9, allow_subnormal=False), min_size=2, max_size=6).map(curve.polynomial)
@@ -143,12 +143,12 @@ def test_points_are_numbers_however_they_are_written(tmp_path: Path):
 
 @given(COEFFICIENTS | tables(), st.integers(1, 9), st.booleans(), st.floats(-1e12, 1e12))
 def test_the_way_back_gives_the_nearest_of_all_raw_values(one, bits, is_signed, value):
-    field = Field("any", 0, bits, "int" if is_signed else "uint", curve=one)
-    raws = range(field.ends[0], field.ends[1] + 1)
+    field = Scalar(name="any", at=0, bits=bits, type="int" if is_signed else "uint", curve=one)
+    raws = range(field.settable_raws[0], field.settable_raws[1] + 1)
     values = [one.double(raw) for raw in raws]
     pairs = list(pairwise(values))
-    assert field.leads_back == (bool(pairs) and (all(a < b for a, b in pairs) or all(a > b for a, b in pairs)))
-    if not field.leads_back:
+    assert field.is_invertible == (bool(pairs) and (all(a < b for a, b in pairs) or all(a > b for a, b in pairs)))
+    if not field.is_invertible:
         with pytest.raises(codec.CodecError):
             codec.raw_from_physical(field, value)
         return
@@ -164,10 +164,13 @@ def test_the_way_back_gives_the_nearest_of_all_raw_values(one, bits, is_signed, 
 
 def test_a_table_leads_back_to_raw_values_between_its_points():
     points = ((10.0, 1.0), (20.5, 4.0), (70000.0, 5.0))
-    ends = {outside: Field("any", 0, 16, "uint", curve=curve.table(points, outside)).ends for outside in curve.OUTSIDE}
+    ends = {
+        outside: Scalar(name="any", at=0, bits=16, type="uint", curve=curve.table(points, outside)).settable_raws
+        for outside in curve.OUTSIDE
+    }
     assert ends == {"clamp": (10, 65535), "refuse": (10, 65535), "extrapolate": (0, 65535)}
     for outside, raw in (("clamp", None), ("refuse", None), ("extrapolate", 9)):
-        field = Field("any", 0, 16, "uint", curve=curve.table(points, outside))
+        field = Scalar(name="any", at=0, bits=16, type="uint", curve=curve.table(points, outside))
         assert codec.raw_from_physical(field, 1.1) == 10
         if raw is None:
             with pytest.raises(codec.CodecError, match="takes 1 to 4"):
@@ -178,14 +181,14 @@ def test_a_table_leads_back_to_raw_values_between_its_points():
 
 def test_wider_fields_and_powers_of_floats_are_only_read():
     square = curve.parse("raw^2")
-    assert Field("any", 0, 16, "uint", curve=square).leads_back
-    assert not Field("any", 0, 17, "uint", curve=square).leads_back
-    assert not Field("any", 0, 32, "float", curve=square).leads_back
-    assert Field("any", 0, 32, "float", curve=curve.parse("raw/3")).leads_back
+    assert Scalar(name="any", at=0, bits=16, type="uint", curve=square).is_invertible
+    assert not Scalar(name="any", at=0, bits=17, type="uint", curve=square).is_invertible
+    assert not Scalar(name="any", at=0, bits=32, type="float", curve=square).is_invertible
+    assert Scalar(name="any", at=0, bits=32, type="float", curve=curve.parse("raw/3")).is_invertible
 
 
 def test_a_float_takes_what_is_finite_in_its_width():
-    field = Field("any", 0, 32, "float", curve=curve.parse("raw*0.5"))
+    field = Scalar(name="any", at=0, bits=32, type="float", curve=curve.parse("raw*0.5"))
     largest = struct.unpack("<f", bytes.fromhex("ffff7f7f"))[0]
     assert codec.raw_from_physical(field, largest / 2) == 0x7F7FFFFF
     for value in (largest, math.inf, -math.inf, math.nan):
@@ -194,7 +197,7 @@ def test_a_float_takes_what_is_finite_in_its_width():
 
 
 def test_a_result_that_is_no_number_has_always_the_same_bits():
-    field = Field("any", 0, 32, "float", curve=curve.parse("raw^2 - raw"))
+    field = Scalar(name="any", at=0, bits=32, type="float", curve=curve.parse("raw^2 - raw"))
     for raw in (0x7FC00001, 0xFFFFFFFF, 0x7F800001, 0xFF800000 - 0x80000000):
         value = codec.physical_double(field, raw)
         assert value is not None

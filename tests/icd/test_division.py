@@ -28,7 +28,7 @@ def item(**values) -> Map:
 def raw_at(at: int, bits: int, orders: tuple[str, str], frame: bytes) -> int:
     layout = Layout("Demo", len(frame), (Scalar(name="Value", at=at, type="uint", bits=bits),))
     node = Node("demo", "Demo", "", *orders, messages=(), enums=())
-    return codec.decode(node, Message("Demo", "telemetry", len(frame), (), layout=layout), frame)["Value"]
+    return codec.decode(node, Message("Demo", "telemetry", layout), frame)["Value"]
 
 
 @given(ORDERS, st.integers(0, 15), st.integers(1, 33), st.data())

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from icdgen import codec
-from icdgen.icd.model import Field, Message, Node
+from icdgen.icd.layout import NodePlace
+from icdgen.icd.model import Message, Node
 
 
 def same(node: Node, message: Message, other_node: Node, other: Message) -> bool:
@@ -19,11 +20,13 @@ def _facts(node: Node, message: Message) -> tuple:
         )
         for f in message.fields
     ]  # fmt: skip
-    return message.name, message.kind, message.ids, message.length, message.tail, message.may_end_early, fields
+    parts = [(part.name, part.counter, part.step, part.most, part.plus) for part in message.layout.parts]
+    return message.name, message.kind, message.ids, message.length, parts, message.may_end_early, fields
 
 
-def _place(node: Node, field: Field) -> object:
+def _place(node: Node, field: NodePlace) -> object:
     """Where each of its bits lies; what only the end of a frame counts has none."""
     if field.is_bytes or field.implied:
         return field.at
-    return codec._runs(field.at, field.bits, *field.orders(node))
+    orders = field.orders_in_effect(node.orders)
+    return codec._runs(field.at, field.bits, orders.byte, orders.bit)

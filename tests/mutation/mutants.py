@@ -13,7 +13,8 @@ from itertools import product
 from icdgen.backends.assurance.changes import OTHER_TYPES, formulas, tables
 from icdgen.icd.build import plain
 from icdgen.icd.curve import OUTSIDE
-from icdgen.icd.model import Enum, Field, Icd, Message, Node
+from icdgen.icd.layout import NodePlace
+from icdgen.icd.model import Enum, Icd, Message, Node
 from icdgen.icd.tails import is_open, key_of
 
 Change = Callable[[dict], object]
@@ -81,7 +82,7 @@ class _Home:
             one.pop("contains", None)
             one.pop("listed", None)
             if message.fields:  # what the manual divides in words is its parts
-                one["fields"] = [_line(one) for one in message.members if not one.implied and one.derived is None]
+                one["fields"] = [_line(one) for one in message.layout.places if not one.implied and one.derived is None]
             tree["messages"] = [one]
             tree["structs"] = structs = list(self._used(one))
             rows = [row for part in (one, *structs) for row in part.get("fields") or ()]
@@ -101,7 +102,7 @@ class _Home:
         yield from found.values()
 
 
-def _line(field: Field) -> dict:
+def _line(field: NodePlace) -> dict:
     source = plain(field.source)
     return {**source, "at": field.at} if "struct" in source else {"type": "uint", **source, "at": field.at}
 
@@ -127,7 +128,7 @@ def _message(home: _Home, message: Message) -> Iterator[Mutant]:
         if number is not None:
             for step in (-1, 1):
                 yield on_message("id", f"{key} {number} -> {number + step}", **{key: number + step})
-    for step in (-1, 1) if message.tail is None else ():  # an open end begins where it ends
+    for step in (-1, 1) if not message.layout.parts else ():  # an open end begins where it ends
         yield on_message("length", f"length {message.length} -> {message.length + step}", length=message.length + step)
     for step in (-1, 1) if message.source.get("reserved") else ():
         reserved, length = base["messages"][0]["reserved"] + step, message.length + step

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import pytest
 
-from icdgen.icd.flat import message_with_lists
 from icdgen.icd.model import Icd
 from tests.python import packages
 
@@ -44,7 +43,7 @@ def test_without_a_field_only_the_files_that_mention_it_change(files):
     icd = packages.shipped()
     node = icd.node("cubeacp")
     message = next(m for m in node.messages if m.name == "Estimated Attitude Angles")
-    fewer = message_with_lists(replace(message, layout=replace(message.layout, fixed=message.layout.fixed[:-1])), {})
+    fewer = replace(message, layout=replace(message.layout, fixed=message.layout.fixed[:-1]))
     node_fewer = replace(node, messages=tuple(fewer if m is message else m for m in node.messages))
     changed = packages.files(Icd(tuple(node_fewer if n is node else n for n in icd.nodes)))
     differing = {path for path in files.keys() | changed.keys() if files.get(path) != changed.get(path)}

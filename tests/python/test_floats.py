@@ -18,7 +18,7 @@ ALIKE64 = (0, 1 << 63, 1, 0x000FFFFFFFFFFFFF, 0x7FEFFFFFFFFFFFFF, 0x7FF000000000
 def test_every_bit_pattern_comes_back(package):
     floats, checked = package.module("_floats"), 0
     for case in cases(package):
-        for field in case.message.owners:
+        for field in case.message.layout.raw_fields:
             if field.type != "float":
                 continue
             patterns = (*NANS32, *ALIKE32) if field.bits == 32 else (*NANS64, *ALIKE64)

@@ -15,7 +15,7 @@ def distinct(package, widest: int):
     """One field of each scale, type and width up to ``widest`` bits."""
     found = {}
     for case in cases(package):
-        for field in case.message.owners:
+        for field in case.message.layout.raw_fields:
             if field.scale and field.bits <= widest:
                 found.setdefault((field.scale, field.type, field.bits), (case, field))
     return found.values()

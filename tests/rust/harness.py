@@ -12,7 +12,8 @@ from functools import cache
 from pathlib import Path
 
 from icdgen import backends
-from icdgen.icd.model import Field, Icd, Message, Node
+from icdgen.icd.layout import NodePlace
+from icdgen.icd.model import Icd, Message, Node
 from icdgen.render import Renderer
 from tests.conformance.build import build
 from tests.conformance.icds import SHIPPED, read, shipped  # noqa: F401  (tests take them from here)
@@ -116,7 +117,7 @@ def value_requests(icd: Icd, largest: int, seed: int = 1) -> list[dict]:
     return found
 
 
-def _raw_values(field: Field) -> list[object]:
+def _raw_values(field: NodePlace) -> list[object]:
     if field.is_bytes:
         return ["ab" * (field.bits // 8), "", "00" * (field.bits // 8 + 1)]
     if field.type == "float":
@@ -127,7 +128,7 @@ def _raw_values(field: Field) -> list[object]:
     return [low, high, low - 1, high + 1, high // 3, low // 3]
 
 
-def _doubles(field: Field, source: random.Random) -> list[str]:
+def _doubles(field: NodePlace, source: random.Random) -> list[str]:
     low, high = field.raw_min, field.raw_max
     found = [
         math.nan,

@@ -15,7 +15,8 @@ import jinja2
 from icdgen import codec
 from icdgen.backends.rust.names import type_name
 from icdgen.describe import MessageDescription, describe
-from icdgen.icd.model import CONFIGURATION, Field, Icd, Message, Node
+from icdgen.icd.layout import NodePlace
+from icdgen.icd.model import CONFIGURATION, Icd, Message, Node
 from icdgen.protocol import facts
 from icdgen.sim.values import allowed_values
 from tests.rust import harness
@@ -96,7 +97,7 @@ def numbered(icd: Icd, message: Message) -> dict[str, int | bytes]:
     return raw
 
 
-def _numbered(field: Field, number: int, otherwise: int | bytes) -> int | bytes:
+def _numbered(field: NodePlace, number: int, otherwise: int | bytes) -> int | bytes:
     if field.is_bytes:
         return bytes((number + at) % 256 for at in range(field.bits // 8))
     if field.type == "float":

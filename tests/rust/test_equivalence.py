@@ -8,7 +8,7 @@ from math import lcm
 
 from icdgen import codec
 from icdgen.icd.formula import Scale
-from icdgen.icd.model import Field
+from icdgen.icd.layout import NodePlace
 from tests.conformance.robust import bad_lines
 from tests.rust import harness
 
@@ -45,21 +45,21 @@ def test_every_physical_value_of_every_scale(subject, testee):
         assert answer["physical"] == _all_doubles(scale, field), field.name
 
 
-def _lost(field: Field) -> int:
+def _lost(field: NodePlace) -> int:
     """How many raw values do not come back from their double: none but for scales of more digits than a double has."""
     assert abs(field.scale.offset) > 1 << 53
     raws = range(field.raw_min, field.raw_max + 1)
     return sum(_back(field, codec.physical_double(field, raw)) != raw for raw in raws)
 
 
-def _back(field: Field, value: float) -> int | None:
+def _back(field: NodePlace, value: float) -> int | None:
     try:
         return codec.raw_from_physical(field, value)
     except codec.CodecError:
         return None
 
 
-def _all_doubles(scale: Scale, field: Field) -> str:
+def _all_doubles(scale: Scale, field: NodePlace) -> str:
     divisor = lcm(scale.factor.denominator, scale.offset.denominator)
     factor, offset = int(scale.factor * divisor), int(scale.offset * divisor)
     values = [(raw * factor + offset) / divisor for raw in range(field.raw_min, field.raw_max + 1)]

@@ -51,5 +51,5 @@ def test_what_is_shown_for_programs_is_read_back_with_every_element(tmp_path):
         ("Levels", 48, 12, 2),
     ]
     again = shown.from_bytes(json.dumps(tree).encode(), "shown").icd
-    key = lambda one: (one.name, one.at, one.bits, one.path, one.scale, one.byte_order)  # noqa: E731
+    key = lambda one: (one.name, one.at, one.bits, one.scale, one.byte_order)  # noqa: E731
     assert list(map(key, again.nodes[0].messages[0].fields)) == list(map(key, icd.nodes[0].messages[0].fields))

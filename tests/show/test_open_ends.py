@@ -36,5 +36,9 @@ def test_what_is_shown_for_programs_is_read_back_with_the_open_ends():
     tree = to_json(icd)
     jsonschema_rs.validator_for(json.loads(SCHEMA.read_text(encoding="utf-8"))).validate(tree)
     again = shown.from_bytes(json.dumps(tree).encode(), "shown").icd
-    facts = lambda one: (one.name, one.length, one.lengths, one.tail, [f.name for f in one.fields])  # noqa: E731
-    assert list(map(facts, again.nodes[0].messages)) == list(map(facts, icd.nodes[0].messages))
+    assert list(map(_facts, again.nodes[0].messages)) == list(map(_facts, icd.nodes[0].messages))
+
+
+def _facts(message):
+    parts = [(part.name, part.counter, part.begin, part.step, part.most, part.plus) for part in message.layout.parts]
+    return message.name, message.length, message.layout.lengths, parts, [field.name for field in message.fields]

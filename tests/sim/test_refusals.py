@@ -7,7 +7,6 @@ from dataclasses import replace
 import pytest
 
 from icdgen.errors import UserError
-from icdgen.icd.flat import message_with_lists
 from icdgen.icd.layout import overlay_of
 from icdgen.protocol import transfer
 from icdgen.sim.control import _check_wave, fitting
@@ -57,7 +56,7 @@ def test_a_view_is_not_set_and_follows_what_is():
     frame = next(m for m in ICD.messages_of(node) if m.name == "Estimated Attitude Angles")
     own = frame.layout.fixed[0]
     seen = overlay_of(replace(own, name="Seen", bits=8, type="int", scale=None, unit=None))
-    both = message_with_lists(replace(frame, layout=replace(frame.layout, fixed=(*frame.layout.fixed, seen))), {})
+    both = replace(frame, layout=replace(frame.layout, fixed=(*frame.layout.fixed, seen)))
     values = Values(replace(ICD, nodes=tuple(_with(node, frame, both) for node in ICD.nodes)), node)
     values.update(both, {own.name: -2})
     assert values.raw(both)["Seen"] == -2

@@ -7,12 +7,12 @@ import random
 import subprocess
 
 from icdgen import codec
-from icdgen.icd.model import Field
+from icdgen.icd.layout import Scalar
 from tests.conftest import ROOT
 from tests.site.conftest import program
 
 HTML = ROOT / "templates" / "html"
-LABEL = Field("Label", 0, 64, "text")
+LABEL = Scalar(name="Label", at=0, bits=64, type="text")
 SCRIPT = f"""
 const fs = require("node:fs");
 const folder = {json.dumps(str(HTML))};

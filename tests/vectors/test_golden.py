@@ -14,7 +14,7 @@ import pytest
 
 import icdgen
 from icdgen.icd.formula import Scale
-from icdgen.icd.model import Field
+from icdgen.icd.layout import Scalar
 from icdgen.vectors.make import make
 from icdgen.vectors.settings import settings
 from icdgen.vectors.write import decimal, text
@@ -164,7 +164,9 @@ def test_ties_are_found_for_every_formula_that_has_them(odd_icd):
 
     assert all(ties(fields[name]) >= 4 for name in ("Eleven", "Crossing", "Between", "A"))
     assert ties(fields["Wide"]) >= 2  # 64 bits: near the end of the range no double lies half way
-    third = Field("raw + 1/3", 0, 8, "uint", scale=Scale(Fraction(1), Fraction(1, 3)))  # half way is never a double
+    third = Scalar(
+        name="raw + 1/3", at=0, bits=8, type="uint", scale=Scale(Fraction(1), Fraction(1, 3))
+    )  # half way is never a double
     assert ties(third) == 0
 
 

@@ -29,7 +29,9 @@ def told(icd: Icd, group, frame: bytes) -> object:
     """What generated code does: in order, by length and signs."""
     for one in group:
         whole = frame.ljust(one.message.length, b"\0")
-        if len(frame) in one.message.lengths and all(whole[at] & mask == value for at, mask, value in signs(one)):
+        if len(frame) in one.message.layout.lengths and all(
+            whole[at] & mask == value for at, mask, value in signs(one)
+        ):
             return one.message.name
     length = common_length(group)
     return length if length not in (None, len(frame)) else None

@@ -54,7 +54,7 @@ def alias(parameter: ElementTree.Element) -> str:
 
 def _compare(node: Node, message: Message, frame: bytes, theirs: dict) -> tuple[int, str]:
     raw = codec.decode(node, message, frame)
-    for field in message.owners:
+    for field in message.layout.raw_fields:
         ours, its = raw[field.name], theirs[field.name].raw_value
         if field.type == "float":
             ours = codec.float_value(field, int(ours))
@@ -66,4 +66,4 @@ def _compare(node: Node, message: Message, frame: bytes, theirs: dict) -> tuple[
             exact, read = codec.physical_double(field, int(raw[field.name])), float(theirs[field.name])
             if exact == exact and not math.isclose(exact or 0.0, read, rel_tol=1e-9, abs_tol=1e-12):
                 return 0, f"{message.name}: {field.name} is {exact}, theirs {read}"
-    return len(message.owners), ""
+    return len(message.layout.raw_fields), ""

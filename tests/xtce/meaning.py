@@ -9,7 +9,8 @@ from math import ceil, floor
 from icdgen import layout
 from icdgen.icd.curve import CLAMP, EXTRAPOLATE
 from icdgen.icd.enumeration import Enum
-from icdgen.icd.model import Field, Icd, Message, Node
+from icdgen.icd.layout import NodePlace, VariablePart
+from icdgen.icd.model import Icd, Message, Node
 
 # What XTCE has no word for, so that it cannot come back. What is no layout and no meaning is not compared: protocol (but for the
 # header of space packets), what can be logged, sources, errata, identifiers, acknowledges, and what is said of enumerations.
@@ -39,16 +40,17 @@ def messages(icd: Icd, node: Node) -> dict[tuple[str, str], dict]:
 
 def _message(one: Message, node: Node, direction: str, id: int) -> dict:
     is_sent = direction == "telecommand"
-    has_views = not is_sent and all(is_ordered(field, node) for field in one.owners)
+    has_views = not is_sent and all(is_ordered(field, node) for field in one.layout.raw_fields)
     fields = [field for field in one.fields if not (field.implied or field.derived) and (has_views or not field.view)]
-    open_ = one.tail is not None and not has_open_end(one)
-    fields = [field for field in fields if not (open_ and field.at >= one.fixed * 8) and is_ordered(field, node)]
+    own, parts = one.layout, one.layout.parts
+    open_ = bool(parts) and not has_open_end(one)
+    fields = [field for field in fields if not (open_ and field.at >= own.length * 8) and is_ordered(field, node)]
     runs = [(field, _bits(field, node)) for field in fields]
     told = [(field.const, bits) for field, bits in runs if field.const is not None and is_sent]
     constants = {bit: value >> at & 1 for value, bits in told for at, bit in enumerate(bits)}
     return {
-        "id": id, "is both": one.kind == "configuration" and not _lacks(one, node), "bytes": one.fixed,
-        "open": None if one.tail is None or open_ else (line(one.tail.name), line(one.tail.counter), one.tail.most, one.tail.plus),
+        "id": id, "is both": one.kind == "configuration" and not _lacks(one, node), "bytes": own.length,
+        "open": _open_end(parts[-1]) if parts and not open_ else None,
         "summary": line(one.summary), "group": line(one.group),
         "hazard": line(one.hazard) if is_sent else "", "constants": constants,
         "fields": {line(field.name): _field(field, bits) for field, bits in runs if not (told and field.const is not None)},
@@ -57,17 +59,25 @@ def _message(one: Message, node: Node, direction: str, id: int) -> dict:
 
 def _lacks(one: Message, node: Node) -> bool:
     """Whether a telecommand is left out, as XTCE has no word for a part of it."""
-    return (one.tail is not None and not has_open_end(one)) or not all(is_ordered(field, node) for field in one.owners)
+    return (bool(one.layout.parts) and not has_open_end(one)) or not all(
+        is_ordered(field, node) for field in one.layout.raw_fields
+    )
 
 
 def has_open_end(one: Message) -> bool:
     """Whether a message has an open end for which XTCE has a word."""
-    part = next((field for field in one.members if one.tail and field.name == one.tail.name), None)
-    is_plain = part is not None and part.struct is None and part.const is None and not one.has_conditions
-    return is_plain and one.counter is not None and not one.counter.implied and not one.inner
+    parts = one.layout.parts
+    if len(parts) != 1 or parts[0].is_rest or one.has_conditions:
+        return False
+    place = next(place for place in one.layout.places if place.node is parts[0].node)
+    return place.struct is None and place.const is None
 
 
-def is_ordered(field: Field, node: Node) -> bool:
+def _open_end(part: VariablePart) -> tuple[str, str, int, int]:
+    return line(part.name), line(part.counter), part.most, part.plus
+
+
+def is_ordered(field: NodePlace, node: Node) -> bool:
     """Whether the bits of a field follow each other, from the most significant one on or from the least significant one."""
     bits = _bits(field, node)
     falling = [bit // 8 * 8 + 7 - bit % 8 for bit in reversed(bits)]
@@ -79,7 +89,7 @@ def line(text: str) -> str:
     return " ".join("".join(one if one.isprintable() or one == "\xa0" else " " for one in text).split())
 
 
-def _bits(field: Field, node: Node) -> list[int]:
+def _bits(field: NodePlace, node: Node) -> list[int]:
     """The bits of the frame that a value has, the least significant first; bit w of byte b is 8 * b + w."""
     if field.is_bytes:
         return list(range(field.at, field.at + field.bits))
@@ -87,7 +97,7 @@ def _bits(field: Field, node: Node) -> list[int]:
     return [8 * one.byte + one.shift + bit for one in pieces for bit in range(one.bits)]
 
 
-def _field(field: Field, bits: list[int]) -> dict:
+def _field(field: NodePlace, bits: list[int]) -> dict:
     is_number = field.type in ("uint", "int", "bool", "enum")
     return {
         "bits": bits,
@@ -113,7 +123,7 @@ def _enum(enum: Enum) -> tuple[str, dict]:
     return line(enum.name), {(one.value, one.last): name for one, name in names.items()}
 
 
-def _scale(field: Field) -> tuple[float, float] | None:
+def _scale(field: NodePlace) -> tuple[float, float] | None:
     """Factor and offset as doubles; a table of two points that goes on is a line, too."""
     if field.scale is not None:
         return float(field.scale.factor), float(field.scale.offset)
@@ -124,11 +134,11 @@ def _scale(field: Field) -> tuple[float, float] | None:
     return float(slope), float(y0 - x0 * slope)
 
 
-def _is_line(field: Field) -> bool:
+def _is_line(field: NodePlace) -> bool:
     return field.curve is not None and len(field.curve.points) == 2 and field.curve.outside == EXTRAPOLATE
 
 
-def _curve(field: Field) -> dict | None:
+def _curve(field: NodePlace) -> dict | None:
     assert field.curve is not None
     plain = field.curve.plain
     if field.type == "float" and field.curve.outside == CLAMP:
@@ -138,7 +148,7 @@ def _curve(field: Field) -> dict | None:
     return None if _is_line(field) else plain
 
 
-def _limits(field: Field) -> dict:
+def _limits(field: NodePlace) -> dict:
     if field.limits is None:
         return {}
     said = {key: value for key in ("min", "above", "max", "below") if (value := getattr(field.limits, key)) is not None}

@@ -17,7 +17,8 @@ from pathlib import Path
 from icdgen import codec
 from icdgen.definitions import kinds, run
 from icdgen.icd.fmt import emit
-from icdgen.icd.model import Field, Icd
+from icdgen.icd.layout import NodePlace
+from icdgen.icd.model import Icd
 from icdgen.loading import load
 from tests.conftest import ROOT
 
@@ -88,7 +89,7 @@ def _compared(icd: Icd, root: str, files: list[Path], classes: list[str], frames
     return values, unlike
 
 
-def _is_same(field: Field, ours: object, theirs: str) -> bool:
+def _is_same(field: NodePlace, ours: object, theirs: str) -> bool:
     if field.type == "float":  # of 32 bits, printed with as many digits as tell it from others
         value = codec.float_value(field, int(ours))
         return theirs == "NaN" if value != value else struct.pack(">f", float(theirs)) == struct.pack(">f", value)

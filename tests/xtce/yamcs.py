@@ -17,7 +17,8 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 from icdgen import codec
-from icdgen.icd.model import Field, Icd, Message, Node
+from icdgen.icd.layout import NodePlace
+from icdgen.icd.model import Icd, Message, Node
 from icdgen.loading import load
 from icdgen.vectors import patterns
 from tests.xtce.decoding import alias
@@ -108,14 +109,18 @@ def _pair(text: str) -> tuple[str, str]:
 
 def _unlike(node: Node, message: Message, frame: bytes, theirs: Values) -> tuple[int, str]:
     raw, count = codec.decode(node, message, frame), 0
-    end = 8 * (len(frame) if has_open_end(message) else message.fixed)
+    end = 8 * (len(frame) if has_open_end(message) else message.layout.length)
     for field in message.fields:
         is_left_out = field.implied or field.derived or field.at >= end or not is_ordered(field, node)
-        if is_left_out or field.is_bytes or (field.view and not all(is_ordered(one, node) for one in message.owners)):
+        if (
+            is_left_out
+            or field.is_bytes
+            or (field.view and not all(is_ordered(one, node) for one in message.layout.raw_fields))
+        ):
             continue
         name, index = line(field.name), None
-        if name not in theirs and field.path and field.path[-1].index is not None:
-            name, index = name.rpartition("[")[0], field.path[-1].index
+        if name not in theirs and field.index is not None:
+            name, index = name.rpartition("[")[0], field.index
         if field.name not in raw:
             if name in theirs:
                 return count, f"{message.name}: {field.name} is not there, theirs {theirs[name][0]}"
@@ -133,7 +138,7 @@ def _element(text: str, index: int) -> str:
     return text.strip("[]").split(", ")[index]
 
 
-def _one(field: Field, raw: int, theirs: str, physical: str) -> str:
+def _one(field: NodePlace, raw: int, theirs: str, physical: str) -> str:
     if field.type == "float":
         ours = codec.float_value(field, raw)
         same = _close(ours, float(theirs), 1e-6 if field.bits == 32 else 1e-12)

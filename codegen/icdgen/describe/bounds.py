@@ -10,8 +10,8 @@ from typing import Final, NamedTuple
 from icdgen.describe.numbers import exact_text
 from icdgen.describe.steps import steps
 from icdgen.icd.curve import Curve
+from icdgen.icd.layout import AnyScalar
 from icdgen.icd.model import Limits
-from icdgen.icd.places import AnyValue
 
 
 class Kind(NamedTuple):
@@ -57,7 +57,7 @@ def bounds(limits: Limits | None) -> tuple[Bound, ...]:
     return tuple(Bound(kind, value) for kind, value in found if value is not None)
 
 
-def span(curve: Curve, field: AnyValue) -> tuple[Fraction, Fraction] | None:
+def span(curve: Curve, field: AnyScalar) -> tuple[Fraction, Fraction] | None:
     """The smallest and the largest value that leads back to a raw value; None where none does, and of a float."""
     if field.type == "float" or not field.is_invertible:
         return None
@@ -65,14 +65,14 @@ def span(curve: Curve, field: AnyValue) -> tuple[Fraction, Fraction] | None:
     return min(first, last), max(first, last)
 
 
-def allowed_ends(field: AnyValue) -> tuple[Fraction | None, Fraction | None]:
+def allowed_ends(field: AnyScalar) -> tuple[Fraction | None, Fraction | None]:
     """Smallest and largest physical value, as far as the type and inclusive limits tell."""
     least, most = _type_ends(field)
     low, high = (field.limits.min, field.limits.max) if field.limits else (None, None)
     return least if low is None else low, most if high is None else high
 
 
-def _type_ends(field: AnyValue) -> tuple[Fraction | None, Fraction | None]:
+def _type_ends(field: AnyScalar) -> tuple[Fraction | None, Fraction | None]:
     """Smallest and largest physical value of the type; None for floats, and for what is no number."""
     ends = None
     if field.curve is not None:
@@ -83,7 +83,7 @@ def _type_ends(field: AnyValue) -> tuple[Fraction | None, Fraction | None]:
     return ends or (None, None)
 
 
-def range_text(field: AnyValue) -> str:
+def range_text(field: AnyScalar) -> str:
     """Return the values that can be set, by type and limits together: ``0 to 6000 rpm``; empty if a float has no limits.
 
     An end that is excluded itself reads ``above 0`` or ``below 125``.
@@ -102,13 +102,13 @@ def range_text(field: AnyValue) -> str:
 _End = tuple[Fraction, bool]  # a value, and whether it is excluded itself
 
 
-def _least(field: AnyValue) -> _End | None:
+def _least(field: AnyScalar) -> _End | None:
     limits = field.limits or Limits()
     ends = [(value, False) for value in (_type_ends(field)[0], limits.min) if value is not None]
     return max([*ends, *([(limits.above, True)] if limits.above is not None else [])], default=None)
 
 
-def _most(field: AnyValue) -> _End | None:
+def _most(field: AnyScalar) -> _End | None:
     limits = field.limits or Limits()
     ends = [(value, False) for value in (_type_ends(field)[1], limits.max) if value is not None]
     ends += [(limits.below, True)] if limits.below is not None else []

@@ -24,9 +24,8 @@ from icdgen.describe.numbers import (
 )
 from icdgen.describe.steps import Steps, steps
 from icdgen.icd.erratum import Erratum
-from icdgen.icd.layout import LayoutNode, Scalar, VariablePart
+from icdgen.icd.layout import LayoutNode, NodePlace, Scalar, VariablePart
 from icdgen.icd.model import CONFIGURATION, Condition, Enum, Member, Message, Struct
-from icdgen.icd.places import AnyField
 
 _LISTED = 6  # names in a row
 
@@ -114,12 +113,12 @@ def _said_of(field: LayoutNode | None, value: int) -> str:
     return next((words(one.name) for one in members if one.value == value and one.to is None), str(value))
 
 
-def presence_comment(field: AnyField, message: Message) -> str:
+def presence_comment(field: NodePlace, message: Message) -> str:
     """What tells whether a field is there."""
     return f"Whether {words(field.name)} is there: if {_conditions(field, message)}."
 
 
-def _conditions(field: AnyField, message: Message) -> str:
+def _conditions(field: NodePlace, message: Message) -> str:
     return " and ".join(condition_text(one, message) for one in field.when)
 
 
@@ -172,7 +171,7 @@ def member_comment(member: Member, told: Mapping[str, str]) -> Comment:
     return _comment(f"{words(member.name)} ({member.value}).", (sentence(member.summary),), member.errata, told)
 
 
-def field_comment(field: AnyField, told: Mapping[str, str], message: Message) -> Comment:
+def field_comment(field: NodePlace, told: Mapping[str, str], message: Message) -> Comment:
     """Name, place, range and unit; summary; values that are allowed or mean something. ``told``: as for a member."""
     parts = message.layout.parts
     if field.implied:
@@ -199,16 +198,16 @@ def field_comment(field: AnyField, told: Mapping[str, str], message: Message) ->
     return _comment(head, (sentence(field.summary), " ".join(facts)), field.errata, told)
 
 
-def _limits(field: AnyField) -> str:
+def _limits(field: NodePlace) -> str:
     return f"Must be {limits_text(bounds(field.limits), field)}, which setters do not check."
 
 
-def limits_text(limits: Iterable[Bound], field: AnyField) -> str:
+def limits_text(limits: Iterable[Bound], field: NodePlace) -> str:
     """``above 0 and at most 10 mA``"""
     return " and ".join(f"{bound.kind.words} {exact_text(bound.value)}" for bound in limits) + _unit(field, " ")
 
 
-def _place(field: AnyField) -> str:
+def _place(field: NodePlace) -> str:
     if field.is_bytes:
         where = byte_range(field.at // 8, field.width // 8)
         where += f", {octets_text(field.count, field.bits)}" if field.count else ""
@@ -221,7 +220,7 @@ def _place(field: AnyField) -> str:
     return ", ".join(filter(None, (where, elements, orders_text(field))))
 
 
-def _open_place(field: AnyField, message: Message, part: VariablePart) -> str:
+def _open_place(field: NodePlace, message: Message, part: VariablePart) -> str:
     """``from byte 4 on, up to 12 elements of 16 bits``"""
     if field.is_bytes and field.count:
         what = f"up to {octets_text(part.most, field.bits)}{', text filled with NUL' if field.type == 'text' else ''}"
@@ -237,14 +236,14 @@ def _open_place(field: AnyField, message: Message, part: VariablePart) -> str:
     return ", ".join(filter(None, (place, what, counted, orders_text(field))))
 
 
-def orders_text(field: AnyField) -> str:
+def orders_text(field: NodePlace) -> str:
     """``big-endian``: byte order and bit order where they are its own or its message's; else empty."""
     bit = {"msb0": "bit 0 of a byte is the most significant", "lsb0": "bit 0 of a byte is the least significant"}
     told = f"{field.byte_order}-endian" if field.byte_order else "", bit.get(field.bit_order, "")
     return ", ".join(filter(None, told))
 
 
-def _meaning(field: AnyField) -> str:
+def _meaning(field: NodePlace) -> str:
     text = f", raw {field.raw_min} to {field.raw_max}" if field.type in ("uint", "int") else ""
     if field.type == "float":
         text = f", {field.bits}-bit float"
@@ -257,7 +256,7 @@ def _meaning(field: AnyField) -> str:
     return f"{text}; physical {how}" + (f", {range}{_unit(field, ' ')}" if range else _unit(field, ", in "))
 
 
-def span_text(field: AnyField) -> str:
+def span_text(field: NodePlace) -> str:
     """``-327.68 to 327.67``: the physical values of all raw values; empty where a curve does not tell."""
     if field.curve is not None:
         ends = span(field.curve, field)
@@ -266,7 +265,7 @@ def span_text(field: AnyField) -> str:
     return _span_text(scaled) if scaled is not None else ""
 
 
-def takes_text(field: AnyField, is_narrow: bool) -> str:
+def takes_text(field: NodePlace, is_narrow: bool) -> str:
     """``0 to 6553.5 m/s``, ``Mode, 0 to 15``: what a setter takes, or an encoder; also raw where more fits what holds it."""
     unit = _unit(field, " ")
     if field.type == "float":
@@ -283,21 +282,21 @@ def _span_text(scaled: Steps) -> str:
     return f"{exact_text(low)} to {exact_text(high)}"
 
 
-def physical_name(field: AnyField) -> str:
+def physical_name(field: NodePlace) -> str:
     """``Roll Angle in deg``: what the accessors of a physical value are about."""
     return f"{words(field.name)}{_unit(field) or ', as a physical value'}"
 
 
-def _unit(field: AnyField, before: str = " in ") -> str:
+def _unit(field: NodePlace, before: str = " in ") -> str:
     return before + words(field.unit.symbol) if field.unit else ""
 
 
-def text_comment(field: AnyField) -> str:
+def text_comment(field: NodePlace) -> str:
     """What the text of a field of characters is."""
     return f"{words(field.name)} as text: what stands before the first NUL, up to {field.bits // 8} ASCII characters."
 
 
-def physical_comment(field: AnyField) -> str:
+def physical_comment(field: NodePlace) -> str:
     """What the physical value is, its range and its limits."""
     limits = f" {_limits(field)}" if field.limits is not None else ""
     range = span_text(field)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from icdgen import naming
 from icdgen.describe.bounds import bounds
 from icdgen.describe.comments import sentence, words
-from icdgen.icd.places import AnyField
+from icdgen.icd.layout import NodePlace
 
 MOST_WORDS = 5  # of a meaning that makes the name of its constant
 
@@ -25,7 +25,7 @@ class Constant(NamedTuple):
     number: str = ""  # of a special value of a float, whose bits ``value`` are: `nan`, `inf`, `-inf`, or a decimal
 
 
-def constants(field: AnyField, name: str, physical_name: str, vocabulary: tuple[str, ...]) -> Iterator[Constant]:
+def constants(field: NodePlace, name: str, physical_name: str, vocabulary: tuple[str, ...]) -> Iterator[Constant]:
     """The constants of a field, whose own names are given."""
     title = words(field.name)
     if field.const is not None:

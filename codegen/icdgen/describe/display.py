@@ -16,8 +16,7 @@ from icdgen.describe.numbers import exact_text
 from icdgen.icd.curve import Curve
 from icdgen.icd.display import BINARY, DECIMALS, HEX, OF_BITS
 from icdgen.icd.formula import Scale
-from icdgen.icd.layout import FrameField
-from icdgen.icd.places import AnyField, AnyValue
+from icdgen.icd.layout import AnyScalar, FrameField, NodePlace
 
 _MOST_EXACT = 6  # decimals of a factor that are shown in full, however fine the resolution is
 _MOST_DECIMALS = 20
@@ -44,7 +43,7 @@ class Base(NamedTuple):
     width: int
 
 
-def base_of(field: AnyValue) -> Base | None:
+def base_of(field: AnyScalar) -> Base | None:
     """Return how the raw values of a field are written if the ICD displays them in hexadecimal or binary; else None."""
     kind = field.display.kind if field.display else ""
     if kind == HEX:
@@ -52,7 +51,7 @@ def base_of(field: AnyValue) -> Base | None:
     return Base("0b", 2, field.bits) if kind == BINARY else None
 
 
-def integer_text(field: AnyValue, raw: int) -> str:
+def integer_text(field: AnyScalar, raw: int) -> str:
     """Return the raw value of an integer field: ``18``, or ``0x12`` in its display format."""
     base = base_of(field)
     if base is None:
@@ -60,7 +59,7 @@ def integer_text(field: AnyValue, raw: int) -> str:
     return f"{base.prefix}{raw:0{base.width}{'X' if base.base == 16 else 'b'}}"
 
 
-def digits_of(field: AnyField | FrameField) -> Digits | None:
+def digits_of(field: FrameField | NodePlace) -> Digits | None:
     """How the physical values of a field are rounded; None where they are shown in full."""
     if field.display is not None and field.display.kind not in OF_BITS:
         places = field.display.places
@@ -80,7 +79,7 @@ def _of_scale(scale: Scale) -> Digits | None:
     return None if exact <= max(_MOST_EXACT, (rounded.decimals or 0) + 1) else rounded
 
 
-def number_text(field: AnyField | FrameField, value: float | Fraction) -> str:
+def number_text(field: FrameField | NodePlace, value: float | Fraction) -> str:
     """The physical value of a field: ``21.35``."""
     digits = digits_of(field)
     if digits is None:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from icdgen.icd.erratum import Erratum
+from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import Enum, Member, Message, Struct
-from icdgen.icd.places import AnyField
 
-Thing = Message | Struct | AnyField | Enum | Member
+Thing = Message | Struct | NodePlace | Enum | Member
 
 
 def errata_of_message(message: Message) -> list[Erratum]:
@@ -34,6 +34,6 @@ def first_owners(things: Iterable[Thing]) -> dict[str, Thing]:
     return found
 
 
-def owners_elsewhere(thing: AnyField | Member, by: Mapping[str, Thing]) -> dict[str, str]:
+def owners_elsewhere(thing: NodePlace | Member, by: Mapping[str, Thing]) -> dict[str, str]:
     """By the ids of those errata of a thing that another one tells of: the name of that one."""
     return {one.id: by[one.id].name for one in thing.errata if by.get(one.id, thing) is not thing}

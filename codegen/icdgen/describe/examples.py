@@ -63,7 +63,7 @@ def example(message: MessageDescription) -> Example:
     """The example of a message."""
     field = worth_showing(message)
     shown = _shown(field) if field else None
-    owners = [place for place in message.model.layout.scalars if not place.view]
+    owners = message.model.layout.raw_fields
     raw: dict[str, int | bytes] = {
         place.name: place.fresh for place in owners if place.const is not None or place.smallest_raw
     }

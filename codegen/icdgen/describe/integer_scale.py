@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from icdgen.describe.steps import Steps
 from icdgen.describe.storage import Storage
-from icdgen.icd.places import AnyField
+from icdgen.icd.layout import NodePlace
 from icdgen.icd.units import STANDARD
 
 # Units that already carry a prefix: (a thousandth, a millionth). Empty where that has no name.
@@ -78,7 +78,7 @@ def within(bits: int, *values: int) -> bool:
     return all(-most <= value <= most for value in values)
 
 
-def part_of_unit(field: AnyField, per: int) -> tuple[str, str]:
+def part_of_unit(field: NodePlace, per: int) -> tuple[str, str]:
     """The end of an accessor's name, and the unit in words: ``mdeg`` and ``thousandths of deg``, ``m`` and ``m`` of km."""
     prefix, part = ("milli", "thousandths") if per == 1000 else ("micro", "millionths")
     if field.unit is None:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from icdgen.icd import exact
 from icdgen.icd.formula import Scale
-from icdgen.icd.places import AnyValue
+from icdgen.icd.layout import AnyScalar
 
 EXACT_DOUBLE = 1 << 53
 """Up to this size every whole number is a double."""
@@ -65,7 +65,7 @@ class Steps(NamedTuple):
         return all(abs(n) <= most for n in (*products, *(n + self.c for n in products), self.c, self.q))
 
 
-def steps(field: AnyValue) -> Steps | None:
+def steps(field: AnyScalar) -> Steps | None:
     """The steps of a field's scale; None without one."""
     return None if field.scale is None else _steps(field.scale, field.raw_min, field.raw_max)
 

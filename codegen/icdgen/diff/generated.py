@@ -21,7 +21,6 @@ from icdgen.diff.pairs import (
     SideBySide,
     Thing,
 )
-from icdgen.icd.flat import message_with_lists
 from icdgen.icd.layout import Layout, LayoutNode, NodePlace, Scalar, VariableNode, size_of
 from icdgen.icd.layout_copies import with_attributes
 from icdgen.icd.lines import Line
@@ -199,8 +198,7 @@ def _texts(samples: list[FieldPair], side: int) -> list[list[tuple[str, str]]]:
     ]
     for vocabulary in dict.fromkeys(pair.owner.new_node.vocabulary for pair in samples):
         own = (f for f, pair in zip(fields, samples, strict=True) if pair.owner.new_node.vocabulary == vocabulary)
-        message = Message("Samples", TELEMETRY, 0, (), node="samples", layout=Layout("Samples", 0, tuple(own)))
-        message = message_with_lists(message, {})
+        message = Message("Samples", TELEMETRY, Layout("Samples", 0, tuple(own)), node="samples")
         icd = Icd((Node("samples", "", "", "little", "lsb0", (message,), (), vocabulary=vocabulary),))
         for language in LANGUAGES:
             for texts, identifier in marks.names(icd, language):
@@ -290,9 +288,7 @@ class _ReducedIcd:
     def message(self, message: Message, names: dict[str, str]) -> Message:
         pair = self.match.messages[id(message)]
         layout = self.layout(message, pair)
-        marked_message = message_with_lists(
-            self.marked(message, pair, layout=layout, node=names.get(message.node, message.node)), {}
-        )
+        marked_message: Message = self.marked(message, pair, layout=layout, node=names.get(message.node, message.node))
         self.messages[id(pair)] = marked_message
         return marked_message
 

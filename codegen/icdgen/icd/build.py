@@ -8,7 +8,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
-from icdgen.icd import annex, conditions, curve, division, flat, floats, formula, model, tails, wire_ids
+from icdgen.icd import annex, conditions, curve, division, floats, formula, model, tails, wire_ids
 from icdgen.icd.derived import Derivation
 from icdgen.icd.derived_values import derivation_of
 from icdgen.icd.display import display_of
@@ -45,14 +45,11 @@ class Scope:
     def __init__(self, included: Iterable[model.Node]) -> None:
         self.enums: dict[str, model.Enum] = {}
         self.structs: dict[str, model.Struct] = {}
-        self.layouts: dict[int, model.Struct] = {}
-        """The structs of all layouts that nodes of this scope refer to, by the identity of the layout."""
         self.units: dict[str, Unit] = dict(STANDARD)
         self.vocabulary: list[str] = []
         for node in included:
             self.enums.update((e.name, e) for e in node.enums)
             self.structs.update((one.name, one) for one in node.structs)
-            self.layouts.update((id(struct.layout), struct) for struct in node.structs)
             self.units.update((u.symbol, u) for u in node.units)
             self.vocabulary += node.vocabulary
 
@@ -147,22 +144,16 @@ class Builder:
         return tuple(made)
 
     def struct(self, item: Map) -> model.Struct:
-        struct = model.Struct(
-            length=item["length"],
-            fields=(),
+        return model.Struct(
             layout=Layout(item["name"], item["length"], self.fixed_nodes(item), owner=self.name),
             table=_printed(item).get("table"),
             node=self.name,
             **self.named(item),
         )
-        self.scope.layouts[id(struct.layout)] = struct = flat.struct_with_lists(struct, self.scope.layouts)
-        return struct
 
     def message(self, item: Map) -> model.Message:
-        message = model.Message(
+        return model.Message(
             kind=item["kind"],
-            length=item["length"],
-            fields=(),
             layout=self.message_layout(item),
             id=_id(item, "id"),
             set_id=_id(item, "set_id"),
@@ -180,7 +171,6 @@ class Builder:
             node=self.name,
             **self.named(item),
         )
-        return flat.message_with_lists(message, self.scope.layouts)
 
     def message_layout(self, item: Map) -> Layout:
         """Return the layout of a message."""

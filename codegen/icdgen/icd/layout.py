@@ -245,6 +245,11 @@ class Layout:
         """All scalars of the longest frame: each element of an array and each field of a struct by itself."""
         return tuple(scalar for place in self.places for scalar in place.scalars())
 
+    @cached_property
+    def raw_fields(self) -> tuple[NodePlace, ...]:
+        """Those of `scalars` whose raw value a message has to give: all but overlays and derived values."""
+        return tuple(scalar for scalar in self.scalars if not scalar.view)
+
     @property
     def longest(self) -> int:
         """Bytes of the longest frame."""
@@ -729,6 +734,16 @@ class NodePlace(OfScalar):
         return self.node.derivation if isinstance(self.node, Derived) else None
 
     @property
+    def role(self) -> Role:
+        """What it is in a frame."""
+        match self.node:
+            case Overlay():
+                return "overlay"
+            case Derived():
+                return "derived"
+        return "count" if self.is_count else "field"
+
+    @property
     def implied(self) -> bool:
         """Whether it has no bits, because the length of the frame tells its value."""
         return self.is_count
@@ -792,6 +807,10 @@ class NodePlace(OfScalar):
             else:
                 for place in element.inner():
                     yield from place.scalars()
+
+
+AnyScalar: TypeAlias = Scalar | FrameField | NodePlace
+"""What gives a raw value its meaning."""
 
 
 def places_of(layout: Layout, outer: Orders = UNDECLARED) -> tuple[NodePlace, ...]:

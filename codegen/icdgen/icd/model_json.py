@@ -16,7 +16,6 @@ from typing import Any
 from icdgen.icd import layout, model
 from icdgen.icd.curve import Curve, Piece
 from icdgen.icd.derived import Derivation, Operation
-from icdgen.icd.flat import with_flat_lists
 from icdgen.icd.formula import Scale
 from icdgen.icd.units import Unit
 
@@ -27,12 +26,6 @@ _CLASSES: dict[str, type[Any]] = {
     for kind in (*_TUPLES, *vars(layout).values(), *vars(model).values())
     if isinstance(kind, type) and (is_dataclass(kind) or kind in _TUPLES)
 }
-
-_COMPUTED: dict[type[Any], frozenset[str]] = {
-    model.Message: frozenset({"fields", "tail", "inner"}),
-    model.Struct: frozenset({"fields"}),
-}
-"""Attributes that are computed from the layout when a model is read, and not stored."""
 
 
 def text(icd: model.Icd, inputs: dict[Path, str]) -> bytes:
@@ -48,7 +41,7 @@ def read(data: bytes) -> tuple[model.Icd, dict[Path, str]] | None:
         found = {Path(path): str(seen) for path, seen in inputs}
     except (ValueError, TypeError, LookupError, ArithmeticError, RecursionError):
         return None
-    return (with_flat_lists(icd), found) if isinstance(icd, model.Icd) else None
+    return (icd, found) if isinstance(icd, model.Icd) else None
 
 
 class _Writer:
@@ -84,7 +77,7 @@ def _defaults(kind: Any) -> list[tuple[str, Any]]:
     return [
         (one.name, one.default if one.default_factory is MISSING else one.default_factory())
         for one in fields(kind)
-        if one.compare and one.name not in _COMPUTED.get(kind, ())
+        if one.compare
     ]
 
 
@@ -105,7 +98,7 @@ class _Reader:
             if type(value) is list:
                 made[key] = _tuples(value)
         kind = _CLASSES[name]
-        self.known.append(kind(**made, fields=()) if kind in _COMPUTED else kind(**made))
+        self.known.append(kind(**made))
         return self.known[-1]
 
 

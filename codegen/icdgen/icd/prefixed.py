@@ -6,16 +6,19 @@ from dataclasses import replace
 from typing import Any
 
 from icdgen.icd.enumeration import Enum
-from icdgen.icd.model import Field, Icd, Message, Node, Struct
-from icdgen.icd.paths import Step
+from icdgen.icd.layout import Array, Layout, Overlay, Scalar, StructRef
+from icdgen.icd.model import Icd, Message, Node, Struct
 
 # Where the parts of the model that name a node, or lead to such parts, stand.
 _PARTS: dict[type, tuple[str, ...]] = {
     Node: ("enums", "structs", "messages"),
-    Message: ("fields",),
-    Struct: ("fields",),
-    Field: ("enum", "struct", "path"),
-    Step: ("member",),
+    Message: ("layout",),
+    Struct: ("layout",),
+    Layout: ("fixed", "sequence"),
+    Array: ("item",),
+    StructRef: ("layout",),
+    Overlay: ("scalar",),
+    Scalar: ("enum",),
     Enum: (),
 }
 
@@ -37,6 +40,8 @@ def with_prefix(icd: Icd, prefix: str) -> Icd:
                 changes |= {"name": prefix + part.name, "includes": tuple(prefix + one for one in part.includes)}
             elif isinstance(part, Message | Struct | Enum):
                 changes["node"] = prefix + part.node
+            elif isinstance(part, Layout):
+                changes["owner"] = prefix + part.owner
             known[id(part)] = part, replace(part, **changes)
         return known[id(part)][1]
 

@@ -13,7 +13,7 @@ from icdgen_runtime._lazy import Messages
 from icdgen import codec
 from icdgen.describe import Description, FieldDescription, MessageDescription
 from icdgen.icd import model
-from icdgen.icd.places import AnyField
+from icdgen.icd.layout import NodePlace
 
 
 class ModelMessage(Message):
@@ -89,7 +89,7 @@ def _class(description: MessageDescription) -> type[ModelMessage]:
     return type("ModelMessage", (ModelMessage,), members)
 
 
-def _value(field: AnyField, raw: int | bytes) -> object:
+def _value(field: NodePlace, raw: int | bytes) -> object:
     """What an attribute holds: a float's number, and not its bits."""
     if isinstance(raw, bytes):
         return raw

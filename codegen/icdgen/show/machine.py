@@ -66,11 +66,7 @@ def _node(node: Node) -> _Object:
         notes=_errata(node, is_note=True),
     ) | {
         "includes": list(node.includes),
-        **(
-            {"structs": [_row(struct) | {"fields": list(map(_field, struct.layout.places))} for struct in node.structs]}
-            if node.structs
-            else {}
-        ),
+        **({"structs": list(map(_struct, node.structs))} if node.structs else {}),
         "messages": [_message(m) for m in node.messages],
         "enums": [_row(enum) | {"members": list(map(_row, enum.members))} for enum in node.enums],
         "loggable": [_row(row) for row in node.loggable],
@@ -81,7 +77,7 @@ def _message(message: Message) -> _Object:
     parts = list(map(_variable_part, message.layout.parts))
     places = [place for place in message.layout.places if not place.is_count]
     return _present(
-        **_attributes(message),
+        **{"name": message.name, "kind": message.kind, "length": message.length} | _attributes(message),
         acknowledge=None if message.acknowledge else "reset" if message.expects_reset else False,
         aliases=list(message.aliases),
         contains=[{"message": part.message, "offset": part.at} for part in message.contains],
@@ -134,6 +130,11 @@ def _field(field: NodePlace) -> _Object:
         when={condition.field: list(condition.values) for condition in field.when},
         **_ids(field.errata),
     )
+
+
+def _struct(struct: Struct) -> _Object:
+    fields = list(map(_field, struct.layout.places))
+    return {"name": struct.name, "length": struct.length} | _row(struct) | {"fields": fields}
 
 
 def _derived(field: NodePlace) -> _Object:

@@ -7,9 +7,8 @@ from fractions import Fraction
 
 from icdgen import codec, naming
 from icdgen.describe.bounds import bounds, range_text
-from icdgen.icd.layout import FrameField
+from icdgen.icd.layout import AnyScalar, FrameField
 from icdgen.icd.model import Enum, Member
-from icdgen.icd.places import AnyValue
 from icdgen.values import numbers
 from icdgen.values.errors import BadHex, BadValue
 from icdgen.values.find import by_name
@@ -18,12 +17,12 @@ from icdgen.values.hexadecimal import parse_hex
 _TRUTH = {"true": 1, "yes": 1, "on": 1, "1": 1, "false": 0, "no": 0, "off": 0, "0": 0}
 
 
-def members(field: AnyValue) -> str:
+def members(field: AnyScalar) -> str:
     """The members of the field's enumeration, for the end of a message."""
     return "; members: " + ", ".join(f"{m.values} {m.name}" for m in field.enum.members) if field.enum else ""
 
 
-def out_of_range(field: AnyValue, text: str) -> str:
+def out_of_range(field: AnyScalar, text: str) -> str:
     """The message for a physical value beyond the type or the limits."""
     return f"takes {range_text(field) or f'{field.raw_min} to {field.raw_max}'}, not {text}"
 
@@ -152,7 +151,7 @@ def _exact(field: FrameField, text: str) -> Fraction:
     return exact
 
 
-def without_unit(field: AnyValue, text: str) -> str:
+def without_unit(field: AnyScalar, text: str) -> str:
     """``12.5 deg`` or ``12.5deg`` without the unit."""
     symbol = field.unit_symbol
     if not symbol or not text.endswith(symbol):

@@ -12,9 +12,8 @@ from icdgen.describe.bounds import bounds
 from icdgen.describe.display import digits_of, integer_text, number_text
 from icdgen.describe.numbers import bit_range, exact_text, value_text
 from icdgen.icd import floats
-from icdgen.icd.layout import FrameField
+from icdgen.icd.layout import AnyScalar, FrameField
 from icdgen.icd.model import Icd, Message, Node
-from icdgen.icd.places import AnyValue
 from icdgen.protocol import facts
 from icdgen.protocol.envelope import Stream
 
@@ -147,7 +146,7 @@ def frame(icd: Icd, node: Node, message: Message, data: bytes, notes: dict[str, 
     return Frame(node, message, data, tuple(rows), tuple(_reserved(owner, message, data)), form)
 
 
-def remarks(field: AnyValue, raw: int | bytes) -> list[str]:
+def remarks(field: AnyScalar, raw: int | bytes) -> list[str]:
     """What a reader should know about a value: its special meaning, or that the ICD does not allow it."""
     if isinstance(raw, bytes):
         return []
@@ -155,12 +154,12 @@ def remarks(field: AnyValue, raw: int | bytes) -> list[str]:
     return violations(field, raw) if special is None else [special.meaning]
 
 
-def violations(field: AnyValue, raw: int) -> list[str]:
+def violations(field: AnyScalar, raw: int) -> list[str]:
     """In which way the raw value is not one that the ICD allows: constants, members, limits."""
     return [*unlisted(field, raw), *outside(field, raw)]
 
 
-def unlisted(field: AnyValue, raw: int) -> list[str]:
+def unlisted(field: AnyScalar, raw: int) -> list[str]:
     """In which way the raw value is not one of those that a constant or an enumeration lists."""
     reasons = []
     if field.const is not None and raw != field.const:
@@ -170,7 +169,7 @@ def unlisted(field: AnyValue, raw: int) -> list[str]:
     return reasons
 
 
-def outside(field: AnyValue, raw: int) -> list[str]:
+def outside(field: AnyScalar, raw: int) -> list[str]:
     """Which limits the raw value does not keep."""
     if field.limits is None:
         return []

@@ -10,9 +10,8 @@ from functools import lru_cache
 from itertools import pairwise
 
 from icdgen import codec
-from icdgen.icd.layout import FrameField, VariablePart
+from icdgen.icd.layout import AnyScalar, FrameField, VariablePart
 from icdgen.icd.model import Message, Node
-from icdgen.icd.places import AnyValue
 
 RANDOM_FRAMES = 4
 
@@ -142,7 +141,7 @@ def random_frame(message: Message, seed: str) -> bytes:
     return hashlib.shake_128(f"{message.node}/{message.name}/{seed}".encode()).digest(message.length)
 
 
-def values(field: AnyValue) -> list[int | bytes]:
+def values(field: AnyScalar) -> list[int | bytes]:
     """The raw values of a field that are worth a frame each, without repetition."""
     if field.is_bytes:
         size = field.bits // 8
@@ -159,7 +158,7 @@ def values(field: AnyValue) -> list[int | bytes]:
     return list(dict.fromkeys(v for v in _numbers(field) if field.raw_min <= v <= field.raw_max))
 
 
-def _numbers(field: AnyValue) -> Iterator[int]:
+def _numbers(field: AnyScalar) -> Iterator[int]:
     low, high = field.raw_min, field.raw_max
     yield from (0, low, high)
     if field.is_signed:
@@ -180,13 +179,13 @@ def _numbers(field: AnyValue) -> Iterator[int]:
     yield from (number for near in _near(field) for number in (math.floor(near), math.ceil(near)))
 
 
-def _near_bits(field: AnyValue) -> Iterator[int]:
+def _near_bits(field: AnyScalar) -> Iterator[int]:
     for number in _near(field):
         with suppress(codec.CodecError):
             yield codec.float_bits(field, number)
 
 
-def _near(field: AnyValue) -> Iterator[float]:
+def _near(field: AnyScalar) -> Iterator[float]:
     """The points of a table, and what lies between them and beyond."""
     points = [raw for raw, _ in field.curve.points] if field.curve is not None else []
     if points:

@@ -11,8 +11,7 @@ from functools import lru_cache
 from icdgen import codec
 from icdgen.icd.curve import Curve
 from icdgen.icd.formula import Scale
-from icdgen.icd.layout import Scalar
-from icdgen.icd.places import AnyValue
+from icdgen.icd.layout import AnyScalar, Scalar
 
 # Refused by every field but floats: NaN (quiet, signalling, negative), the infinities, and numbers beyond any raw value.
 NEVER = (
@@ -35,7 +34,7 @@ def float_of(bits: str) -> float:
 Settings = list[tuple[str, "int | bytes | None"]]
 
 
-def settings(field: AnyValue) -> Settings:
+def settings(field: AnyScalar) -> Settings:
     """Doubles (as their bits) or texts, and the raw value that setting each must give; None where it must be refused."""
     if field.type == "text":
         return [(text, _raw(field, text)) for text in _texts(field.bits // 8)]
@@ -63,7 +62,7 @@ def _texts(size: int) -> Iterator[str]:
     yield from ("\x80", "\u00e9", "\u4f4d", "\U0001f6f0")
 
 
-def _raw(field: AnyValue, given: str | float) -> int | bytes | None:
+def _raw(field: AnyScalar, given: str | float) -> int | bytes | None:
     try:
         return codec.raw_from_text(field, given) if isinstance(given, str) else codec.raw_from_physical(field, given)
     except codec.CodecError:

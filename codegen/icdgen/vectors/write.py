@@ -8,8 +8,7 @@ from fractions import Fraction
 from functools import lru_cache
 
 from icdgen import __version__
-from icdgen.icd.layout import FrameField, VariablePart
-from icdgen.icd.places import AnyValue
+from icdgen.icd.layout import AnyScalar, FrameField, VariablePart
 from icdgen.vectors.make import FORMAT, MessageVectors, NodeVectors, Row
 from icdgen.vectors.settings import NEVER
 from icdgen.vectors.shared import SharedRow
@@ -57,7 +56,7 @@ def _digits(denominator: int) -> int | None:
     return None
 
 
-def raw_json(field: AnyValue, value: int | bytes | None) -> int | str | None:
+def raw_json(field: AnyScalar, value: int | bytes | None) -> int | str | None:
     """A raw value as it stands in the vectors and in the testee protocol (there, of a bool, true or false)."""
     if isinstance(value, bytes):
         return value.hex()

@@ -45,7 +45,7 @@ def _message(message: Message) -> dict[str, Any]:
                 "view": field.view,
                 "conditional": bool(field.when),
             }
-            for field in (*message.owners, *message.views)
+            for field in (*message.layout.raw_fields, *message.views)
         ],
     }
 

@@ -6,7 +6,6 @@ import random
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from icdgen.icd.flat import message_with_lists
 from icdgen.icd.layout import scalar_of, walk
 from icdgen.icd.layout_copies import with_enum
 from icdgen.icd.model import Enum, Icd, Message, Node
@@ -66,7 +65,7 @@ def piece(icd: Icd, node: Node, messages: tuple[Message, ...], name: str) -> Icd
             if scalar is not None and scalar.enum is not None:
                 enum = made.setdefault(id(scalar.enum), replace(scalar.enum, node=name))
                 layout = with_enum(layout, scalar.enum, enum)
-        return message_with_lists(replace(message, node=name, contains=(), layout=layout), {})
+        return replace(message, node=name, contains=(), layout=layout)
 
     own_messages = tuple(map(own, messages))
     cut = replace(

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from functools import wraps
 
 from icdgen.icd import layout_copies
-from icdgen.icd.flat import message_with_lists
 from icdgen.icd.layout import Layout, Scalar
 from icdgen.icd.model import Enum, Icd, Message, Node
 from icdgen.naming import words
@@ -61,7 +60,7 @@ def with_message(icd: Icd, node: Node, old: Message, *new: Message) -> Icd:
 
 
 def with_layout(icd: Icd, node: Node, message: Message, layout: Layout) -> Icd:
-    return with_message(icd, node, message, message_with_lists(replace(message, layout=layout), {}))
+    return with_message(icd, node, message, replace(message, layout=layout))
 
 
 def with_fields(icd: Icd, node: Node, message: Message, fields: list[Scalar], **more: object) -> Icd:
@@ -77,7 +76,7 @@ def with_field(icd: Icd, node: Node, message: Message, old: Scalar, new: Scalar)
 def with_enum(icd: Icd, old: Enum, new: Enum) -> Icd:
     def message(one: Message) -> Message:
         layout = layout_copies.with_enum(one.layout, old, new)
-        return one if layout is one.layout else message_with_lists(replace(one, layout=layout), {})
+        return one if layout is one.layout else replace(one, layout=layout)
 
     return Icd(
         tuple(

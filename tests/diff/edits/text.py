@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 from icdgen.icd.erratum import Erratum
-from icdgen.icd.flat import message_with_lists
 from icdgen.naming import words
 from tests.diff.edits.edit import (
     done,
@@ -84,7 +83,7 @@ def shuffle(icd, rng):
     """Order is no change at all."""
     node = rng.choice(icd.nodes)
     layouts = [replace(m.layout, fixed=tuple(rng.sample(m.layout.fixed, len(m.layout.fixed)))) for m in node.messages]
-    messages = [message_with_lists(replace(m, layout=one), {}) for m, one in zip(node.messages, layouts, strict=True)]
+    messages = [replace(m, layout=one) for m, one in zip(node.messages, layouts, strict=True)]
     enums = rng.sample(node.enums, len(node.enums))
     rng.shuffle(messages)
     return done(with_node(icd, node, replace(node, messages=tuple(messages), enums=tuple(enums))), "")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from icdgen.icd.flat import message_with_lists
 from icdgen.icd.layout import Layout, Scalar, overlay_of
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, Message
 from icdgen.layout import gaps
@@ -198,7 +197,7 @@ def add_message(icd, rng):
         return None
     layout = Layout("Added", 1, (Scalar(name="Level", bits=8, type="uint"),))
     kind = rng.choice([TELECOMMAND, "telemetry"])
-    new = message_with_lists(Message("Added", kind, 1, (), number, node=one.name, layout=layout), {})
+    new = Message("Added", kind, layout, number, node=one.name)
     return done(with_node(icd, one, replace(one, messages=(*one.messages, new))), "Added", "DIF102", "DIF311")
 
 

@@ -15,7 +15,6 @@ from icdgen.icd import floats
 from icdgen.icd.build import calibration, special
 from icdgen.icd.curve import OUTSIDE, Curve, doubles, table
 from icdgen.icd.derived import parse
-from icdgen.icd.flat import message_with_lists
 from icdgen.icd.formula import FormulaError
 from icdgen.icd.layout import (
     Array,
@@ -211,11 +210,6 @@ def _values(node: LayoutNode, scalar: Scalar) -> Iterator[tuple[Change, LayoutNo
             yield change, with_attributes(node, limits=replace(limits, **{key: value + step}))
 
 
-def with_layout(message: Message, layout: Layout) -> Message:
-    """Return a message with another layout."""
-    return message_with_lists(replace(message, layout=layout), {})
-
-
 def of_message(message: Message, node: Node) -> Iterator[tuple[Change, Message]]:
     """The changes of what a message says of itself."""
     source = message.source
@@ -227,7 +221,7 @@ def of_message(message: Message, node: Node) -> Iterator[tuple[Change, Message]]
             if value + step >= 0:
                 if key == "length":
                     layout = replace(message.layout, length=value + step)
-                    yield _step("length", source, key, value, step), with_layout(message, layout)
+                    yield _step("length", source, key, value, step), replace(message, layout=layout)
                 else:
                     yield _step("id", source, key, value, step), _with(message, key, value + step)
     for key, name in (("byte_order", "byte"), ("bit_order", "bit")):
@@ -236,7 +230,7 @@ def of_message(message: Message, node: Node) -> Iterator[tuple[Change, Message]]
             orders = replace(message.layout.orders, **{name: now})
             layout = replace(message.layout, orders=orders)
             if _places(message.layout, node.orders) != _places(layout, node.orders):
-                yield Change(key.replace("_", " "), source, key, source[key], now), with_layout(message, layout)
+                yield Change(key.replace("_", " "), source, key, source[key], now), replace(message, layout=layout)
 
 
 def of_node(node: Node) -> Iterator[tuple[Change, Node]]:

@@ -14,7 +14,6 @@ from operator import or_
 from typing import Any, NamedTuple
 
 from icdgen import codec
-from icdgen.backends.assurance.changes import with_layout
 from icdgen.icd.layout import FixedNode, Layout, NodePlace, overlay_of
 from icdgen.icd.layout_copies import with_enum
 from icdgen.icd.model import Enum, Message, Node
@@ -73,7 +72,7 @@ class MessageWatch:
     def enum(self, old: Enum, new: Enum) -> list[int]:
         """Return the lines that notice that an enumeration is another."""
         layout = with_enum(self.message.layout, old, new)
-        return [] if layout is self.message.layout else self.layout(with_layout(self.message, layout))
+        return [] if layout is self.message.layout else self.layout(replace(self.message, layout=layout))
 
     def places(self, now: Message, node: Node) -> list[int]:
         """Return the lines that notice that bits lie elsewhere, by the layout of the message or the orders of its node."""
@@ -89,9 +88,7 @@ class MessageWatch:
             )
             fixed.append(overlay_of(scalar) if field.view else scalar)
         layout = self.message.layout
-        return with_layout(
-            self.message, Layout(layout.name, layout.longest, tuple(fixed), may_end_early=layout.may_end_early)
-        )
+        return replace(self.message, layout=Layout(layout.name, layout.longest, tuple(fixed), may_end_early=layout.may_end_early))
 
     def id(self, key: str) -> list[int]:
         """Lines that notice another id: frames are asked for by the id, by the set id where there are two."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from icdgen.backends.assurance import changes
 from icdgen.backends.assurance.changes import Change
@@ -117,7 +117,7 @@ class Trace:
         """The changes of a line of a message."""
         watch = self._watches[node.name, message.name]
         for change, new in changes.of_line(line, message.layout, node.orders):
-            now = changes.with_layout(message, with_node(message.layout, line, new))
+            now = replace(message, layout=with_node(message.layout, line, new))
             shared = self._shared.of_message(message, now)
             yield Traced(change, together([_noticed(node, watch.layout(now)), shared]))
 
@@ -129,7 +129,7 @@ class Trace:
             for watch in self._watches.values():
                 layout = with_struct_layout(watch.message.layout, struct.layout, changed)
                 if layout is not watch.message.layout:
-                    now = changes.with_layout(watch.message, layout)
+                    now = replace(watch.message, layout=layout)
                     results += (_noticed(watch.node, watch.layout(now)), self._shared.of_message(watch.message, now))
             yield Traced(change, together(results))
 

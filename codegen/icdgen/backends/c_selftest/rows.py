@@ -197,11 +197,11 @@ def _plain(message: MessageDescription, vectors: MessageVectors) -> MessageVecto
     scaled = [one.model for one in message.all_fields if one.model.has_formula]
     rows = []
     for row in vectors.rows:
-        raw = {field.name: (absent | row.raw)[field.name] for field in message.model.fields}
+        raw = {field.name: (absent | row.raw)[field.name] for field in message.model.layout.scalars}
         doubles = {one.name: bits_of(codec.physical_double(one, _number(raw[one.name])) or 0.0) for one in scaled}
         rows.append(replace(row, frame=row.encoded, raw=raw, doubles=doubles))
     always = {name: given for name, given in vectors.unfit.items() if name not in absent}
-    fresh = {field.name: field.fresh for field in message.model.owners}
+    fresh = {field.name: field.fresh for field in message.model.layout.raw_fields}
     return replace(vectors, rows=tuple(rows), default=vectors.default | fresh, unfit=always)
 
 

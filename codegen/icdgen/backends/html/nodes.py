@@ -127,7 +127,9 @@ def _row(relations: Relations, node: Node, message: Message) -> dict[str, object
         "anchors": [
             f"{'telemetry' if way == 'get' or message.kind == TELEMETRY else 'telecommand'}-{id}" for way, id in ids
         ],
-        "bytes": message.length if len(message.lengths) == 1 else f"{message.least}\u2013{message.length}",
+        "bytes": (
+            message.length if len(message.layout.lengths) == 1 else f"{message.layout.shortest}\u2013{message.length}"
+        ),
         "mask": mask,
         "of": "" if own else relations.icd.node(message.node).title,
         "errata": len(errata_of_message(message)),

@@ -14,8 +14,8 @@ from icdgen.describe.bounds import bounds
 from icdgen.describe.description import TailDescription
 from icdgen.describe.numbers import exact_text, point_text
 from icdgen.icd.curve import CLAMP, EXTRAPOLATE
+from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import Member
-from icdgen.icd.places import AnyField
 
 _LONG = range(-(1 << 63), 1 << 63)  # what XTCE has as a value of an integer
 _KEYS = {"min": "minInclusive", "above": "minExclusive", "max": "maxInclusive", "below": "maxExclusive"}
@@ -95,7 +95,7 @@ class Types:
         return self.name(element, _usual_name(field, element) or wanted)
 
 
-def type_of(field: AnyField, is_little: bool = False) -> Type:
+def type_of(field: NodePlace, is_little: bool = False) -> Type:
     """The type of a field, of an array that of an element."""
     order = "" if field.is_bytes else "leastSignificantByteFirst" if is_little else most_first(field.bits)
     encoding = "" if field.type == "float" or field.is_bytes else "twosComplement" if field.signed else "unsigned"
@@ -124,7 +124,7 @@ def _usual_name(field: FieldDescription, of: Type) -> str:
     return names.get(of.kind, f"{field.model.type}{of.bits}{little}")
 
 
-def _calibration(field: AnyField) -> dict[str, Any]:
+def _calibration(field: NodePlace) -> dict[str, Any]:
     """The polynomial, or the table, of a formula."""
     if field.scale is not None:
         return {"terms": _terms([field.scale.offset, field.scale.factor])}
@@ -150,7 +150,7 @@ def _point(point: tuple[float, float]) -> tuple[str, str]:
     return raw, value
 
 
-def _limits(field: AnyField) -> tuple[tuple[str, str], ...]:
+def _limits(field: NodePlace) -> tuple[tuple[str, str], ...]:
     """Attributes of the valid range; of integers XTCE has inclusive ones only."""
     said = {one.key: one.value for one in bounds(field.limits)}
     if field.type == "float" or field.has_formula:
@@ -161,6 +161,6 @@ def _limits(field: AnyField) -> tuple[tuple[str, str], ...]:
     return tuple((key, str(value)) for key, value in found if value in _LONG)
 
 
-def is_said(field: AnyField) -> bool:
+def is_said(field: NodePlace) -> bool:
     """Whether the calibration says all that the formula does."""
     return field.type != "float" or field.curve is None or field.curve.outside != CLAMP

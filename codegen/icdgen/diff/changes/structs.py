@@ -15,7 +15,6 @@ from icdgen.diff.generated import LANGUAGES, Name, SourceMarks
 from icdgen.diff.pairs import MessagePair, NodePair
 from icdgen.diff.rule import Found, rule
 from icdgen.diff.wording import bits
-from icdgen.icd.flat import with_flat_lists
 from icdgen.icd.layout import Layout
 from icdgen.icd.layout_copies import with_attributes, with_node, with_struct_layout
 from icdgen.icd.lines import Line
@@ -123,7 +122,7 @@ def _declared(icd: Icd, node: Node) -> dict[str, _Declared]:
         layouts.append((struct.layout, layout))
         structs.append(replace(struct, layout=layout, source=marks.of((struct.name, -1))))
     alone = replace(node, structs=tuple(structs), messages=())
-    around = with_flat_lists(Icd((*(replace(included, messages=()) for included in icd.included(node)), alone)))
+    around = Icd((*(replace(included, messages=()) for included in icd.included(node)), alone))
     declared = {struct.name: _Declared({}, {}) for struct in alone.structs}
     for language in LANGUAGES:
         for (name, at), identifier in marks.names(around, language):

@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.diff.inputs.side import Side
 from icdgen.errors import UserError, unreadable
-from icdgen.icd import annex, curve, flat, model, schema, source
+from icdgen.icd import annex, curve, model, schema, source
 from icdgen.icd.build import derived_node
 from icdgen.icd.derived_values import derivation_of
 from icdgen.icd.display import display_of
@@ -135,8 +135,6 @@ class _Reader:
         self.before = before
         self.enums: dict[str, model.Enum] = {}
         self.structs: dict[str, model.Struct] = {}
-        self.layouts: dict[int, model.Struct] = {}
-        """The structs of all layouts that nodes refer to, by the identity of the layout."""
         self.units: dict[str, Unit] = dict(STANDARD)
         self.errata: dict[str, model.Erratum] = {}
 
@@ -145,7 +143,6 @@ class _Reader:
         for node in model.closure(self.before, item["includes"]):
             self.enums.update((enum.name, enum) for enum in node.enums)
             self.structs.update((one.name, one) for one in node.structs)
-            self.layouts.update((id(struct.layout), struct) for struct in node.structs)
             self.units.update((unit.symbol, unit) for unit in node.units)
         units = tuple(Unit(u["symbol"], u["identifier"], u["quantity"], u.get("summary", "")) for u in get("units", ()))
         self.units.update((unit.symbol, unit) for unit in units)
@@ -210,22 +207,20 @@ class _Reader:
         return layout
 
     def message(self, item: Map, node: str) -> model.Message:
-        message = self.row(
+        made: model.Message = self.row(
             model.Message,
             item,
-            fields=(),
             layout=self.layout(item, node),
             acknowledge=item.get("acknowledge", True) is True,
             expects_reset=item.get("acknowledge") == "reset",
             contains=tuple(model.Part(part["message"], part["offset"]) for part in item.get("contains", ())),
             node=node,
         )
-        return flat.message_with_lists(message, self.layouts)
+        return made
 
     def struct(self, item: Map, node: str) -> model.Struct:
-        struct = self.row(model.Struct, item, fields=(), layout=self.layout(item, node), node=node)
-        self.layouts[id(struct.layout)] = struct = flat.struct_with_lists(struct, self.layouts)
-        return struct
+        made: model.Struct = self.row(model.Struct, item, layout=self.layout(item, node), node=node)
+        return made
 
     def layout_node(self, item: Map, part: Map | None) -> FixedNode:
         """Return the node of a field; `part` is what is shown of its size if that varies."""

@@ -8,7 +8,6 @@ from dataclasses import replace
 from operator import attrgetter, is_
 from typing import NamedTuple
 
-from icdgen.icd.flat import message_with_lists
 from icdgen.icd.identifiers import Identifier
 from icdgen.icd.layout import LayoutNode, scalar_of, struct_layout_of
 from icdgen.icd.layout_copies import without_nodes
@@ -52,7 +51,6 @@ def _sound_icd(ctx: Context) -> Icd:
     errors = ((code, fault) for code, fault in ctx.raised if REGISTERED[code].severity == "error")
     bad = {id(fault.owner) for code, fault in errors if not ctx.accepts(code, fault)}
     twins = {id(fault.owner) for code, fault in ctx.raised if code in TWINS}
-    structs = {id(struct.layout): struct for struct, _ in ctx.structs}
     bad_layouts: set[int] = set()  # of structs, by identity
 
     def is_bad(node: LayoutNode) -> bool:
@@ -66,7 +64,7 @@ def _sound_icd(ctx: Context) -> Icd:
 
     def sound_message(message: Message) -> Message:
         layout = without_nodes(message.layout, is_bad)
-        return message if layout is message.layout else message_with_lists(replace(message, layout=layout), structs)
+        return message if layout is message.layout else replace(message, layout=layout)
 
     def sound_node(node: Node) -> Node:
         messages = tuple(sound_message(message) for message in node.messages if id(message.source) not in twins)
