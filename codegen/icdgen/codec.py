@@ -18,18 +18,10 @@ from functools import lru_cache
 from typing import TypeAlias
 
 from icdgen.icd.curve import Curve
-from icdgen.icd.layout import (
-    AnyScalar,
-    Derived,
-    FrameField,
-    Layout,
-    Overlay,
-    Scalar,
-    Sizes,
-    Special,
-    VariablePart,
-)
+from icdgen.icd.frames import FrameField, frame_fields
+from icdgen.icd.layout import Derived, Layout, Overlay, Scalar, Sizes, Special, VariablePart
 from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.places import AnyScalar
 
 Raw: TypeAlias = "int | bytes"
 
@@ -53,7 +45,7 @@ def decode(node: Node, message: Message, frame: bytes) -> dict[str, Raw]:
         value = raw.get(part.name)
         if isinstance(value, bytes):
             raw[part.name] = value.ljust(part.most, b"\0")
-    for field in message.layout.frame(node.orders):
+    for field in frame_fields(message.layout, node.orders):
         if field.name not in raw and field.has_bits and not field.conditions:
             raw[field.name] = bytes(field.bits // 8) if field.is_bytes else 0
     return raw
@@ -65,7 +57,7 @@ def decode_frame(node: Node, message: Message, frame: bytes) -> dict[str, Raw]:
     Array elements beyond its number of elements and optional fields that are absent have no value.
     """
     sizes = sizes_of_frame(node, message, frame)
-    fields = message.layout.frame(node.orders, sizes)
+    fields = frame_fields(message.layout, node.orders, sizes)
     bits = int.from_bytes(frame, "little")  # a frame that ends early lacks zeros
     raw: dict[str, Raw] = {}
     optional = []
@@ -84,7 +76,9 @@ def decode_frame(node: Node, message: Message, frame: bytes) -> dict[str, Raw]:
 
 def fields_of_frame(node: Node, message: Message, raw: Mapping[str, Raw]) -> list[FrameField]:
     """List the scalars with values in `raw`, where they stand in the frame of these values. Raises `CodecError`."""
-    return [field for field in message.layout.frame(node.orders, sizes_of_values(message, raw)) if field.name in raw]
+    return [
+        field for field in frame_fields(message.layout, node.orders, sizes_of_values(message, raw)) if field.name in raw
+    ]
 
 
 def derived(message: Message, raw: Mapping[str, Raw]) -> dict[str, Raw]:
@@ -132,7 +126,7 @@ def _counters(node: Node, layout: Layout, frame: bytes) -> dict[str, int]:
     if not names:
         return {}
     bits = int.from_bytes(frame, "little")
-    fields = layout.frame(node.orders, {part.name: 0 for part in layout.parts})  # the fixed part
+    fields = frame_fields(layout, node.orders, {part.name: 0 for part in layout.parts})  # the fixed part
     return {field.name: _number(_read(field, bits)) for field in fields if field.name in names}
 
 
@@ -212,7 +206,7 @@ def encode(node: Node, message: Message, raw: Mapping[str, Raw]) -> bytes:
     Values of overlays, of derived values and of what is not in the frame are ignored. Raises `CodecError` for a missing,
     unknown or unfit value.
     """
-    fields = message.layout.frame(node.orders)
+    fields = frame_fields(message.layout, node.orders)
     names = {field.name for field in fields}
     for name in raw:
         if name not in names:
@@ -225,7 +219,7 @@ def encode(node: Node, message: Message, raw: Mapping[str, Raw]) -> bytes:
 
 def initial_values(node: Node, message: Message) -> dict[str, Raw]:
     """Return the raw values of a new message, by name, without overlays, derived values and what is absent."""
-    fields = [field for field in message.layout.frame(node.orders) if field.is_raw]
+    fields = [field for field in frame_fields(message.layout, node.orders) if field.is_raw]
     raw = {field.name: initial_value(message, field) for field in fields}
     return {
         field.name: raw[field.name] for field in fields if all(raw.get(c.field) in c.values for c in field.conditions)
@@ -246,7 +240,7 @@ def new(node: Node, message: Message) -> dict[str, Raw]:
     """
     values = initial_values(node, message)
     inner = {part.name for part in message.layout.parts[:-1]}
-    fields = message.layout.frame(node.orders)
+    fields = frame_fields(message.layout, node.orders)
     elements = {
         f.name: values[f.name] for f in fields if f.steps[0].element is not None and f.steps[0].node.name in inner
     }
@@ -260,7 +254,7 @@ def frame_with(node: Node, message: Message, raw: Mapping[str, Raw]) -> bytes:
     """
     layout, bits = message.layout, 0
     sizes = sizes_of_values(message, raw)
-    for field in layout.frame(node.orders, sizes):
+    for field in frame_fields(layout, node.orders, sizes):
         if field.is_raw and field.name in raw and is_present(field, raw):
             bits |= _written(field, _shortened(field, raw[field.name]))
     length = layout.length + sum(sizes[part.name] * part.step for part in layout.parts)
@@ -439,7 +433,7 @@ _Place: TypeAlias = tuple[tuple[tuple[int, int, int], ...], int]  # runs of bits
 def _constants(node: Node, message: Message) -> dict[_Place, FrameField]:
     """Return the constants that every frame of a message has, by their place and value."""
     constants: dict[_Place, FrameField] = {}
-    for field in message.layout.frame(node.orders):
+    for field in frame_fields(message.layout, node.orders):
         if field.has_bits and field.const is not None and not field.conditions and field.at < 8 * message.layout.length:
             constants[_runs(field.at, field.bits, field.byte_order, field.bit_order), field.const] = field
     return constants

@@ -9,8 +9,9 @@ import re
 from functools import lru_cache
 from typing import NamedTuple
 
-from icdgen.icd.layout import FrameField, NodePlace
+from icdgen.icd.frames import FrameField, frame_fields
 from icdgen.icd.model import Message, Node, Struct
+from icdgen.icd.places import NodePlace
 from icdgen.icd.variants import Variant
 
 
@@ -97,7 +98,7 @@ class Gap(NamedTuple):
 def gaps(message: Message | Struct, node: Node) -> tuple[Gap, ...]:
     """Bits of the frame that no field covers, in order."""
     free = bytearray(b"\1" * (message.length * 8))  # a byte for each bit, in the order in which the node counts them
-    for field in message.layout.frame(node.orders):
+    for field in frame_fields(message.layout, node.orders):
         if not field.has_bits:
             continue
         if field.bit_order == node.bit_order:

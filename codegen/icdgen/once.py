@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from functools import wraps
+from typing import TYPE_CHECKING, Any, TypeVar
+
+Owner = TypeVar("Owner")
+Result = TypeVar("Result")
 
 if TYPE_CHECKING or sys.version_info >= (3, 12):
     from functools import cached_property as cached_property
@@ -23,3 +28,18 @@ else:
                 return self
             value = one.__dict__[self.name] = self.function(one)
             return value
+
+
+def kept_by_owner(function: Callable[[Owner], Result]) -> Callable[[Owner], Result]:
+    """A function of one object, in whose ``__dict__`` the result is kept."""
+    name = f"_{function.__name__}"
+
+    @wraps(function)
+    def look_up(owner: Owner) -> Result:
+        values = owner.__dict__
+        if name not in values:
+            values[name] = function(owner)
+        result: Result = values[name]
+        return result
+
+    return look_up

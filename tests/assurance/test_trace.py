@@ -16,6 +16,7 @@ from hypothesis import given, settings
 from icdgen import backends
 from icdgen.icd.layout import Layout
 from icdgen.icd.model import Icd
+from icdgen.icd.places import places_in
 from icdgen.loading import load
 from icdgen.render import Renderer
 from icdgen.vectors.make import make
@@ -80,7 +81,7 @@ class Pack:
 
 def structs(layout: Layout) -> Iterator[Layout]:
     """The layouts of the structs that stand in a message or a struct, and of those in them."""
-    for place in layout.places:
+    for place in places_in(layout):
         if place.struct is not None:
             yield place.struct
             yield from structs(place.struct)

@@ -15,8 +15,8 @@ from pathlib import Path
 import pytest
 
 from icdgen import codec
-from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.places import NodePlace
 from tests.c import harness
 
 RANDOM = os.environ.get("ICDGEN_RANDOM_FRAMES", "10000")

@@ -23,8 +23,8 @@ from icdgen.backends.c import physical
 from icdgen.backends.c.names import stem
 from icdgen.backends.c.types import type_of
 from icdgen.describe import FieldDescription, describe
-from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import Icd
+from icdgen.icd.places import NodePlace
 from tests.c import harness, odd
 
 REFUSED = 0x5245465553454421

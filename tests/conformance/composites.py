@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from icdgen import codec
 from icdgen.icd.model import Icd, Message
+from icdgen.icd.places import raw_fields_in
 
 BASE = """\
 icdgen: 1
@@ -123,12 +124,12 @@ def cases(icd: Icd, count: int = 4) -> Iterator[Case]:
             for _ in range(count if message.contains else 0):
                 frame = random_bytes(message.length)
                 raw = codec.decode(node, message, frame)
-                values = {field.at: raw[field.name] for field in message.layout.raw_fields}
+                values = {field.at: raw[field.name] for field in raw_fields_in(message.layout)}
                 given: list[Given] = []
                 for one in message.contains:
                     part = known[one.message]
-                    if part.layout.raw_fields:
+                    if raw_fields_in(part.layout):
                         index = sum(other.part is part for other in given)
-                        theirs = {field.name: values[one.at + field.at] for field in part.layout.raw_fields}
+                        theirs = {field.name: values[one.at + field.at] for field in raw_fields_in(part.layout)}
                         given.append(Given(part, index, codec.encode(icd.node(part.node), part, theirs)))
                 yield Case(message, frame, tuple(given))

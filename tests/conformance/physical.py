@@ -17,8 +17,9 @@ from functools import cache
 from pathlib import Path
 
 from icdgen import codec
-from icdgen.icd.layout import NodePlace, Scalar
+from icdgen.icd.layout import Scalar
 from icdgen.icd.model import Icd, Message
+from icdgen.icd.places import NodePlace
 from icdgen.vectors.settings import bits_of
 from tests.conformance.build import BuildError, build
 from tests.conformance.driver import Testee

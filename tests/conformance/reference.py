@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from icdgen import codec
-from icdgen.icd.layout import FrameField
+from icdgen.icd.frames import FrameField, frame_fields
 from icdgen.icd.model import Enum, Icd, Message, Node
 from icdgen.protocol import ops
 from icdgen.vectors.make import known_text
@@ -112,7 +112,7 @@ class Reference:
         if not isinstance(given, dict) or not isinstance(physical, dict):
             raise Refusal("request")
         node, message = self.message(request)
-        fields = {field.name: field for field in message.layout.frame(node.orders) if field.is_raw}
+        fields = {field.name: field for field in frame_fields(message.layout, node.orders) if field.is_raw}
         for name in given:
             if name not in fields:
                 raise Refusal("unknown-field", field=name)
@@ -142,7 +142,7 @@ class Reference:
 
     def constants(self, request: dict) -> dict:
         node, message = self.message(request)
-        default, fields = codec.new(node, message), message.layout.frame(node.orders)
+        default, fields = codec.new(node, message), frame_fields(message.layout, node.orders)
         return {
             "name": message.name,
             "ids": list(message.ids),
@@ -172,7 +172,7 @@ class Reference:
         if len(values) > MOST_VALUES or any(type(value) is not int for value in values):
             raise Refusal("request")
         node, message = self.message(request)
-        fields = message.layout.frame(node.orders)
+        fields = frame_fields(message.layout, node.orders)
         field = next((field for field in fields if field.is_raw and field.name == name), None)
         if field is None or not settable(field):
             raise Refusal("unknown-field", field=name)
@@ -271,7 +271,7 @@ def named(enum: Enum, value: int | None) -> str | None:
 
 def described(node: Node, message: Message, raw: dict, names: bool = False) -> dict:
     """The answer to decode and encode."""
-    fields = message.layout.frame(node.orders)
+    fields = frame_fields(message.layout, node.orders)
     answer: dict = {
         "raw": {field.name: shown(field, raw.get(field.name)) for field in fields},
         "physical": {f.name: physical_value(f, raw.get(f.name)) for f in fields if f.has_formula or f.type == "text"},

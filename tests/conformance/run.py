@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from icdgen import codec
+from icdgen.icd.frames import frame_fields
 from icdgen.icd.model import Icd
 from icdgen.vectors import patterns
 from icdgen.vectors.make import frame_row
@@ -98,7 +99,7 @@ def _batch(label: str, cases: Iterator[Case]) -> Iterator[Batch]:
 def _random(icd: Icd, message, cases: MessageCases, frames: int, seed: int) -> Iterator[Batch]:
     source = random.Random(f"{seed}/{message.node}/{message.name}")
     node, left = icd.node(message.node), frames
-    fields = message.layout.frame(node.orders)
+    fields = frame_fields(message.layout, node.orders)
     known = {field.name: field for field in fields}
     parts = message.layout.parts
     while left:

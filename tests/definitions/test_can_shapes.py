@@ -11,6 +11,7 @@ from icdgen import codec
 from icdgen.definitions import can, run
 from icdgen.icd import wire_ids
 from icdgen.icd.fmt import emit
+from icdgen.icd.frames import frame_fields
 from icdgen.loading import load
 from tests.definitions.test_can import FILES
 
@@ -71,7 +72,7 @@ def assert_values_are_those_of_cantools(read: run.Read, text: str, folder) -> in
             frame = dice.randbytes(ours.length)
             raw = codec.decode(node, ours, frame)
             for name in selectors:  # one that selects something, as often as not
-                fields = ours.layout.frame(node.orders)
+                fields = frame_fields(ours.layout, node.orders)
                 chosen = next(one for one in fields if one.name == name)
                 values = [value for one in fields for need in one.conditions for value in need.values]
                 if dice.random() < 0.7 and values:

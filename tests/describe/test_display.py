@@ -18,8 +18,8 @@ from icdgen.backends.html.plan import enum_plan, message_plan
 from icdgen.describe.display import number_text
 from icdgen.diff.inputs import shown as shown_input
 from icdgen.icd import floats
-from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import Icd
+from icdgen.icd.places import NodePlace
 from icdgen.show.machine import SCHEMA, to_json
 from icdgen.show.people import to_text
 from icdgen.values.entry import from_physical

@@ -14,8 +14,9 @@ from icdgen.describe.numbers import bit_range, byte_range, exact_text, factor_te
 from icdgen.describe.steps import steps
 from icdgen.describe.storage import Storage, holding
 from icdgen.icd.formula import Scale
-from icdgen.icd.layout import NodePlace, Scalar
+from icdgen.icd.layout import Scalar
 from icdgen.icd.model import Limits
+from icdgen.icd.places import NodePlace
 
 fractions = st.fractions(min_value=-1000, max_value=1000, max_denominator=1000)
 scales = st.builds(Scale, fractions.filter(bool), fractions)

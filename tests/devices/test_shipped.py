@@ -18,6 +18,7 @@ from icdgen import codec
 from icdgen.icd.build import plain
 from icdgen.icd.fmt import format_text
 from icdgen.icd.model import Icd
+from icdgen.icd.places import places_in, scalars_in
 from icdgen.loading import load
 from tests.conformance.build import build
 from tests.conformance.driver import Testee
@@ -66,7 +67,7 @@ def definitions(node: str, reads: Callable[[str, bytes], Values]) -> list[Defini
     """The messages of one length each of an ICD, with the library's reading of them."""
     found = []
     for message in devices().node(node).messages:
-        fields = [plain(one.source) for one in message.layout.places if not one.view]
+        fields = [plain(one.source) for one in places_in(message.layout) if not one.view]
         scaled = {one["name"] for one in fields if "formula" in one}
 
         def read(data: bytes, name: str = message.name) -> Values:
@@ -208,7 +209,7 @@ def test_the_satellites_of_a_ubx_frame_are_read_as_by_pyubx2(testee: Testee, cou
     chance = random.Random(count)
     data = chance.randbytes(5) + bytes([count]) + chance.randbytes(2 + 12 * count)
     theirs, ours = ubx_message("NAV-SAT", data), decoded(testee, "ublox", "telemetry", 0x0135, data)
-    names = [one.name for one in devices().node("ublox").structs[0].layout.scalars]
+    names = [one.name for one in scalars_in(devices().node("ublox").structs[0].layout)]
     assert len(names) == 26 and {key: ours[key] for key in ("iTOW", "version", "numSvs")} == {
         key: theirs[key] for key in ("iTOW", "version", "numSvs")
     }

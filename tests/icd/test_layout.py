@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from icdgen import layout as bits
-from icdgen.icd.layout import Array, Counted, Layout, Orders, Overlay, Scalar, StructRef, flatten, size_of, walk
+from icdgen.icd.frames import flatten
+from icdgen.icd.layout import Array, Counted, Layout, Orders, Overlay, Scalar, StructRef, size_of, walk
 from icdgen.icd.layout_copies import without_nodes
 from icdgen.icd.model import Icd, Message, Node
 from tests.conformance.icds import read

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from icdgen import codec
-from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import Message, Node
+from icdgen.icd.places import NodePlace
 
 
 def same(node: Node, message: Message, other_node: Node, other: Message) -> bool:

@@ -13,8 +13,8 @@ from itertools import product
 from icdgen.backends.assurance.changes import OTHER_TYPES, formulas, tables
 from icdgen.icd.build import plain
 from icdgen.icd.curve import OUTSIDE
-from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import Enum, Icd, Message, Node
+from icdgen.icd.places import NodePlace, places_in
 from icdgen.icd.tails import is_open, key_of
 
 Change = Callable[[dict], object]
@@ -82,7 +82,9 @@ class _Home:
             one.pop("contains", None)
             one.pop("listed", None)
             if message.fields:  # what the manual divides in words is its parts
-                one["fields"] = [_line(one) for one in message.layout.places if not one.implied and one.derived is None]
+                one["fields"] = [
+                    _line(one) for one in places_in(message.layout) if not one.implied and one.derived is None
+                ]
             tree["messages"] = [one]
             tree["structs"] = structs = list(self._used(one))
             rows = [row for part in (one, *structs) for row in part.get("fields") or ()]

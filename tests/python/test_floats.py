@@ -7,6 +7,7 @@ import struct
 
 import pytest
 
+from icdgen.icd.places import raw_fields_in
 from tests.python.reference import cases
 
 NANS32 = (0x7FC00000, 0xFFC00000, 0x7F800001, 0xFF800001, 0x7FBFFFFF, 0x7FFFFFFF, 0xFFFFFFFF, 0x7FA12345, 0x7FC54321)
@@ -18,7 +19,7 @@ ALIKE64 = (0, 1 << 63, 1, 0x000FFFFFFFFFFFFF, 0x7FEFFFFFFFFFFFFF, 0x7FF000000000
 def test_every_bit_pattern_comes_back(package):
     floats, checked = package.module("_floats"), 0
     for case in cases(package):
-        for field in case.message.layout.raw_fields:
+        for field in raw_fields_in(case.message.layout):
             if field.type != "float":
                 continue
             patterns = (*NANS32, *ALIKE32) if field.bits == 32 else (*NANS64, *ALIKE64)

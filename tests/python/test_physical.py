@@ -8,6 +8,7 @@ from fractions import Fraction
 import pytest
 
 from icdgen import codec
+from icdgen.icd.places import raw_fields_in
 from tests.python.reference import cases
 
 
@@ -15,7 +16,7 @@ def distinct(package, widest: int):
     """One field of each scale, type and width up to ``widest`` bits."""
     found = {}
     for case in cases(package):
-        for field in case.message.layout.raw_fields:
+        for field in raw_fields_in(case.message.layout):
             if field.scale and field.bits <= widest:
                 found.setdefault((field.scale, field.type, field.bits), (case, field))
     return found.values()

@@ -12,8 +12,8 @@ from functools import cache
 from pathlib import Path
 
 from icdgen import backends
-from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.places import NodePlace
 from icdgen.render import Renderer
 from tests.conformance.build import build
 from tests.conformance.icds import SHIPPED, read, shipped  # noqa: F401  (tests take them from here)

@@ -15,8 +15,8 @@ import jinja2
 from icdgen import codec
 from icdgen.backends.rust.names import type_name
 from icdgen.describe import MessageDescription, describe
-from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import CONFIGURATION, Icd, Message, Node
+from icdgen.icd.places import NodePlace
 from icdgen.protocol import facts
 from icdgen.sim.values import allowed_values
 from tests.rust import harness

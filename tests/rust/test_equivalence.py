@@ -8,7 +8,7 @@ from math import lcm
 
 from icdgen import codec
 from icdgen.icd.formula import Scale
-from icdgen.icd.layout import NodePlace
+from icdgen.icd.places import NodePlace
 from tests.conformance.robust import bad_lines
 from tests.rust import harness
 

@@ -10,7 +10,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from icdgen import codec
+from icdgen.icd.frames import frame_fields
 from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.places import raw_fields_in
 from tests.xtce.readback import SPACE
 
 
@@ -30,7 +32,7 @@ def differences(icd: Icd, node: Node, file: Path, frames: int, seed: int) -> Ite
         declared = icd.node(message.node)
         for _ in range(frames):
             frame = chance.randbytes(message.length)
-            fixed = {one: one.const for one in message.layout.frame(declared.orders) if one.const is not None}
+            fixed = {one: one.const for one in frame_fields(message.layout, declared.orders) if one.const is not None}
             frame = codec.frame_of(frame, fixed)
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
@@ -54,7 +56,7 @@ def alias(parameter: ElementTree.Element) -> str:
 
 def _compare(node: Node, message: Message, frame: bytes, theirs: dict) -> tuple[int, str]:
     raw = codec.decode(node, message, frame)
-    for field in message.layout.raw_fields:
+    for field in raw_fields_in(message.layout):
         ours, its = raw[field.name], theirs[field.name].raw_value
         if field.type == "float":
             ours = codec.float_value(field, int(ours))
@@ -66,4 +68,4 @@ def _compare(node: Node, message: Message, frame: bytes, theirs: dict) -> tuple[
             exact, read = codec.physical_double(field, int(raw[field.name])), float(theirs[field.name])
             if exact == exact and not math.isclose(exact or 0.0, read, rel_tol=1e-9, abs_tol=1e-12):
                 return 0, f"{message.name}: {field.name} is {exact}, theirs {read}"
-    return len(message.layout.raw_fields), ""
+    return len(raw_fields_in(message.layout)), ""

@@ -9,8 +9,9 @@ from math import ceil, floor
 from icdgen import layout
 from icdgen.icd.curve import CLAMP, EXTRAPOLATE
 from icdgen.icd.enumeration import Enum
-from icdgen.icd.layout import NodePlace, VariablePart
+from icdgen.icd.layout import VariablePart
 from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.places import NodePlace, places_in, raw_fields_in
 
 # What XTCE has no word for, so that it cannot come back. What is no layout and no meaning is not compared: protocol (but for the
 # header of space packets), what can be logged, sources, errata, identifiers, acknowledges, and what is said of enumerations.
@@ -40,7 +41,7 @@ def messages(icd: Icd, node: Node) -> dict[tuple[str, str], dict]:
 
 def _message(one: Message, node: Node, direction: str, id: int) -> dict:
     is_sent = direction == "telecommand"
-    has_views = not is_sent and all(is_ordered(field, node) for field in one.layout.raw_fields)
+    has_views = not is_sent and all(is_ordered(field, node) for field in raw_fields_in(one.layout))
     fields = [field for field in one.fields if not (field.implied or field.derived) and (has_views or not field.view)]
     own, parts = one.layout, one.layout.parts
     open_ = bool(parts) and not has_open_end(one)
@@ -60,7 +61,7 @@ def _message(one: Message, node: Node, direction: str, id: int) -> dict:
 def _lacks(one: Message, node: Node) -> bool:
     """Whether a telecommand is left out, as XTCE has no word for a part of it."""
     return (bool(one.layout.parts) and not has_open_end(one)) or not all(
-        is_ordered(field, node) for field in one.layout.raw_fields
+        is_ordered(field, node) for field in raw_fields_in(one.layout)
     )
 
 
@@ -69,7 +70,7 @@ def has_open_end(one: Message) -> bool:
     parts = one.layout.parts
     if len(parts) != 1 or parts[0].is_rest or one.has_conditions:
         return False
-    place = next(place for place in one.layout.places if place.node is parts[0].node)
+    place = next(place for place in places_in(one.layout) if place.node is parts[0].node)
     return place.struct is None and place.const is None
 
 

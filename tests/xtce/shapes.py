@@ -17,8 +17,9 @@ from pathlib import Path
 from icdgen import codec
 from icdgen.definitions import kinds, run
 from icdgen.icd.fmt import emit
-from icdgen.icd.layout import NodePlace
+from icdgen.icd.frames import frame_fields
 from icdgen.icd.model import Icd
+from icdgen.icd.places import NodePlace
 from icdgen.loading import load
 from tests.conftest import ROOT
 
@@ -61,7 +62,7 @@ def _compared(icd: Icd, root: str, files: list[Path], classes: list[str], frames
     chance, asked = random.Random(1), []
     telemetry = [one for one in icd.messages_of(node) if one.telemetry_id is not None]
     for message in telemetry:
-        fixed = {one: one.const for one in message.layout.frame(node.orders) if one.const is not None}
+        fixed = {one: one.const for one in frame_fields(message.layout, node.orders) if one.const is not None}
         for count in range(frames):
             frame = codec.frame_of(chance.randbytes(message.length), fixed)
             head = struct.pack(">HHH", message.telemetry_id, 0xC000 | count, len(frame) - 1)

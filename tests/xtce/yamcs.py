@@ -17,8 +17,9 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 from icdgen import codec
-from icdgen.icd.layout import NodePlace
+from icdgen.icd.frames import frame_fields
 from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.places import NodePlace, raw_fields_in
 from icdgen.loading import load
 from icdgen.vectors import patterns
 from tests.xtce.decoding import alias
@@ -60,7 +61,7 @@ def _compared(icd: Icd, node: Node, file: Path, classes: list[str], frames: int)
     for message in messages:
         for _ in range(frames):
             owner = icd.node(message.node)
-            fields = message.layout.frame(owner.orders)
+            fields = frame_fields(message.layout, owner.orders)
             frame = chance.randbytes(message.length)
             frame = codec.frame_of(frame, {one: one.const for one in fields if one.const is not None})
             if len(message.layout.parts) == 1:
@@ -115,7 +116,7 @@ def _unlike(node: Node, message: Message, frame: bytes, theirs: Values) -> tuple
         if (
             is_left_out
             or field.is_bytes
-            or (field.view and not all(is_ordered(one, node) for one in message.layout.raw_fields))
+            or (field.view and not all(is_ordered(one, node) for one in raw_fields_in(message.layout)))
         ):
             continue
         name, index = line(field.name), None

@@ -10,8 +10,8 @@ from typing import Final, NamedTuple
 from icdgen.describe.numbers import exact_text
 from icdgen.describe.steps import steps
 from icdgen.icd.curve import Curve
-from icdgen.icd.layout import AnyScalar
 from icdgen.icd.model import Limits
+from icdgen.icd.places import AnyScalar
 
 
 class Kind(NamedTuple):

@@ -24,8 +24,9 @@ from icdgen.describe.numbers import (
 )
 from icdgen.describe.steps import Steps, steps
 from icdgen.icd.erratum import Erratum
-from icdgen.icd.layout import LayoutNode, NodePlace, Scalar, VariablePart
+from icdgen.icd.layout import LayoutNode, Scalar, VariablePart
 from icdgen.icd.model import CONFIGURATION, Condition, Enum, Member, Message, Struct
+from icdgen.icd.places import NodePlace
 
 _LISTED = 6  # names in a row
 

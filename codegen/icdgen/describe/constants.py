@@ -9,7 +9,7 @@ from typing import NamedTuple
 from icdgen import naming
 from icdgen.describe.bounds import bounds
 from icdgen.describe.comments import sentence, words
-from icdgen.icd.layout import NodePlace
+from icdgen.icd.places import NodePlace
 
 MOST_WORDS = 5  # of a meaning that makes the name of its constant
 

@@ -6,19 +6,15 @@ from collections.abc import Iterator
 from copy import copy
 from typing import Any, NamedTuple, TypeVar
 
-from icdgen import layout
-from icdgen.describe import steps
-from icdgen.describe.bounds import Bound, bounds
-from icdgen.describe.comments import Comment, field_comment, struct_comment, takes_text, words
+from icdgen.describe.comments import Comment, field_comment, struct_comment
 from icdgen.describe.constants import Constant, constants
 from icdgen.describe.enums import EnumDescription, enum_widths
 from icdgen.describe.errata import Thing, first_owners, owners_elsewhere
-from icdgen.describe.integer_scale import IntegerScale, part_of_unit
 from icdgen.describe.named import Named
-from icdgen.describe.storage import Storage, storage_of
-from icdgen.icd.curve import Curve
-from icdgen.icd.layout import UNDECLARED, Layout, NodePlace, Orders, places_of
+from icdgen.describe.scalar import ScalarDescription
+from icdgen.icd.layout import UNDECLARED, Layout, Orders
 from icdgen.icd.model import Enum, Icd, Message, Node, Struct
+from icdgen.icd.places import NodePlace, places_of
 from icdgen.once import cached_property
 
 _OF_PLACE = ("needs", "places", "elements", "leaf_members", "members_by_instance", "flat_members", "element", "comment")
@@ -32,24 +28,14 @@ class Need(NamedTuple):
     values: tuple[int, ...]
 
 
-class FieldDescription(Named[NodePlace]):
+class FieldDescription(ScalarDescription):
     """A field of ``message``, or of a struct; of an array, an element, or among ``members`` all of it.
 
     Made by the ten thousand, and each asked for its names at once: what these need is worked out at the beginning.
     """
 
-    storage: Storage
-    """The integer that holds the raw value (the bits of a float); of an enumeration, that of its type. None of bytes."""
-    steps: steps.Steps | None
-    """How the physical value is computed in whole numbers; None where that is the raw value, or there is a curve."""
-    curve: Curve | None
-    """How it is computed in doubles."""
-    physical_name: str
-    """``estimated_roll_angle_deg``"""
     member: str
     """Name in an expression, in any language: ``temperatures[3]``, ``satellites[2].gnss``."""
-    declared: str
-    """The name that is declared for it: of an element, that of its array; of a field of a struct, that in the struct."""
     holder: str
     """Name of its struct in an expression, ``satellites[2]``; empty of what its message has itself."""
     declaration: FieldDescription
@@ -60,20 +46,15 @@ class FieldDescription(Named[NodePlace]):
     """The member of its message that it is, or stands in."""
 
     def __init__(self, place: NodePlace, message: Composite[Any], enum: EnumDescription | None) -> None:
-        super().__init__(place, message.node.vocabulary, f"field `{place.name}` of `{message.model.name}`")
-        self.message, self.enum = message, enum
+        owner = f"field `{place.name}` of `{message.model.name}`"
+        super().__init__(place, enum, message.node.vocabulary, owner, message.node.orders)
+        self.message = message
         self.struct = None if place.struct is None else message.struct_of(place.struct)
-        self.storage = enum.storage if enum is not None else storage_of(place.bits, place.signed)
-        self.steps, self.curve = steps.steps(place), place.curve
-        if place.derived is not None and place.unit is not None:  # it is a physical value, and has no raw one
-            self.name = f"{self.name}_{place.unit.identifier}"
-        self.member = self.declared = self.name
+        self.member = self.name
         self.holder, self.declaration = "", self
         self.array, self.member_of_message = None, self
         self.is_repeated = False
         """Whether it stands in an element of an array of structs."""
-        unit = "text" if self.is_text else place.unit.identifier if place.unit else "physical"
-        self.physical_name = f"{self.declared}_{unit}"
 
     def _element(self, place: NodePlace) -> FieldDescription:
         """The description of an element of an array; of anything else the field itself."""
@@ -89,9 +70,8 @@ class FieldDescription(Named[NodePlace]):
         assert self.struct is not None
         declared = self.struct.member_for[id(place.node)]
         inner = declared.moved(place)
-        inner.message, inner.member_of_message, inner.is_repeated = (
-            self.message, self.member_of_message, self.is_repeated,
-        )  # fmt: skip
+        inner.message, inner.node_orders = self.message, self.node_orders
+        inner.member_of_message, inner.is_repeated = self.member_of_message, self.is_repeated
         inner.name, inner.member = f"{self.name}_{declared.name}", f"{self.member}.{declared.member}"
         inner.holder, inner.declaration = self.member, declared
         return inner
@@ -176,96 +156,6 @@ class FieldDescription(Named[NodePlace]):
     def element(self) -> StructDescription | None:
         """What an element of an array of structs is made of, in the orders that hold where it stands; else None."""
         return None if self.struct is None or not self.count else self.message.element(self, self.struct)
-
-    @property
-    def is_narrow(self) -> bool:
-        """Whether `storage` holds raw values that the field can't."""
-        return self.model.bits != self.storage.bits and self.model.type in ("uint", "int", "enum")
-
-    @property
-    def takes(self) -> str:
-        """What it takes, in words, for who gave it something else."""
-        return takes_text(self.model, self.is_narrow)
-
-    @property
-    def fresh(self) -> int:
-        """The raw value in a new message, as a number."""
-        return self.model.const or self.model.counts_from
-
-    @property
-    def orders(self) -> Orders:
-        """Byte order and bit order in effect."""
-        return self.model.orders_in_effect(self.message.node.orders)
-
-    @property
-    def byte_order(self) -> str:
-        """``little`` or ``big``: its own, its message's or its node's."""
-        return self.orders.byte
-
-    @property
-    def order(self) -> str:
-        """``le`` or ``be``: the same in short."""
-        return "le" if self.byte_order == "little" else "be"
-
-    @property
-    def is_word(self) -> bool:
-        """Whether it is a byte, or a word of 2, 4 or 8 whole bytes that is loaded and stored as one."""
-        one = self.model
-        return not one.is_bytes and one.at % 8 == 0 and one.bits in (8, 16, 32, 64)
-
-    @property
-    def is_plain_word(self) -> bool:
-        """Whether it is a word that lies in the frame as in memory, but for the order of its bytes."""
-        return self.is_word and self.model.bits == self.storage.bits
-
-    @property
-    def pieces(self) -> tuple[layout.Piece, ...]:
-        """The runs of bits of the frame that make up a number."""
-        if self.model.derived:
-            return ()
-        return layout.pieces_at(self.model.at, self.model.bits, self.orders.byte, self.orders.bit)
-
-    @property
-    def is_text(self) -> bool:
-        """Whether its bytes are characters: its physical value is a text, which every language gives and takes."""
-        return self.model.type == "text"
-
-    def integer_name(self, per: int) -> str:
-        """``estimated_roll_angle_mdeg``: its physical value in whole parts of the unit."""
-        return f"{self.declared}_{part_of_unit(self.model, per)[0]}"
-
-    def integer_title(self, per: int) -> str:
-        """``Estimated Roll Angle in thousandths of deg``"""
-        return f"{words(self.model.name)} in {words(part_of_unit(self.model, per)[1])}"
-
-    def integer_comment(self, scale: IntegerScale) -> str:
-        """What it is, and its range."""
-        return f"{self.integer_title(scale.per)}, exact: {scale.low} to {scale.high}."
-
-    @property
-    def size(self) -> int:
-        """How many bytes or characters a field of these has."""
-        return self.model.bits // 8
-
-    @property
-    def has_physical(self) -> bool:
-        """Whether there are accessors of a physical value that is not the raw one."""
-        return self.is_text or self.is_scaled
-
-    @property
-    def is_scaled(self) -> bool:
-        """Whether the physical value is a number that is computed from the raw one."""
-        return self.steps is not None or self.curve is not None
-
-    @property
-    def is_set(self) -> bool:
-        """Whether a physical value sets it."""
-        return not self.model.view and self.model.leads_back
-
-    @cached_property
-    def bounds(self) -> tuple[Bound, ...]:
-        """The limits, one by one."""
-        return bounds(self.model.limits)
 
     @cached_property
     def constants(self) -> tuple[Constant, ...]:

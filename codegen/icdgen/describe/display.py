@@ -16,7 +16,8 @@ from icdgen.describe.numbers import exact_text
 from icdgen.icd.curve import Curve
 from icdgen.icd.display import BINARY, DECIMALS, HEX, OF_BITS
 from icdgen.icd.formula import Scale
-from icdgen.icd.layout import AnyScalar, FrameField, NodePlace
+from icdgen.icd.frames import FrameField
+from icdgen.icd.places import AnyScalar, NodePlace
 
 _MOST_EXACT = 6  # decimals of a factor that are shown in full, however fine the resolution is
 _MOST_DECIMALS = 20

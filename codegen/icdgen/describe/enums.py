@@ -9,6 +9,7 @@ from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, holding
 from icdgen.icd.kept import kept
 from icdgen.icd.model import Enum, Icd, Member, Message, Node, Struct
+from icdgen.icd.places import places_in
 from icdgen.once import cached_property
 
 Users = dict[str, list[str]]  # by the names of fields, the messages and structs in which they stand
@@ -22,7 +23,7 @@ def enum_widths(icd: Icd) -> dict[tuple[str, str], int]:
             found[enum.node, enum.name] = max(found.get((enum.node, enum.name), 1), enum.bits)
         every: tuple[Struct | Message, ...] = (*node.structs, *node.messages)
         for one in every:
-            for place in one.layout.places:
+            for place in places_in(one.layout):
                 if place.enum is not None:
                     key = place.enum.node, place.enum.name
                     found[key] = max(found.get(key, 1), place.bits)
@@ -35,7 +36,7 @@ def holders(icd: Icd, node: Node) -> dict[tuple[str, str], Users]:
     found: dict[tuple[str, str], Users] = {}
     every: tuple[Struct | Message, ...] = (*node.structs, *node.messages)
     for one in every:
-        for place in one.layout.places:
+        for place in places_in(one.layout):
             if place.enum is not None:
                 users = found.setdefault((place.enum.node, place.enum.name), {})
                 users.setdefault(place.name, []).append(one.name)

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from icdgen.icd.erratum import Erratum
-from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import Enum, Member, Message, Struct
+from icdgen.icd.places import NodePlace, places_in, scalars_in
 
 Thing = Message | Struct | NodePlace | Enum | Member
 
 
 def errata_of_message(message: Message) -> list[Erratum]:
     """Those of the message, of the structs in it and of its fields, each once."""
-    return _each_once((message, *message.layout.places, *message.layout.scalars))
+    return _each_once((message, *places_in(message.layout), *scalars_in(message.layout)))
 
 
 def errata_of_enum(enum: Enum) -> list[Erratum]:

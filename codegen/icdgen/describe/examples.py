@@ -8,6 +8,7 @@ from typing import NamedTuple
 from icdgen import codec
 from icdgen.describe.description import FieldDescription
 from icdgen.describe.nodes import MessageDescription
+from icdgen.icd.places import raw_fields_in
 
 _NUMBERS = (1234, 123, 12, 1, 0)  # the first that the field takes and may hold
 _FLOAT = 1.5  # the same in any width
@@ -63,7 +64,7 @@ def example(message: MessageDescription) -> Example:
     """The example of a message."""
     field = worth_showing(message)
     shown = _shown(field) if field else None
-    owners = message.model.layout.raw_fields
+    owners = raw_fields_in(message.model.layout)
     raw: dict[str, int | bytes] = {
         place.name: place.fresh for place in owners if place.const is not None or place.smallest_raw
     }

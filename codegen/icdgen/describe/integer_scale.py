@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from icdgen.describe.steps import Steps
 from icdgen.describe.storage import Storage
-from icdgen.icd.layout import NodePlace
+from icdgen.icd.places import NodePlace
 from icdgen.icd.units import STANDARD
 
 # Units that already carry a prefix: (a thousandth, a millionth). Empty where that has no name.

@@ -6,8 +6,8 @@ from typing import Generic, TypeVar
 
 from icdgen import naming
 from icdgen.icd.identifiers import Identifier
-from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import Enum, Member, Message, Struct
+from icdgen.icd.places import NodePlace
 
 Model = TypeVar("Model", bound=Message | Struct | NodePlace | Enum | Member)
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from icdgen.icd import exact
 from icdgen.icd.formula import Scale
-from icdgen.icd.layout import AnyScalar
+from icdgen.icd.places import AnyScalar
 
 EXACT_DOUBLE = 1 << 53
 """Up to this size every whole number is a double."""

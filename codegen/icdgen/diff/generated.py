@@ -21,11 +21,12 @@ from icdgen.diff.pairs import (
     SideBySide,
     Thing,
 )
-from icdgen.icd.layout import Layout, LayoutNode, NodePlace, Scalar, VariableNode, size_of
+from icdgen.icd.layout import Layout, LayoutNode, Scalar, VariableNode, size_of
 from icdgen.icd.layout_copies import with_attributes
 from icdgen.icd.lines import Line
 from icdgen.icd.located import Map
 from icdgen.icd.model import TELEMETRY, Enum, Icd, Message, Node
+from icdgen.icd.places import NodePlace, places_in
 
 if TYPE_CHECKING:
     from icdgen.backends import Identifier
@@ -297,7 +298,7 @@ class _ReducedIcd:
         layout = message.layout
         parts = {id(side.node): part for part in pair.parts if (side := self.side_of(part)) is not None}
         nodes: dict[int, Any] = {}  # id(node) -> what is kept of it
-        for place in layout.places:
+        for place in places_in(layout):
             part = parts.get(id(place.node))
             if part is not None and id(part) in self.kept and place.struct is None and _is_sound(place):
                 mark, enum = self.marks.of(part), self.enums.get(id(place.enum), place.enum)
@@ -347,7 +348,7 @@ class _ReducedIcd:
         from icdgen.describe import describe
 
         message, node = self.messages[id(pair.owner)], self.nodes[id(pair)]
-        field = next(place for place in message.layout.places if place.node.source is node.source)
+        field = next(place for place in places_in(message.layout) if place.node.source is node.source)
         if field.type == "enum" and field.enum is None:
             return f"u{field.bits}" if language == "rust" else "int"
         members = describe(self.icd).message(message).all_members

@@ -7,17 +7,7 @@ from dataclasses import replace
 from typing import Any, TypeVar
 
 from icdgen.icd.enumeration import Enum
-from icdgen.icd.layout import (
-    Array,
-    Counted,
-    Derived,
-    Layout,
-    LayoutNode,
-    Overlay,
-    scalar_of,
-    size_of,
-    struct_layout_of,
-)
+from icdgen.icd.layout import Array, Counted, Derived, Layout, LayoutNode, Overlay, scalar_of, size_of, struct_layout_of
 
 NodeT = TypeVar("NodeT", bound=LayoutNode)
 

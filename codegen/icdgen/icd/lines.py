@@ -8,7 +8,9 @@ from functools import cached_property
 from math import prod
 
 from icdgen.frozen import dataclass
-from icdgen.icd.layout import Layout, LayoutNode, NodePlace, PathStep
+from icdgen.icd.frames import PathStep
+from icdgen.icd.layout import Layout, LayoutNode
+from icdgen.icd.places import NodePlace, places_in
 
 
 @dataclass(frozen=True)
@@ -60,7 +62,7 @@ class Line(NodePlace):
 
 def lines(layout: Layout) -> tuple[Line, ...]:
     """Return the lines of a message, or of a struct, in the order in which code declares them."""
-    return tuple(line for place in layout.places for line in _lines(place, ()))
+    return tuple(line for place in places_in(layout) for line in _lines(place, ()))
 
 
 def _lines(place: NodePlace, around: tuple[Level, ...]) -> Iterator[Line]:

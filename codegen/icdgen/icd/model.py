@@ -16,11 +16,13 @@ from icdgen.icd.display import Display as Display
 from icdgen.icd.enumeration import Enum as Enum
 from icdgen.icd.enumeration import Member as Member
 from icdgen.icd.erratum import Erratum as Erratum
+from icdgen.icd.frames import FrameField, frame_fields
 from icdgen.icd.layout import Condition as Condition
-from icdgen.icd.layout import FrameField, Layout, NodePlace, Orders
+from icdgen.icd.layout import Layout, Orders
 from icdgen.icd.layout import Limits as Limits
 from icdgen.icd.layout import Special as Special
 from icdgen.icd.located import Map, unread
+from icdgen.icd.places import NodePlace, raw_fields_in, scalars_in
 from icdgen.icd.units import Unit
 
 TELECOMMAND, TELEMETRY, CONFIGURATION = "telecommand", "telemetry", "configuration"
@@ -100,12 +102,12 @@ class Message:
     @property
     def fields(self) -> tuple[NodePlace, ...]:
         """The fields of the longest frame, each element of an array and each field of a struct one: `Layout.scalars`."""
-        return self.layout.scalars
+        return scalars_in(self.layout)
 
     @property
     def field_count(self) -> int:
         """How many fields there are, each element of an array one; a count that only the end of a frame tells is none."""
-        return sum(not scalar.is_count for scalar in self.layout.scalars)
+        return sum(not scalar.is_count for scalar in scalars_in(self.layout))
 
     @property
     def has_conditions(self) -> bool:
@@ -115,7 +117,7 @@ class Message:
     @property
     def fresh(self) -> dict[str, int | bytes]:
         """The raw values of a new message by the names of its fields, but for views and what is not there."""
-        fields = self.layout.raw_fields
+        fields = raw_fields_in(self.layout)
         fresh = {field.name: field.fresh for field in fields}
         return {one.name: one.fresh for one in fields if all(fresh.get(c.field) in c.values for c in one.when)}
 
@@ -191,7 +193,7 @@ class Icd:
 
     def longest_frame(self, message: Message) -> tuple[FrameField, ...]:
         """The scalars of the longest frame of a message. Outputs number fields by their index in it."""
-        return message.layout.frame(self.node(message.node).orders)
+        return frame_fields(message.layout, self.node(message.node).orders)
 
     def protocol_of(self, node: Node) -> dict[str, Any]:
         """The protocol facts that hold for the node: its own over those of what it includes."""

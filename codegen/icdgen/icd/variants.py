@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from icdgen.icd.division import bits_of
-from icdgen.icd.layout import FrameField
+from icdgen.icd.frames import FrameField, frame_fields
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Icd, Message, Node
 
 Spoken = tuple[Message, Node]  # and the node that declares it
@@ -82,7 +82,7 @@ def constants(message: Message, node: Node) -> tuple[FrameField, ...]:
     Zeros that a frame leaves out at its end count as part of it. `node` is the ICD node that declares the message.
     """
     end = 8 * message.layout.length
-    fields = (field for field in message.layout.frame(node.orders) if field.has_bits and field.at < end)
+    fields = (field for field in frame_fields(message.layout, node.orders) if field.has_bits and field.at < end)
     return tuple(field for field in fields if field.const is not None and not field.conditions)
 
 

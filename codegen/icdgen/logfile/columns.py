@@ -9,7 +9,7 @@ from typing import Literal
 from icdgen import layout, naming
 from icdgen.describe.steps import Steps, steps
 from icdgen.icd.curve import Curve
-from icdgen.icd.layout import FrameField
+from icdgen.icd.frames import FrameField
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.layout import Piece
 from icdgen.protocol.facts import Facts, need

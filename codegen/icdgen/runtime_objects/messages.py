@@ -13,7 +13,7 @@ from icdgen_runtime._lazy import Messages
 from icdgen import codec
 from icdgen.describe import Description, FieldDescription, MessageDescription
 from icdgen.icd import model
-from icdgen.icd.layout import NodePlace
+from icdgen.icd.places import NodePlace
 
 
 class ModelMessage(Message):

@@ -17,9 +17,10 @@ from icdgen.describe.numbers import (
     special_text,
     value_text,
 )
-from icdgen.icd.layout import NodePlace, VariablePart
+from icdgen.icd.layout import VariablePart
 from icdgen.icd.lines import Line, lines
 from icdgen.icd.model import Message, Node, Struct
+from icdgen.icd.places import NodePlace
 from icdgen.tables import Column, render
 
 _COLUMNS = [

@@ -11,9 +11,10 @@ from typing import Any
 from icdgen.describe.bounds import bounds
 from icdgen.icd.annex import Loggable
 from icdgen.icd.erratum import Erratum
-from icdgen.icd.layout import NodePlace, VariablePart
+from icdgen.icd.layout import VariablePart
 from icdgen.icd.located import plain
 from icdgen.icd.model import Enum, Icd, Member, Message, Node, Struct
+from icdgen.icd.places import NodePlace, places_in
 
 FORMAT = 1
 SCHEMA = Path(__file__).parent.with_name("show.schema.json")
@@ -75,7 +76,7 @@ def _node(node: Node) -> _Object:
 
 def _message(message: Message) -> _Object:
     parts = list(map(_variable_part, message.layout.parts))
-    places = [place for place in message.layout.places if not place.is_count]
+    places = [place for place in places_in(message.layout) if not place.is_count]
     return _present(
         **{"name": message.name, "kind": message.kind, "length": message.length} | _attributes(message),
         acknowledge=None if message.acknowledge else "reset" if message.expects_reset else False,
@@ -133,7 +134,7 @@ def _field(field: NodePlace) -> _Object:
 
 
 def _struct(struct: Struct) -> _Object:
-    fields = list(map(_field, struct.layout.places))
+    fields = list(map(_field, places_in(struct.layout)))
     return {"name": struct.name, "length": struct.length} | _row(struct) | {"fields": fields}
 
 

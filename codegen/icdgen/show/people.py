@@ -12,6 +12,7 @@ from icdgen.describe.shared_ids import sharing
 from icdgen.icd.erratum import Erratum
 from icdgen.icd.lines import lines as icd_lines
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Icd, Message, Node, Struct
+from icdgen.icd.places import scalars_in
 from icdgen.icd.rules.wording import count
 from icdgen.icd.variants import ids_of
 from icdgen.icd.wire_ids import DEFAULT_BITS, size
@@ -129,7 +130,7 @@ def _one(icd: Icd, node: Node, name: str, width: int | None, kind: str | None) -
 
 def _field_count(message: Message) -> int:
     """Return the number of fields, each element of an array by itself."""
-    return sum(not field.is_count for field in message.layout.scalars)
+    return sum(not field.is_count for field in scalars_in(message.layout))
 
 
 def _struct(struct: Struct, node: Node, width: int | None) -> str:

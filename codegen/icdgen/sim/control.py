@@ -13,7 +13,7 @@ import yaml
 
 from icdgen import codec
 from icdgen.errors import UserError, unreadable
-from icdgen.icd.layout import FrameField
+from icdgen.icd.frames import FrameField
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.sim import faults
 from icdgen.sim.device_line import DeviceLine

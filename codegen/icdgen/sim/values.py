@@ -8,7 +8,7 @@ from math import ceil, floor
 
 from icdgen import codec
 from icdgen.icd.curve import Curve
-from icdgen.icd.layout import FrameField
+from icdgen.icd.frames import FrameField
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.values.frame import violations
 

@@ -10,7 +10,8 @@ from fractions import Fraction
 from icdgen import codec
 from icdgen.describe.comments import condition_text
 from icdgen.errors import UserError
-from icdgen.icd.layout import FrameField, VariablePart, struct_layout_of
+from icdgen.icd.frames import FrameField
+from icdgen.icd.layout import VariablePart, struct_layout_of
 from icdgen.icd.model import Icd, Message
 from icdgen.values import numbers
 from icdgen.values.entry import members, out_of_range, typed, without_unit

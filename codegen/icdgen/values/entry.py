@@ -7,8 +7,9 @@ from fractions import Fraction
 
 from icdgen import codec, naming
 from icdgen.describe.bounds import bounds, range_text
-from icdgen.icd.layout import AnyScalar, FrameField
+from icdgen.icd.frames import FrameField
 from icdgen.icd.model import Enum, Member
+from icdgen.icd.places import AnyScalar
 from icdgen.values import numbers
 from icdgen.values.errors import BadHex, BadValue
 from icdgen.values.find import by_name

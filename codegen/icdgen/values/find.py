@@ -10,7 +10,7 @@ from typing import Protocol, TypeVar
 
 from icdgen import naming
 from icdgen.describe.ids import id_text
-from icdgen.icd.layout import FrameField, PathStep, alias_of_steps, name_of_steps
+from icdgen.icd.frames import FrameField, PathStep, alias_of_steps, name_of_steps
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Icd, Message, Node
 from icdgen.protocol import facts
 from icdgen.protocol.envelope import Stream

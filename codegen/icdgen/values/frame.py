@@ -12,8 +12,9 @@ from icdgen.describe.bounds import bounds
 from icdgen.describe.display import digits_of, integer_text, number_text
 from icdgen.describe.numbers import bit_range, exact_text, value_text
 from icdgen.icd import floats
-from icdgen.icd.layout import AnyScalar, FrameField
+from icdgen.icd.frames import FrameField
 from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.places import AnyScalar
 from icdgen.protocol import facts
 from icdgen.protocol.envelope import Stream
 

@@ -9,7 +9,8 @@ from fractions import Fraction
 from typing import Any
 
 from icdgen import codec
-from icdgen.icd.layout import FrameField, VariablePart
+from icdgen.icd.frames import FrameField, frame_fields
+from icdgen.icd.layout import VariablePart
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Icd, Message, Node
 from icdgen.vectors import patterns, shared
 from icdgen.vectors.settings import Settings, bits_of, settings
@@ -79,7 +80,7 @@ def message_vectors(node: Node, message: Message) -> MessageVectors:
         if frame not in frames:
             frames[frame] = None
             rows.append(frame_row(node, message, f"chosen values {number}", frame))
-    fields = message.layout.frame(node.orders)
+    fields = frame_fields(message.layout, node.orders)
     raw_fields = [field for field in fields if field.is_raw]
     settable = [field for field in raw_fields if (field.has_formula and field.is_invertible) or field.type == "text"]
     return MessageVectors(
@@ -150,7 +151,7 @@ def _miscounted_inside(node: Node, message: Message, count: int) -> Iterator[byt
 
 def _counter(message: Message, node: Node, part: VariablePart) -> FrameField:
     """Return the field that counts the elements of a variable-length node."""
-    return next(field for field in message.layout.frame(node.orders) if field.name == part.counter)
+    return next(field for field in frame_fields(message.layout, node.orders) if field.name == part.counter)
 
 
 def _is_frame(node: Node, message: Message, frame: bytes) -> bool:
@@ -162,7 +163,7 @@ def _is_frame(node: Node, message: Message, frame: bytes) -> bool:
 def frame_row(node: Node, message: Message, why: str, frame: bytes) -> Row:
     """What the reference codec makes of a frame."""
     raw: dict[str, Any] = codec.decode(node, message, frame)
-    present = [field for field in message.layout.frame(node.orders) if field.name in raw]
+    present = [field for field in frame_fields(message.layout, node.orders) if field.name in raw]
     exact = ((field.name, codec.physical(field, raw[field.name])) for field in present)
     physical = {name: value for name, value in exact if value is not None}
     scaled = (field for field in present if field.has_formula)

@@ -10,8 +10,10 @@ from functools import lru_cache
 from itertools import pairwise
 
 from icdgen import codec
-from icdgen.icd.layout import AnyScalar, FrameField, VariablePart
+from icdgen.icd.frames import FrameField, frame_fields
+from icdgen.icd.layout import VariablePart
 from icdgen.icd.model import Message, Node
+from icdgen.icd.places import AnyScalar
 
 RANDOM_FRAMES = 4
 
@@ -53,7 +55,7 @@ def frames(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
 
 def _alternatives(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
     """Frames for every value on which it depends whether a field is there, and for those beside it."""
-    fields = {field.name: field for field in message.layout.frame(node.orders)}
+    fields = {field.name: field for field in frame_fields(message.layout, node.orders)}
     yielded = set()
     for field in fields.values():
         chosen = {fields[condition.field]: condition.values[0] for condition in field.conditions}
@@ -102,7 +104,7 @@ def cut(message: Message, node: Node, frame: bytes, count: int) -> bytes:
 
 def with_counts(message: Message, node: Node, frame: bytes, counts: Mapping[str, int]) -> bytes:
     """Return the longest frame with these numbers of elements in the fields that count them."""
-    fields = {field.name: field for field in message.layout.frame(node.orders)}
+    fields = {field.name: field for field in frame_fields(message.layout, node.orders)}
     values = {}
     for part in message.layout.parts:
         if part.name in counts and not part.is_rest:
@@ -195,7 +197,7 @@ def _near(field: AnyScalar) -> Iterator[float]:
 
 def raw_columns(message: Message, node: Node) -> Iterator[dict[str, int | bytes]]:
     """Raw values of the longest frame, so that each field takes each of its values; neighbours are out of step."""
-    fields = [field for field in message.layout.frame(node.orders) if field.is_raw]
+    fields = [field for field in frame_fields(message.layout, node.orders) if field.is_raw]
     counters = {part.counter: _counter_values(part) for part in message.layout.parts}
     columns = [counters.get(field.name) or values(field) for field in fields]
     alternatives = dict.fromkeys(tuple((one.field, one.values[0]) for one in field.conditions) for field in fields)

@@ -11,7 +11,8 @@ from functools import lru_cache
 from icdgen import codec
 from icdgen.icd.curve import Curve
 from icdgen.icd.formula import Scale
-from icdgen.icd.layout import AnyScalar, Scalar
+from icdgen.icd.layout import Scalar
+from icdgen.icd.places import AnyScalar
 
 # Refused by every field but floats: NaN (quiet, signalling, negative), the infinities, and numbers beyond any raw value.
 NEVER = (

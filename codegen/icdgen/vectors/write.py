@@ -8,7 +8,9 @@ from fractions import Fraction
 from functools import lru_cache
 
 from icdgen import __version__
-from icdgen.icd.layout import AnyScalar, FrameField, VariablePart
+from icdgen.icd.frames import FrameField
+from icdgen.icd.layout import VariablePart
+from icdgen.icd.places import AnyScalar
 from icdgen.vectors.make import FORMAT, MessageVectors, NodeVectors, Row
 from icdgen.vectors.settings import NEVER
 from icdgen.vectors.shared import SharedRow

@@ -6,6 +6,7 @@ from typing import Any
 
 from icdgen.describe import describe
 from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.places import scalars_in
 from icdgen.protocol import facts
 
 
@@ -45,7 +46,7 @@ def _message(message: Message) -> dict[str, Any]:
                 "view": field.view,
                 "conditional": bool(field.when),
             }
-            for field in (*message.layout.raw_fields, *message.views)
+            for field in sorted(scalars_in(message.layout), key=lambda field: field.view)
         ],
     }
 

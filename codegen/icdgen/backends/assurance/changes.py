@@ -16,6 +16,7 @@ from icdgen.icd.build import calibration, special
 from icdgen.icd.curve import OUTSIDE, Curve, doubles, table
 from icdgen.icd.derived import parse
 from icdgen.icd.formula import FormulaError
+from icdgen.icd.frames import frame_fields
 from icdgen.icd.layout import (
     Array,
     Counted,
@@ -304,6 +305,6 @@ def _can_be(node: LayoutNode, scalar: Scalar, kind: str) -> bool:
 
 def _places(layout: Layout, orders: Orders) -> list[tuple[Piece, ...]]:
     """Return the bits of the longest frame that each number has."""
-    fields = layout.frame(orders)
+    fields = frame_fields(layout, orders)
     numbers = (field for field in fields if field.role in ("field", "overlay") and not field.scalar.is_bytes)
     return [pieces_at(field.at, field.bits, field.byte_order, field.bit_order) for field in numbers]

@@ -14,9 +14,10 @@ from operator import or_
 from typing import Any, NamedTuple
 
 from icdgen import codec
-from icdgen.icd.layout import FixedNode, Layout, NodePlace, overlay_of
+from icdgen.icd.layout import FixedNode, Layout, overlay_of
 from icdgen.icd.layout_copies import with_enum
 from icdgen.icd.model import Enum, Message, Node
+from icdgen.icd.places import NodePlace, scalars_in
 from icdgen.vectors.lines import MessageLines
 from icdgen.vectors.make import MessageVectors, Raw, Row, known_text
 from icdgen.vectors.settings import NEVER, bits_of, float_of
@@ -42,7 +43,7 @@ class MessageWatch:
 
     def layout(self, now: Message) -> list[int]:
         """Return the lines that notice another layout of the message."""
-        olds, news = self.message.layout.scalars, now.layout.scalars
+        olds, news = scalars_in(self.message.layout), scalars_in(now.layout)
         if [old.name for old in olds] != [new.name for new in news]:
             return self.places(now, self.node)
         pairs = enumerate(zip(olds, news, strict=True))
@@ -55,7 +56,7 @@ class MessageWatch:
 
     def field(self, index: int, now: NodePlace, message: Message) -> list[int]:
         """Return the lines that notice another field at an index of the message, which then is ``message``."""
-        old = self.message.layout.scalars[index]
+        old = scalars_in(self.message.layout)[index]
         if now.derived is not None:
             pairs = zip(self.lines.rows, self.vectors.rows, strict=True)
             return [
@@ -63,7 +64,7 @@ class MessageWatch:
             ]
         lines = [self.lines.fields[old.name]] if self._line_notices(old, now) else []
         needed = {condition.field for condition in (*old.when, *now.when)}
-        alone = self._alone(now, *(place for place in message.layout.scalars if place.name in needed))
+        alone = self._alone(now, *(place for place in scalars_in(message.layout) if place.name in needed))
         rows = zip(self.lines.rows, self._long_rows, self._of_others[index], strict=True)
         return lines + [
             number for number, row, other_bits in rows if _notices(row, old, now, self.node, alone, other_bits)
@@ -88,7 +89,9 @@ class MessageWatch:
             )
             fixed.append(overlay_of(scalar) if field.view else scalar)
         layout = self.message.layout
-        return replace(self.message, layout=Layout(layout.name, layout.longest, tuple(fixed), may_end_early=layout.may_end_early))
+        return replace(
+            self.message, layout=Layout(layout.name, layout.longest, tuple(fixed), may_end_early=layout.may_end_early)
+        )
 
     def id(self, key: str) -> list[int]:
         """Lines that notice another id: frames are asked for by the id, by the set id where there are two."""
@@ -162,7 +165,7 @@ class MessageWatch:
     def _of_others(self) -> list[list[int]]:
         """Of each field, the bits that all other fields set in each row's frame."""
         columns = []
-        for field in self.message.layout.scalars:
+        for field in scalars_in(self.message.layout):
             if field.view or field.is_count:
                 columns.append([0] * len(self.vectors.rows))
                 continue

@@ -16,8 +16,8 @@ from icdgen.backends.origin import origin
 from icdgen.describe import FieldDescription, MessageDescription, NodeDescription, describe
 from icdgen.describe.description import TailDescription
 from icdgen.describe.nodes import Direction
-from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import Icd, Message
+from icdgen.icd.places import NodePlace, raw_fields_in, scalars_in
 from icdgen.render import Renderer
 from icdgen.vectors.ids import worth_asking
 from icdgen.vectors.make import MessageVectors, Raw, Row, make
@@ -197,11 +197,11 @@ def _plain(message: MessageDescription, vectors: MessageVectors) -> MessageVecto
     scaled = [one.model for one in message.all_fields if one.model.has_formula]
     rows = []
     for row in vectors.rows:
-        raw = {field.name: (absent | row.raw)[field.name] for field in message.model.layout.scalars}
+        raw = {field.name: (absent | row.raw)[field.name] for field in scalars_in(message.model.layout)}
         doubles = {one.name: bits_of(codec.physical_double(one, _number(raw[one.name])) or 0.0) for one in scaled}
         rows.append(replace(row, frame=row.encoded, raw=raw, doubles=doubles))
     always = {name: given for name, given in vectors.unfit.items() if name not in absent}
-    fresh = {field.name: field.fresh for field in message.model.layout.raw_fields}
+    fresh = {field.name: field.fresh for field in raw_fields_in(message.model.layout)}
     return replace(vectors, rows=tuple(rows), default=vectors.default | fresh, unfit=always)
 
 

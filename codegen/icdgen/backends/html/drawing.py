@@ -15,8 +15,8 @@ from icdgen.backends.html.labels import Label, fit
 from icdgen.backends.html.links import Links
 from icdgen.backends.html.texts import clip
 from icdgen.describe.numbers import bit_range
-from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import Message, Node
+from icdgen.icd.places import NodePlace, scalars_in
 
 WIDTH, LEFT, TOP = 1000, 64, 24
 _FEW = 3  # rows of one field that are drawn; of more only the first and the last
@@ -78,12 +78,12 @@ class _Canvas:
     def __init__(self, message: Message, node: Node, links: Links, first: int, end: int) -> None:
         self.message, self.node, self.first, self.length = message, node, first, end - first
         self.repeats = links.repeats(message)
-        inside = [one for one in message.layout.scalars if one.at < 8 * end and one.at + one.bits > 8 * first]
+        inside = [one for one in scalars_in(message.layout) if one.at < 8 * end and one.at + one.bits > 8 * first]
         self.across = bytes_a_row(self.length, inside)
         self.cell = (WIDTH - LEFT) / (8 * self.across)
         self.shapes = [
             Shape(key, one.type, f"{clip(self._label(key), 200)}: {bit_range(one.at, one.bits)}", anchor)
-            for key, (one, anchor) in enumerate(zip(message.layout.scalars, links.anchors(message), strict=True), 1)
+            for key, (one, anchor) in enumerate(zip(scalars_in(message.layout), links.anchors(message), strict=True), 1)
         ]
         self.owner = self._owners()[8 * first : 8 * end]
         self.grid, self.rows = self._grid()
@@ -92,17 +92,19 @@ class _Canvas:
 
     def _label(self, key: int) -> str:
         """The name of a field; of one that is not always there also those of what may be in its place."""
-        field, name = self.message.layout.scalars[key - 1], self.repeats.short(key)
+        field, name = scalars_in(self.message.layout)[key - 1], self.repeats.short(key)
         if not field.when:
             return name
         mine = layout.mask(field, self.node)
-        others = [one.name for one in self.message.layout.scalars if one.when and layout.mask(one, self.node) & mine]
+        others = [
+            one.name for one in scalars_in(self.message.layout) if one.when and layout.mask(one, self.node) & mine
+        ]
         return " / ".join([name, *(other for other in others if other != field.name)][:4])
 
     def _owners(self) -> list[int]:
         """Key of the field that each bit of the frame belongs to, in bytes of bits from the left; 0: reserved."""
         owner = [0] * (8 * self.message.length)
-        for shape, one in zip(self.shapes, self.message.layout.scalars, strict=True):
+        for shape, one in zip(self.shapes, scalars_in(self.message.layout), strict=True):
             if one.view or one.implied:
                 continue
             if one.is_bytes:

@@ -8,8 +8,8 @@ from icdgen import codec
 from icdgen.backends.html.texts import MINUS, number
 from icdgen.describe.display import base_of, digits_of, integer_text, number_text
 from icdgen.icd import floats
-from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import Message, Node
+from icdgen.icd.places import NodePlace, scalars_in
 from icdgen.tables import clean
 from icdgen.vectors import patterns
 
@@ -51,8 +51,8 @@ def examples(message: Message, node: Node) -> list[Example]:
     for why, frame in rows:
         if message.layout.parts:
             frame = patterns.cut(message, node, frame, message.layout.parts[-1].most)
-        raw = codec.decode(node, message, frame) if len(message.layout.scalars) <= _MOST else {}
-        cells = [_cell(field, raw.get(field.name)) for field in message.layout.scalars] if raw else []
+        raw = codec.decode(node, message, frame) if len(scalars_in(message.layout)) <= _MOST else {}
+        cells = [_cell(field, raw.get(field.name)) for field in scalars_in(message.layout)] if raw else []
         found.append(Example(why, frame.hex(" ").upper(), frame, cells))
     return found
 

@@ -10,8 +10,8 @@ from icdgen import layout
 from icdgen.backends.html import texts
 from icdgen.backends.html.links import Links
 from icdgen.backends.html.sections import Section
-from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import Message, Node
+from icdgen.icd.places import NodePlace, scalars_in
 from icdgen.show.fields import remarks
 
 
@@ -63,7 +63,7 @@ def rows(message: Message, node: Node, links: Links) -> list[FieldRow]:
     repeats, anchors = links.repeats(message), links.anchors(message)
     found = [
         _row(key, field, message, links, anchors[key - 1])
-        for key, field in enumerate(message.layout.scalars, 1)
+        for key, field in enumerate(scalars_in(message.layout), 1)
         if not field.implied and repeats.is_shown(key)
     ]
     for gap in layout.gaps(message, node):

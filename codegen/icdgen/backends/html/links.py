@@ -11,8 +11,8 @@ from zlib import crc32
 
 from icdgen.backends.html.repeats import Repeats
 from icdgen.icd.erratum import Erratum
-from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import Enum, Icd, Message, Node
+from icdgen.icd.places import NodePlace, scalars_in
 from icdgen.icd.units import Unit
 from icdgen.naming import snake, words
 
@@ -79,7 +79,7 @@ class Links:
 
     def anchors(self, message: Message) -> list[str]:
         """Anchors of the fields of a message, in their order."""
-        return [self.anchor(message, field.name) for field in message.layout.scalars]
+        return [self.anchor(message, field.name) for field in scalars_in(message.layout)]
 
     def field(self, message: Message, field: NodePlace) -> str:
         """``demo/estimated_roll.html#field-roll_angle``"""
@@ -102,8 +102,8 @@ def _anchors_of_fields(message: Message, repeats: Repeats, vocabulary: tuple[str
     """By the name of the field; the fields of further elements have those of the first, where the page shows that alone."""
     taken: set[str] = set()
     found: dict[str, str] = {}
-    for field, leader, name in zip(message.layout.scalars, repeats.leaders, repeats.names, strict=True):
-        first = message.layout.scalars[leader - 1]
+    for field, leader, name in zip(scalars_in(message.layout), repeats.leaders, repeats.names, strict=True):
+        first = scalars_in(message.layout)[leader - 1]
         if first is field:
             found[field.name] = _free("field-" + slug(field.identifier or name, vocabulary), taken)
         else:

@@ -16,6 +16,7 @@ from icdgen.describe.numbers import count_text, length_text
 from icdgen.describe.shared_ids import sharing
 from icdgen.icd import wire_ids
 from icdgen.icd.model import Message, Node
+from icdgen.icd.places import scalars_in
 from icdgen.icd.rules.wording import count
 
 if TYPE_CHECKING:
@@ -101,7 +102,9 @@ def _open_parts(message: Message) -> Iterator[tuple[str, str, str]]:
 def _plan(
     relations: Relations, node: Node, message: Message, drawings: list[drawing.Drawing], panels: list[sections.Section]
 ) -> dict[str, object]:
-    enums = {field.enum.name: plan.enum_plan(field.enum) for field in message.layout.scalars if field.enum is not None}
+    enums = {
+        field.enum.name: plan.enum_plan(field.enum) for field in scalars_in(message.layout) if field.enum is not None
+    }
     repeats = relations.links.repeats(message)
     return {
         **plan.message_plan(message, node),

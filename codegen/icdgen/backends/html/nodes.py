@@ -6,6 +6,7 @@ from icdgen.backends.html import examples, protocol, texts, wire
 from icdgen.backends.html.relations import Place, Relations, document, manual
 from icdgen.describe.errata import errata_of_message
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Message, Node
+from icdgen.icd.places import scalars_in
 from icdgen.icd.wire_ids import DEFAULT_BITS
 
 _KINDS = {TELECOMMAND: "Telecommands", TELEMETRY: "Telemetry", CONFIGURATION: "Configuration"}
@@ -32,7 +33,7 @@ def home(relations: Relations) -> dict[str, object]:
         (f"{notes:,}", "notes"),
     ]
     example = next(
-        (m for m in messages if m.telemetry_id is not None and any(f.has_formula for f in m.layout.scalars)), None
+        (m for m in messages if m.telemetry_id is not None and any(f.has_formula for f in scalars_in(m.layout))), None
     )
     return {
         "totals": totals,

@@ -11,14 +11,14 @@ from icdgen import layout
 from icdgen.describe.bounds import bounds
 from icdgen.describe.display import base_of, digits_of
 from icdgen.describe.steps import EXACT_DOUBLE, steps
-from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import Enum, Message, Node
+from icdgen.icd.places import NodePlace, scalars_in
 
 
 def message_plan(message: Message, node: Node) -> dict[str, object]:
     """The plan of a message; ``node`` is the one that declares it. Fields stand in the order of the ICD."""
-    places = {field.name: place for place, field in enumerate(message.layout.scalars)}
-    fields = [_field(field, message, node, places) for field in message.layout.scalars]
+    places = {field.name: place for place, field in enumerate(scalars_in(message.layout))}
+    fields = [_field(field, message, node, places) for field in scalars_in(message.layout)]
     plan: dict[str, object] = {"name": message.name, "length": message.length, "fields": fields}
     if any(node.present_if for node in message.layout.fixed):
         plan["conditional"] = True

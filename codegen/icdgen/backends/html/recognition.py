@@ -10,6 +10,7 @@ from icdgen.backends.html import envelopes, wire
 from icdgen.backends.html.relations import Relations
 from icdgen.icd import wire_ids
 from icdgen.icd.model import Message, Node
+from icdgen.icd.places import places_in
 from icdgen.icd.variants import Variant, ids_of
 from icdgen.layout import signs
 from icdgen.protocol import facts
@@ -35,7 +36,7 @@ def _tail(relations: Relations, message: Message) -> list[dict[str, Any]]:
     if len(parts) > 1:  # what its frames say themselves, their decoder looks at
         return [{"least": own.shortest, "step": own.lengths.step, "pieces": []}]
     tail, node = parts[-1], relations.icd.node(message.node)
-    counter = next((place for place in own.places if place.name == tail.counter and not tail.is_rest), None)
+    counter = next((place for place in places_in(own) if place.name == tail.counter and not tail.is_rest), None)
     pieces = () if counter is None else layout.pieces(counter, node)
     found = {"least": own.shortest, "step": tail.step, "pieces": [[p.byte, p.shift, p.bits, p.at] for p in pieces]}
     return [found | ({"low": tail.low} if tail.low else {})]

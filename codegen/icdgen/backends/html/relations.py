@@ -12,8 +12,8 @@ from icdgen.backends.packages import Packages
 from icdgen.describe import MessageDescription, describe
 from icdgen.icd.annex import Loggable
 from icdgen.icd.erratum import Erratum
-from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.places import NodePlace, scalars_in
 from icdgen.icd.prefixed import with_prefix
 from icdgen.icd.units import Unit
 from icdgen.protocol import facts
@@ -103,7 +103,7 @@ class Relations:
     def shown_fields(self, message: Message) -> list[tuple[str, NodePlace]]:
         """The fields that the page of a message shows, with their names: of some arrays only those of the first element."""
         repeats = self.links.repeats(message)
-        named = zip(repeats.names, message.layout.scalars, strict=True)
+        named = zip(repeats.names, scalars_in(message.layout), strict=True)
         return [pair for key, pair in enumerate(named, 1) if repeats.is_shown(key)]
 
     def wire(self, message: Message) -> Wire:

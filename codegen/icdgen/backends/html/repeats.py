@@ -8,8 +8,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TypeAlias
 
-from icdgen.icd.layout import NodePlace, PathStep, name_of_steps, size_of
+from icdgen.icd.frames import PathStep, name_of_steps
+from icdgen.icd.layout import size_of
 from icdgen.icd.model import Message
+from icdgen.icd.places import NodePlace, places_in, scalars_in
 
 _LONG = 16  # elements of an array of numbers that is shown by one element
 
@@ -38,7 +40,7 @@ class Repeats:
 
     def __init__(self, message: Message) -> None:
         self._found: dict[_Array, Repeat] = {}
-        scalars = message.layout.scalars
+        scalars = scalars_in(message.layout)
         if not message.contains:  # a composite has the bands of its parts
             self._add_arrays(message, scalars)
         self.arrays = sorted(self._found.values(), key=lambda one: (one.first, -one.end))
@@ -71,7 +73,7 @@ class Repeats:
     def _add_arrays(self, message: Message, scalars: tuple[NodePlace, ...]) -> None:
         """Find the arrays that are shown by one element."""
         starts = sorted(scalar.at for scalar in scalars)
-        for place in _arrays(message.layout.places):
+        for place in _arrays(places_in(message.layout)):
             node, variable = place.node, message.layout.sequence
             is_variable = any(node is part for part in variable)
             if place.count < 2 or not (is_variable or place.struct is not None or place.count > _LONG):

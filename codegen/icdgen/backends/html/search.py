@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 from icdgen.backends.html import guide, protocol, texts
 from icdgen.backends.html.relations import Relations
-from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import CONFIGURATION, Enum, Member, Message, Node
+from icdgen.icd.places import NodePlace
 from icdgen.naming import words
 
 _MOST = 300  # characters of a text that is searched

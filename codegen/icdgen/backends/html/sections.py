@@ -9,8 +9,8 @@ from itertools import groupby
 from icdgen.backends.html.relations import Relations
 from icdgen.backends.html.repeats import Repeat, Repeats
 from icdgen.describe.numbers import byte_range
-from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import Message
+from icdgen.icd.places import NodePlace, scalars_in
 from icdgen.icd.rules.wording import count
 
 _LONG = 16  # fields of a message that is shown in sections; four flags count as one field
@@ -69,8 +69,10 @@ def _arrays(message: Message, repeats: Repeats) -> list[Section]:
         return []
     found = list(_around(message, list(repeats.arrays), 0, message.length, None))
     shown = {key for section in found for key in section.keys}
-    others = [key for key in range(1, len(message.layout.scalars) + 1) if repeats.is_shown(key) and key not in shown]
-    others = [key for key in others if not message.layout.scalars[key - 1].implied]
+    others = [
+        key for key in range(1, len(scalars_in(message.layout)) + 1) if repeats.is_shown(key) and key not in shown
+    ]
+    others = [key for key in others if not scalars_in(message.layout)[key - 1].implied]
     if others:
         found.append(Section("Derived values", message.length, message.length, others))
     return [replace(one, keys=[key for key in one.keys if repeats.is_shown(key)]) for one in found]
@@ -93,15 +95,15 @@ def _around(message: Message, arrays: list[Repeat], first: int, end: int, inside
 
 def shares(message: Message) -> list[Section]:
     """The fields in their order, in sections where there are many."""
-    keys = list(range(1, len(message.layout.scalars) + 1))
+    keys = list(range(1, len(scalars_in(message.layout)) + 1))
     if not _is_long(message):
         return [Section("Fields", 0, message.length, keys)]
     size = -(-len(keys) // -(-len(keys) // _SHARE))  # all about as long
     found = []
     for start in range(0, len(keys), size):
         some = keys[start : start + size]
-        fields = [one for key in some if _has_bits(one := message.layout.scalars[key - 1])]
-        fields = fields or [one for one in message.layout.scalars if _has_bits(one)][-1:]
+        fields = [one for key in some if _has_bits(one := scalars_in(message.layout)[key - 1])]
+        fields = fields or [one for one in scalars_in(message.layout) if _has_bits(one)][-1:]
         first, end = min(one.at for one in fields) // 8, -(-max(one.at + one.bits for one in fields) // 8)
         found.append(Section(f"Fields {some[0]} to {some[-1]}", first, end, some))
     return _folded(message, found)
@@ -110,13 +112,15 @@ def shares(message: Message) -> list[Section]:
 def panels(message: Message, repeats: Repeats) -> list[Section]:
     """The sections of the decoder where arrays are shown by one element: it has all elements, each struct by itself."""
     found: list[Section] = []
-    for element, group in groupby(range(1, len(message.layout.scalars) + 1), key=lambda key: repeats.elements[key - 1]):
+    for element, group in groupby(
+        range(1, len(scalars_in(message.layout)) + 1), key=lambda key: repeats.elements[key - 1]
+    ):
         keys = list(group)
-        fields = [one for key in keys if _has_bits(one := message.layout.scalars[key - 1])]
+        fields = [one for key in keys if _has_bits(one := scalars_in(message.layout)[key - 1])]
         first = min((one.at for one in fields), default=0) // 8
         end = -(-max((one.at + one.bits for one in fields), default=0) // 8)
         title = element or (
-            "Fields" if fields else "Count" if message.layout.scalars[keys[0] - 1].implied else "Derived values"
+            "Fields" if fields else "Count" if scalars_in(message.layout)[keys[0] - 1].implied else "Derived values"
         )
         found.append(Section(title, first, end, keys, open=not element))
     return found
@@ -134,7 +138,7 @@ def _folded(message: Message, found: list[Section]) -> list[Section]:
 
 
 def _is_long(message: Message) -> bool:
-    return sum(1 if one.type != "bool" else 0.25 for one in message.layout.scalars) > _LONG
+    return sum(1 if one.type != "bool" else 0.25 for one in scalars_in(message.layout)) > _LONG
 
 
 def _between(message: Message, first: int, end: int) -> list[Section]:
@@ -145,4 +149,4 @@ def _between(message: Message, first: int, end: int) -> list[Section]:
 def _keys(message: Message, first: int, end: int) -> list[int]:
     """The numbers of the fields from one byte to another; what is derived stands with the last ones."""
     last = 8 * end + (end == message.length)
-    return [key for key, one in enumerate(message.layout.scalars, 1) if 8 * first <= one.at < last]
+    return [key for key, one in enumerate(scalars_in(message.layout), 1) if 8 * first <= one.at < last]

@@ -7,8 +7,8 @@ from fractions import Fraction
 
 from icdgen.describe.bounds import allowed_ends
 from icdgen.describe.numbers import exact_text, factor_text
-from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import CONFIGURATION, Message
+from icdgen.icd.places import NodePlace
 
 MINUS = "\N{MINUS SIGN}"
 BUSES = {"uart": "UART", "i2c": "I²C", "can": "CAN"}

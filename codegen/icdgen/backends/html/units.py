@@ -6,6 +6,7 @@ from collections import defaultdict
 
 from icdgen.backends.html import texts
 from icdgen.backends.html.relations import Relations
+from icdgen.icd.places import scalars_in
 
 _FEW = 8
 _TYPES = {
@@ -28,7 +29,7 @@ def values(relations: Relations) -> dict[str, object]:
     widths: dict[str, set[int]] = defaultdict(set)
     for node in relations.icd.nodes:
         for message in node.messages:
-            for field in message.layout.scalars:
+            for field in scalars_in(message.layout):
                 counts[field.type] += 1
                 widths[field.type].add(field.bits)
     return {

@@ -7,8 +7,8 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from icdgen import layout
-from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import Node
+from icdgen.icd.places import NodePlace
 
 
 class Run(NamedTuple):

@@ -14,8 +14,8 @@ from icdgen.describe.bounds import bounds
 from icdgen.describe.description import TailDescription
 from icdgen.describe.numbers import exact_text, point_text
 from icdgen.icd.curve import CLAMP, EXTRAPOLATE
-from icdgen.icd.layout import NodePlace
 from icdgen.icd.model import Member
+from icdgen.icd.places import NodePlace
 
 _LONG = range(-(1 << 63), 1 << 63)  # what XTCE has as a value of an integer
 _KEYS = {"min": "minInclusive", "above": "minExclusive", "max": "maxInclusive", "below": "maxExclusive"}

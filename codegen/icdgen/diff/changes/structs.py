@@ -19,6 +19,7 @@ from icdgen.icd.layout import Layout
 from icdgen.icd.layout_copies import with_attributes, with_node, with_struct_layout
 from icdgen.icd.lines import Line
 from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.places import places_in
 from icdgen.icd.rules.wording import count, quote
 
 
@@ -149,7 +150,7 @@ def struct_stands_otherwise(pair: MessagePair, ctx: Context) -> Iterator[Found]:
 
 def _standing(message: Message) -> Iterator[str]:
     """``Satellites: 4 x Satellite``, for each struct in a message."""
-    for place in message.layout.places:
+    for place in places_in(message.layout):
         if place.struct is not None:
             times = f"{place.count} x " if place.count else ""
             yield f"{place.identifier or place.name}: {times}{place.struct.name}"

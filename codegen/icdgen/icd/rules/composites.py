@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 from icdgen.diagnostics import Place
 from icdgen.icd.fault import Fault
-from icdgen.icd.layout import NodePlace
 from icdgen.icd.located import Map
 from icdgen.icd.model import Message, Node, Part
+from icdgen.icd.places import NodePlace, scalars_in
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import VERBATIM, line_of, listing, quote
@@ -104,7 +104,7 @@ def part_matches(ctx: Context) -> Iterator[Fault]:
 
 def _fields_with_bits(message: Message) -> list[NodePlace]:
     """Return the fields of the longest frame that have bits of their own."""
-    return [field for field in message.layout.scalars if not (field.is_count or field.view)]
+    return [field for field in scalars_in(message.layout) if not (field.is_count or field.view)]
 
 
 def _compare(frame: Message, here: Place) -> str:

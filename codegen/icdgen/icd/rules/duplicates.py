@@ -11,6 +11,7 @@ from icdgen.icd.fault import Fault
 from icdgen.icd.layout import LayoutNode
 from icdgen.icd.located import Map
 from icdgen.icd.model import Enum, Member, Message, Node, Struct
+from icdgen.icd.places import places_in, scalars_in
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, quote
@@ -74,11 +75,11 @@ def field_names(ctx: Context) -> Iterator[Fault]:
         is_path = any("[" in name or "." in name for name in names)
         if len(names) == len(nodes) and not owner.layout.sequence and not is_path:
             continue
-        places = owner.layout.places
+        places = places_in(owner.layout)
         fields = [element for place in places for element in place.elements()]
         # If two structs or arrays have one name, all their fields have equal names, too: report only the former.
         if len({field.name for field in fields}) == len(fields):
-            fields = list(owner.layout.scalars)
+            fields = list(scalars_in(owner.layout))
         reported = set()
         for first, second in _twice(fields, lambda field: field.name):
             if id(second.source) in reported:
@@ -146,7 +147,7 @@ def aliases(ctx: Context) -> Iterator[Fault]:
                     yield fault
     for owner, node in ctx.owners:
         if any(line.aliases for line in owner.layout.nodes):
-            yield from _ambiguous_aliases([place.node for place in owner.layout.places], node.vocabulary)
+            yield from _ambiguous_aliases([place.node for place in places_in(owner.layout)], node.vocabulary)
     for node in ctx.icd.nodes:
         for enum in node.enums:
             yield from _ambiguous_aliases(enum.members, node.vocabulary)

@@ -12,8 +12,9 @@ from icdgen.icd import tails
 from icdgen.icd.conditions import are_understood, exclude
 from icdgen.icd.division import obstacles
 from icdgen.icd.fault import Fault
-from icdgen.icd.layout import Array, Derived, Layout, LayoutNode, NodePlace, stride, struct_layout_of
+from icdgen.icd.layout import Array, Derived, Layout, LayoutNode, stride, struct_layout_of
 from icdgen.icd.model import Message, Node
+from icdgen.icd.places import NodePlace, places_in, scalars_in
 from icdgen.icd.rules.context import Context, Owner, is_overlay
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, line_of, quote
@@ -69,7 +70,7 @@ def _overlaps(ctx: Context) -> Iterator[Overlap]:
     for owner, icd_node in ctx.owners:
         if _are_apart(owner.layout):
             continue
-        own = [place for place in owner.layout.places if _has_own_bits(place)]
+        own = [place for place in places_in(owner.layout) if _has_own_bits(place)]
         elements = [element for place in own for element in (place.elements() if place.count else (place,))]
         if any("when" in place.source or place.bit_order not in ("", icd_node.bit_order) for place in own):
             yield from _overlaps_among(owner, icd_node, (one for one in elements if are_understood(one.node)))
@@ -108,7 +109,7 @@ def _overlaps_within_structs(ctx: Context) -> Iterator[Overlap]:
     for owner, icd_node in ctx.owners:
         if not any(map(struct_layout_of, owner.layout.nodes)):
             continue
-        for place in owner.layout.places:
+        for place in places_in(owner.layout):
             _, home = ctx.struct_of.get(id(place.struct), (None, None))
             if home is not None and place.orders_in_effect(icd_node.orders).bit != home.bit_order:
                 yield from _overlaps_among(owner, icd_node, place.elements()[0].scalars())  # all elements are alike
@@ -226,7 +227,7 @@ def view_of_fields(ctx: Context) -> Iterator[Fault]:
             text = f"{name} is an overlay field, whose value is never set, so it cannot have `const`"
             yield Fault.at(source, "const", text, "give `const` to the field that has the bits")
         free = _mask(node.at, field.bits, line.orders.bit)
-        for owner in message.layout.scalars:
+        for owner in scalars_in(message.layout):
             if _has_own_bits(owner) and not owner.when:
                 free &= ~_mask(owner.at, owner.bits, owner.orders_in_effect(icd_node.orders).bit)
         if free and is_read(message):

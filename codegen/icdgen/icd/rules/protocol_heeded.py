@@ -6,9 +6,9 @@ from collections.abc import Iterable, Iterator
 from itertools import product
 
 from icdgen.icd.fault import Fault
-from icdgen.icd.layout import NodePlace
 from icdgen.icd.located import Map, Seq, unread
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Node
+from icdgen.icd.places import NodePlace, scalars_in
 from icdgen.icd.roles import INTEGERS, PROTOCOL, Role, reasons_against
 from icdgen.icd.rules.context import Context, section_of
 from icdgen.icd.rules.protocol import sections
@@ -77,7 +77,7 @@ def parts_can_be_played(ctx: Context) -> Iterator[Fault]:
             if message is not None:
                 fields = section.get("fields")
                 owner, keys = (section, FIELDS) if fields is None else (fields, fields)
-                yield from _fields(owner, keys, message.layout.scalars)
+                yield from _fields(owner, keys, scalars_in(message.layout))
         yield from _telecommands_once(node)
 
 

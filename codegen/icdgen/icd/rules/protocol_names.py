@@ -11,6 +11,7 @@ from icdgen.diagnostics import Place
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Message, Node
+from icdgen.icd.places import scalars_in
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import rule
@@ -82,7 +83,7 @@ def _named_fields(ctx: Context, node: Node) -> Iterator[_Named]:
 def named_fields_exist(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         for owner, key, message in _named_fields(ctx, node):
-            fields = message.layout.scalars
+            fields = scalars_in(message.layout)
             known = {field.name for field in fields if not field.view}
             if any(field.name == owner[key] and field.view for field in fields):
                 text = f"{quote(owner[key])} of {quote(message.name)} is a view, and links read what has bits"
@@ -97,7 +98,7 @@ def named_fields_in_the_order_of_the_node(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         for owner, key, message in _named_fields(ctx, node):
             home = ctx.home_of(message, node)
-            for field in message.layout.scalars:
+            for field in scalars_in(message.layout):
                 own = field.orders_in_effect(home.orders)
                 if field.name == owner[key] and not field.is_bytes and own != node.orders:
                     text = f"{quote(field.name)} is {own.byte} {own.bit}, the links of `{node.name}` read fields as"

@@ -9,6 +9,7 @@ from icdgen.icd import tails
 from icdgen.icd.fault import Fault
 from icdgen.icd.layout import Array, Overlay, stride
 from icdgen.icd.model import Message, Node
+from icdgen.icd.places import places_in
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, quote
@@ -61,7 +62,7 @@ def at_the_end(ctx: Context) -> Iterator[Fault]:
             always = layout.length if len(layout.sequence) > 1 else layout.shortest
             end = overlay.at + stride(overlay)
             if isinstance(overlay, Overlay) and end > 8 * always:
-                parts = [place for place in layout.places if place.node in layout.sequence and place.at < end]
+                parts = [place for place in places_in(layout) if place.node in layout.sequence and place.at < end]
                 text = f"{quote(overlay.name)} is an overlay of {quote(parts[-1].name)}, which not every frame has"
                 yield Fault.at(overlay.source, "at", text, "place the overlay on fields that every frame has")
 

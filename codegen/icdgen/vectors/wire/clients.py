@@ -7,6 +7,7 @@ from random import Random
 from typing import Any
 
 from icdgen import codec
+from icdgen.icd.frames import frame_fields
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.protocol import can, i2c, uart
 from icdgen.protocol import logs as log_files
@@ -200,7 +201,7 @@ def _i2c(known: Facts, s: Sample, checked: bool) -> Iterator[tuple[str, list[dic
         return i2c.telecommand(known, message.telemetry_id or 0, data, checked_frames)[1:].hex()
 
     def state(at: int, message: Message, processed: int, code: int = 0) -> dict[str, Any]:
-        raw: dict[str, Any] = {field.name: 0 for field in polled.message.layout.frame(known.node.orders)}
+        raw: dict[str, Any] = {field.name: 0 for field in frame_fields(polled.message.layout, known.node.orders)}
         raw[polled.id], raw[polled.processed] = message.telecommand_id, processed
         raw[polled.error], raw[polled.parameter] = code, 7 if code else 0
         return {"at": at, "receive": frame(polled.message, codec.encode(known.node, polled.message, raw))}

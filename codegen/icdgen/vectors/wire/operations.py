@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from icdgen.icd.frames import frame_fields
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Operation
 from icdgen.vectors.wire import Requests, Script
@@ -43,7 +44,7 @@ def _allowed(name: str, form: Operation) -> Requests:
 def _ends(known: Facts, name: str, form: Operation) -> Requests:
     step, pause, end = form.progress, form.poll_interval, 1 + form.timeout
     program = form.programs[0] if form.programs else 1
-    bits = {field.name: field.bits for field in step.message.layout.frame(known.node.orders)}
+    bits = {field.name: field.bits for field in frame_fields(step.message.layout, known.node.orders)}
     begin: Script = [{"at": 0}, {"at": 1, "event": ACKNOWLEDGED}]
     found = {"size": 0x12345678, "checksum": 0x9ABCDEF0}
 

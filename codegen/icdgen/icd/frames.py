@@ -1,0 +1,276 @@
+"""Scalars of one frame with their bits, for the codec, logs and the simulator.
+
+In: a layout, and the sizes of its variable parts. Read `icdgen.layout` next, which turns the position of a scalar into runs
+of bits of bytes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Literal, TypeAlias
+
+from icdgen.frozen import dataclass
+from icdgen.icd.curve import Curve
+from icdgen.icd.derived import Derivation
+from icdgen.icd.display import Display
+from icdgen.icd.enumeration import Enum
+from icdgen.icd.formula import Scale
+from icdgen.icd.layout import (
+    Array,
+    Condition,
+    Derived,
+    FixedNode,
+    Layout,
+    LayoutNode,
+    Limits,
+    Orders,
+    Overlay,
+    Rest,
+    Scalar,
+    Sizes,
+    Special,
+    StructRef,
+    size_of,
+    stride,
+)
+from icdgen.icd.units import Unit
+from icdgen.once import cached_property, kept_by_owner
+
+_KEPT_FRAMES = 64
+"""Number of frame sizes per layout whose scalars are cached: a log repeats few sizes."""
+
+
+_KEPT_SCALARS = 100_000
+"""Number of scalars per layout in all these frames, about 50 MB: arrays can have thousands of elements."""
+
+
+@dataclass(frozen=True, slots=True)
+class PathStep:
+    """A node on the way to a scalar, and which element of it if it is an array."""
+
+    node: LayoutNode
+    element: int | None = None
+
+    def text(self, name: str) -> str:
+        """Return a name of the node with the element behind it: ``Satellites[2]``."""
+        return name if self.element is None else f"{name}[{self.element}]"
+
+
+def name_of_steps(steps: Sequence[PathStep]) -> str:
+    """Return the name of what stands at the end of a path: ``Satellites[2].GNSS``."""
+    return ".".join(step.text(step.node.name) for step in steps)
+
+
+def alias_of_steps(steps: Sequence[PathStep]) -> str | None:
+    """Return the name with identifiers in place of names; None if no node on the path has an identifier."""
+    if not any(step.node.identifier for step in steps):
+        return None
+    return ".".join(step.text(step.node.identifier or step.node.name) for step in steps)
+
+
+Role: TypeAlias = Literal["field", "overlay", "derived", "count"]
+"""Role of a scalar in a frame: `count` is a number of elements that follows from the length of the frame, without bits."""
+
+
+class OfScalar:
+    """Something with a scalar. It has the attributes of the scalar that give a raw value its meaning."""
+
+    scalar: Scalar
+
+    @property
+    def type(self) -> str:
+        """See `Scalar.type`."""
+        return self.scalar.type
+
+    @property
+    def enum(self) -> Enum | None:
+        """See `Scalar.enum`."""
+        return self.scalar.enum
+
+    @property
+    def unit(self) -> Unit | None:
+        """See `Scalar.unit`."""
+        return self.scalar.unit
+
+    @property
+    def unit_symbol(self) -> str:
+        """See `Scalar.unit_symbol`."""
+        return self.scalar.unit_symbol
+
+    @property
+    def formula(self) -> str:
+        """See `Scalar.formula`."""
+        return self.scalar.formula
+
+    @property
+    def scale(self) -> Scale | None:
+        """See `Scalar.scale`."""
+        return self.scalar.scale
+
+    @property
+    def curve(self) -> Curve | None:
+        """See `Scalar.curve`."""
+        return self.scalar.curve
+
+    @property
+    def const(self) -> int | None:
+        """See `Scalar.const`."""
+        return self.scalar.const
+
+    @property
+    def special(self) -> tuple[Special, ...]:
+        """See `Scalar.special`."""
+        return self.scalar.special
+
+    @property
+    def limits(self) -> Limits | None:
+        """See `Scalar.limits`."""
+        return self.scalar.limits
+
+    @property
+    def display(self) -> Display | None:
+        """See `Scalar.display`."""
+        return self.scalar.display
+
+    @property
+    def is_bytes(self) -> bool:
+        """See `Scalar.is_bytes`."""
+        return self.scalar.is_bytes
+
+    @property
+    def is_signed(self) -> bool:
+        """See `Scalar.is_signed`."""
+        return self.scalar.is_signed
+
+    @property
+    def has_formula(self) -> bool:
+        """See `Scalar.has_formula`."""
+        return self.scalar.has_formula
+
+    @property
+    def is_invertible(self) -> bool:
+        """See `Scalar.is_invertible`."""
+        return self.scalar.is_invertible
+
+    @property
+    def raw_min(self) -> int:
+        """See `Scalar.raw_min`."""
+        return self.scalar.raw_min
+
+    @property
+    def raw_max(self) -> int:
+        """See `Scalar.raw_max`."""
+        return self.scalar.raw_max
+
+    @property
+    def settable_raws(self) -> tuple[int, int]:
+        """See `Scalar.settable_raws`."""
+        return self.scalar.settable_raws
+
+
+@dataclass(frozen=True, eq=False)
+class FrameField(OfScalar):
+    """A scalar where it stands in one frame. Compared by identity: `frame_fields` makes each once."""
+
+    steps: tuple[PathStep, ...]  # from the node of the message's own layout to the scalar
+    at: int  # bit of the frame, counted in the bit order in effect
+    bits: int  # of bytes and text those of the frame
+    scalar: Scalar
+    byte_order: str  # in effect
+    bit_order: str  # in effect
+    role: Role = "field"
+
+    @cached_property
+    def name(self) -> str:
+        """``Satellites[2].GNSS``"""
+        return name_of_steps(self.steps)
+
+    @property
+    def alias(self) -> str | None:
+        """Return the name with identifiers in place of names; None if no node on the way has an identifier."""
+        return alias_of_steps(self.steps)
+
+    @property
+    def conditions(self) -> tuple[Condition, ...]:
+        """It is in the frame only if all of them hold."""
+        return self.scalar.present_if
+
+    @property
+    def has_bits(self) -> bool:
+        """Whether it owns bits of the frame."""
+        return self.role == "field"
+
+    @property
+    def is_raw(self) -> bool:
+        """Return whether a raw value has to be given for it: it owns bits, or is the number of elements."""
+        return self.role in ("field", "count")
+
+    @property
+    def derived(self) -> Derivation | None:
+        """Return how a derived value is computed; None for any other role."""
+        node = self.steps[-1].node
+        return node.derivation if isinstance(node, Derived) else None
+
+
+def frame_fields(layout: Layout, orders: Orders, sizes: Sizes | None = None) -> tuple[FrameField, ...]:
+    """Return the scalars of a frame, as `flatten` lists them; the last `_KEPT_FRAMES` results of a layout are kept."""
+    frames = _frames(layout)
+    key = orders, None if sizes is None or not layout.sequence else tuple(sizes[node.name] for node in layout.sequence)
+    fields = frames.get(key)
+    if fields is None:
+        kept_fields = sum(map(len, frames.values()))
+        while frames and (len(frames) >= _KEPT_FRAMES or kept_fields > _KEPT_SCALARS):
+            kept_fields -= len(frames.pop(next(iter(frames))))
+        fields = frames[key] = tuple(flatten(layout, orders, sizes))
+    return fields
+
+
+@kept_by_owner
+def _frames(layout: Layout) -> dict[tuple[Orders, tuple[int, ...] | None], tuple[FrameField, ...]]:
+    """The results of `frame_fields`, the oldest first."""
+    return {}
+
+
+def flatten(layout: Layout, orders: Orders, sizes: Sizes | None = None) -> list[FrameField]:
+    """List the scalars of a frame with these sizes; without sizes those of the longest frame.
+
+    `orders` are those of the ICD node. `frame_fields` keeps the result.
+    """
+    fields: list[FrameField] = []
+    orders = layout.orders.within(orders)
+    for node in layout.fixed:
+        fields += _scalars(node, (PathStep(node),), node.at, node.orders.within(orders))
+    end = 8 * layout.length
+    for part in layout.sequence:
+        size = size_of(part)
+        number = size.most if sizes is None else sizes[part.name]
+        own = part.orders.within(orders)
+        if isinstance(part, Array):
+            for element in range(number):
+                fields += _scalars(part.item, (PathStep(part, element),), end + element * stride(part), own)
+        else:
+            fields.append(FrameField((PathStep(part),), end, 8 * number, part, own.byte, own.bit))
+        end += number * stride(part)
+        if isinstance(size, Rest):
+            counter = size.counter
+            fields.append(FrameField((PathStep(counter),), end, counter.bits, counter, own.byte, own.bit, "count"))
+    for derived in layout.derived:
+        scalar, step = derived.scalar, PathStep(derived)
+        fields.append(FrameField((step,), end, scalar.bits, scalar, orders.byte, orders.bit, "derived"))
+    return fields
+
+
+def _scalars(node: FixedNode, steps: tuple[PathStep, ...], at: int, orders: Orders) -> Iterator[FrameField]:
+    """List the scalars of a node of fixed size that begins at bit `at`."""
+    match node:
+        case Scalar(bits=bits):
+            yield FrameField(steps, at, bits, node, orders.byte, orders.bit)
+        case Overlay(scalar=scalar):
+            yield FrameField(steps, at, scalar.bits, scalar, orders.byte, orders.bit, "overlay")
+        case StructRef(layout=layout):
+            for inner in layout.fixed:
+                yield from _scalars(inner, (*steps, PathStep(inner)), at + inner.at, inner.orders.within(orders))
+        case Array(item=item, size=int(count)):
+            for element in range(count):
+                steps_to = (*steps[:-1], PathStep(node, element))
+                yield from _scalars(item, steps_to, at + element * stride(item), orders)
