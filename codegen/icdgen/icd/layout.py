@@ -1,10 +1,10 @@
 """Layout of a message or a struct as a tree with one node per line of the ICD.
 
-In: what `icdgen.icd.build` reads from the mappings of a file. Out: `walk` visits the declarations, `flatten` lists the
-scalars of one frame with their bit positions. Positions and orders stay as the ICD declares them; `walk` and `flatten`
-resolve the orders on the way down, because the same struct can stand in messages of different orders.
+In: what `icdgen.icd.build` reads from the mappings of a file. Out: nodes, and `walk`, which visits the declarations.
+Positions and orders stay as the ICD declares them; orders are resolved on the way down, because the same struct can stand in
+messages of different orders.
 
-Read `icdgen.layout` next, which turns the position of a scalar into runs of bits of bytes.
+Read next: `icdgen.icd.places` for the longest frame, `icdgen.icd.frames` for one frame of certain sizes.
 """
 
 from __future__ import annotations
