@@ -11,6 +11,7 @@ from icdgen.icd.suggestions import suggestion
 from icdgen.icd.trees import mappings
 
 _AGAIN = "look at the manual again, then update or remove the entry"
+_MOST_LISTED = 6  # lines of places in a help
 STALE, NOWHERE, DOUBLE_ID, OTHER_NODE = "ICD080", "ICD081", "ICD082", "ICD083"
 
 
@@ -65,7 +66,7 @@ def _apply_entry(tree: Map, entry: Map, applied: Applied, named: _ByName) -> Non
     (applied.notes if erratum.is_note else applied.entries).append(erratum)
     where = entry.get("where")
     wheres = where if isinstance(where, Seq) else [where] if where else []
-    matched = 0
+    matched: list[Map] = []
     wildcard = False
     for one in wheres:
         targets = list(_targets(tree, one, named))
@@ -79,7 +80,7 @@ def _apply_entry(tree: Map, entry: Map, applied: Applied, named: _ByName) -> Non
             if not _matches(target, printed):
                 applied.findings.append(_stale(entry, target, printed))
                 continue
-            matched += 1
+            matched.append(target)
             _change(target, held, entry)
             if any(key == "name" or isinstance(value, Seq) for key, value in held.items()):
                 named.forget()
@@ -87,10 +88,19 @@ def _apply_entry(tree: Map, entry: Map, applied: Applied, named: _ByName) -> Non
             for code, place in entry["accept"].placed() if "accept" in entry else ():
                 applied.accepts.append((code, place, target))
     expected = entry.get("places")
-    if wildcard and matched != expected:
-        message = f"`printed` matches {matched} places" + (f", not {expected}" if expected else "")
-        help = f"check the places, then write `places: {matched}`" if matched else _AGAIN
+    if wildcard and len(matched) != expected:
+        message = f"`printed` matches {len(matched)} places" + (f", not {expected}" if expected else "")
+        help = _AGAIN
+        if matched:
+            lines = ", ".join(str(place.line) for place in map(_place, matched[:_MOST_LISTED]))
+            more = ", ..." if len(matched) > _MOST_LISTED else ""
+            help = f"check lines {lines}{more} of {_place(matched[0]).file}, then write `places: {len(matched)}`"
         applied.findings.append(Finding(STALE, message, entry.at("places" if expected else "where"), help))
+
+
+def _place(target: Map) -> Place:
+    """Where something of an ICD begins."""
+    return target.at(next(iter(target)))
 
 
 def _is_broken(value: object, broken: Set[int]) -> bool:

@@ -157,6 +157,8 @@ def _explain(error: Any, path: list[Any], owner: Map, place: Place, lines: Lines
 def _unknown_key(key: str, known: list[str], place: Place) -> Finding:
     from icdgen.icd import remedies
 
+    if key == "<<":
+        return Finding(CODE, "merge keys (`<<`) are not supported", place, "write the keys themselves in its place")
     help, fix = remedies.of_key(key, known) or ("known keys: " + ", ".join(known), "")
     if " " in key and not fix:
         help = f"if it is the rest of a text with a comma, put that in quotes; {help}"

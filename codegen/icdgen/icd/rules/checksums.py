@@ -64,4 +64,9 @@ def checksums_are_heeded(ctx: Context) -> Iterator[Fault]:
             crc8 = node.source["protocol"]["crc8"]
             place = telemetry.at("buses") if "buses" in telemetry else crc8.key_at("telemetry")
             message = "frames on CAN have no checksum, so this one has no effect there"
-            yield Fault(telemetry, place, message, "list the other links in `buses`: uart, i2c")
+            help = (
+                "remove `can` from `buses`"
+                if "buses" in telemetry
+                else "add `buses`, with the links that have a checksum"
+            )
+            yield Fault(telemetry, place, message, help)

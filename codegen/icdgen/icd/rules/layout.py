@@ -28,7 +28,6 @@ WIDTHS = {
     "float": (frozenset({32, 64}), "32 or 64 bits"),
 }
 _OVERLAPPING = "correct `at` or `bits`"
-_VIEW = "; if it reads the same bits in another way: `view: true`"
 _ALTERNATIVES = "let them depend on different values of the same field, or correct `at` or `bits`"
 _ORDERLY = {"bytes": "bytes", "text": "characters"}
 
@@ -168,7 +167,8 @@ def _help(first: NodePlace, second: NodePlace) -> str:
         if place.index and type(place.source.get("count")) is int:  # not the first of its elements
             help += f", or the `count` of {quote(place.node.name)}"
     is_field = second.struct is None and second.index is None and len(second.steps) == 1
-    return help + _VIEW if is_field else help
+    view = f"; if {quote(second.node.name)} reads the same bits in another way, give it `view: true`"
+    return help + view if is_field else help
 
 
 @rule("ICD022")
