@@ -11,6 +11,7 @@ import pytest
 
 from icdgen.definitions import kinds, run
 from icdgen.icd.fmt import emit
+from icdgen.loading import load
 from tests import documents
 
 PAGE = "".join(documents.text(f"guides/import-{name}") for name in documents.IMPORTS)
@@ -41,19 +42,40 @@ def test_the_example_goes_from_a_database_to_a_program_as_printed(tmp_path):
         assert said == expected
     assert (tmp_path / "icd" / "train.yaml").read_text() == blocks("yaml")[0]
 
+    (tmp_path / "icd" / "errata").mkdir()
+    (tmp_path / "icd" / "errata" / "train.yaml").write_text(blocks("yaml")[1])
+    loaded = load([tmp_path / "icd"])
+    assert loaded.findings == [] and [one.kind for one in loaded.icd.nodes[0].messages] == ["telecommand"]
+
+
+@pytest.mark.skipif(shutil.which("cargo") is None, reason="needs cargo")
+def test_the_program_in_rust_prints_what_the_page_shows(tmp_path):
+    (tmp_path / "train.dbc").write_text(blocks("dbc")[0])
+    app = tmp_path / "app"
+    (app / "src").mkdir(parents=True)
+    head = '[package]\nname = "app"\nversion = "0.1.0"\nedition = "2021"\n\n'
+    (app / "Cargo.toml").write_text(head + blocks("toml")[0])
+    (app / "src" / "main.rs").write_text(blocks("rust")[0])
+    for command in ("import train.dbc --out icd", "--lang rust --out train-code icd"):
+        subprocess.run(
+            [sys.executable, "-m", "icdgen", *command.split()], cwd=tmp_path, check=True, capture_output=True
+        )
+    run = subprocess.run(["cargo", "run", "-q", "--offline"], cwd=app, capture_output=True, text=True)
+    assert (run.stdout, run.returncode) == (blocks("text")[0], 0), run.stderr
+
 
 def test_the_space_packet_becomes_what_the_page_shows(tmp_path):
     (tmp_path / "probe.xml").write_text(blocks("xml")[0])
     read = run.read(tmp_path / "probe.xml", kinds.get("xtce"))
     (tree,) = read.trees.values()
-    assert emit.text({"messages": tree["messages"]}).endswith(blocks("yaml")[1])
+    assert emit.text({"messages": tree["messages"]}).endswith(blocks("yaml")[2])
 
 
 def test_the_format_of_kaitai_becomes_what_the_page_shows(tmp_path):
     (tmp_path / "beacon.ksy").write_text(blocks("ksy")[0])
     read = run.read(tmp_path / "beacon.ksy", kinds.of(tmp_path / "beacon.ksy"))
     (tree,) = read.trees.values()
-    assert emit.text({"messages": tree["messages"]}).endswith(blocks("yaml")[2])
+    assert emit.text({"messages": tree["messages"]}).endswith(blocks("yaml")[3])
     assert read.definitions.troubles == []
 
 
@@ -61,7 +83,7 @@ def test_the_model_of_sunspec_becomes_what_the_page_shows(tmp_path):
     (tmp_path / "meter.json").write_text(blocks("json")[0])
     read = run.read(tmp_path / "meter.json", kinds.of(tmp_path / "meter.json"))
     (tree,) = read.trees.values()
-    assert emit.text({"messages": tree["messages"]}).endswith(blocks("yaml")[3])
+    assert emit.text({"messages": tree["messages"]}).endswith(blocks("yaml")[4])
 
 
 @pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
@@ -71,11 +93,11 @@ def test_the_electronic_data_sheet_goes_from_its_files_to_a_program_as_printed(t
     read = run.read(tmp_path / "heater.xml", kinds.of(tmp_path / "heater.xml"))
     (tree,) = read.trees.values()
     held = emit.text({key: tree[key] for key in ("structs", "messages")})
-    assert read.definitions.troubles == [] and held.endswith(blocks("yaml")[4])
+    assert read.definitions.troubles == [] and held.endswith(blocks("yaml")[5])
     (tmp_path / "heater.yaml").write_text(emit.text(tree))
     (tmp_path / "main.c").write_text(blocks("c")[2])
     generated = f"{sys.executable} -m icdgen --lang c --out include heater.yaml"
     for command in (generated, "cc -std=c99 -Wall -Werror -Iinclude main.c -o main", "./main"):
         made = subprocess.run(command, shell=True, cwd=tmp_path, capture_output=True, text=True)
         assert made.returncode == 0, made.stdout + made.stderr
-    assert made.stdout == blocks("text")[0]
+    assert made.stdout == blocks("text")[1]
