@@ -40,7 +40,7 @@ def _acknowledges(node: Node) -> Iterator[Fault]:
         section = section_of(node, bus, "acknowledge")
         if section is not None and section.get("required_before_next") is False:
             message = "a client waits for each acknowledge before it sends the next telecommand, whatever this key says"
-            help = "remove it; for a telecommand without acknowledge set `acknowledge: false`"
+            help = "remove `required_before_next`; a message that is not acknowledged has `acknowledge: false`"
             yield Fault.at(section, "required_before_next", message, help)
 
 

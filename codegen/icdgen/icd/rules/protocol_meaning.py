@@ -47,7 +47,7 @@ def _bit(bit: object, section: Map, direction: str, first: int, last: int) -> It
         return
     other = next((id for id in range(first, last + 1) if id >> bit & 1 != wanted), None)
     if other is not None:
-        message = f"bit {bit} of {other} is {1 - wanted}, but {wanted} in a {direction} id"
+        message = f"the range contains {other}, whose bit {bit} is {1 - wanted}; in a {direction} id it is {wanted}"
         key = "first" if other == first else "last"
         yield Fault.at(section, key, message, "correct the range, `direction` or `direction_bit`")
 
