@@ -129,8 +129,10 @@ def test_two_packages_of_one_name_are_refused(icdgen, changed):
 def test_help_lists_it_beside_ours_and_no_testee(icdgen, tmp_path):
     for arguments in (["--help"], ["generate", "--help"]):
         there = "".join(icdgen(*arguments).stdout.split())  # lines are broken behind hyphens, too
-        assert "c,python,rust,vectors,c-selftest,html,assurance,xtce,andofotherpackageslua(icdgen-lua)." in there
-        assert "xtce." in " ".join(icdgen(*arguments, site=tmp_path).stdout.split())
+        assert (
+            "c,python,rust,vectors,c-selftest,html,assurance,xtce,xlsx,csv,andofotherpackageslua(icdgen-lua)." in there
+        )
+        assert "csv." in " ".join(icdgen(*arguments, site=tmp_path).stdout.split())
 
 
 def test_its_names_stand_in_the_trace_of_the_assurance_pack(icdgen, tmp_path):
