@@ -132,7 +132,7 @@ def _merge_enums(node: NodeParts, survey: Survey) -> None:
     pointed = {
         (message.table.run, field.described.enum_table)
         for _, message in survey.of(ReadMessage)
-        for field in message.fields
+        for field in message.all_fields
         if field.described.enum_table is not None
     }
     kept: dict[str, ReadEnum] = {}

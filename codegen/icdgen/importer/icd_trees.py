@@ -85,7 +85,7 @@ def _prose(name: str, text: str, wanted: bool) -> dict[str, Any]:
 def _message(one: ReadMessage, prose: bool) -> dict[str, Any]:
     ids = {key: value for key in ("id", "set_id", "get_id") if (value := getattr(one, key)) is not None}
     return {
-        "name": one.name, **ids, "kind": one.kind, "length": one.length,
+        "name": one.name, **ids, "kind": one.kind, "length": one.length, **_given(reserved=one.reserved_bytes),
         **_given(group=one.group, source=_source(one.table)),
         **_prose(one.name, one.summary, prose),
         **_given(listed=one.listed, fields=[_field(field, prose) for field in one.fields]),
@@ -112,7 +112,7 @@ def _units(node: NodeParts, troubles: list[Trouble]) -> list[dict[str, Any]]:
     """Units that are not built in, and no other spelling of one that is."""
     first: dict[str, tuple[ReadMessage, ReadField]] = {}
     for message in node.messages:
-        for field in message.fields:
+        for field in message.all_fields:
             symbol = field.described.unit
             if symbol and symbol not in STANDARD and symbol not in SPELLINGS:
                 first.setdefault(symbol, (message, field))

@@ -66,6 +66,33 @@ class ReadMessage:
         return fields + [(at, at + size) for at, size in self.reserved]
 
     @property
+    def all_fields(self) -> list[ReadField]:
+        """The fields of the message and of its structs."""
+        return [*self.fields, *(field for struct in self.structs for field in struct.fields)]
+
+    @property
+    def gaps(self) -> list[tuple[int, int]]:
+        """Runs of bits, first and last, that neither a field nor reserved bits cover."""
+        total = 8 * (self.length or 0)
+        free, at = [], 0
+        for start, end in sorted(self.extents()):
+            if start > at:
+                free.append((at, min(start, total) - 1))
+            at = max(at, end)
+        if at < total:
+            free.append((at, total - 1))
+        return [(first, last) for first, last in free if last >= first]
+
+    @property
+    def reserved_bytes(self) -> int:
+        """How many bytes at the end only rows of reserved bits cover; 0 if the length of the message varies."""
+        used = (max((field.end for field in self.fields), default=0) + 7) // 8
+        is_variable = any("up_to" in field.facts for field in self.fields)
+        if self.length is None or is_variable or any(last >= 8 * used for _, last in self.gaps):
+            return 0
+        return max(0, self.length - used)
+
+    @property
     def ids(self) -> tuple[int | None, int | None, int | None]:
         return self.id, self.set_id, self.get_id
 

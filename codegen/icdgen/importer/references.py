@@ -67,7 +67,7 @@ _SAID = {"name": "name", "length": "length", "id": "id", "set_id": "set id", "ge
 def enums(node: NodeParts, nodes: list[NodeParts], everything: list[ReadEnum], troubles: list[Trouble]) -> None:
     """Finds the enumeration of each enum field, and brings it within reach of the node."""
     for message in node.messages:
-        for field in message.fields:
+        for field in message.all_fields:
             if (
                 field.type == "enum"
                 and not field.enum
@@ -162,7 +162,7 @@ def _is_held(message: ReadMessage, most: int, troubles: list[Trouble]) -> bool:
         say("IMP033", what, "look at the page; `icdgen check` names the fields")
     if message.length and not message.fields:
         say("IMP034", f"it has {message.length} bytes and no field", "look at the page", "error", DOUBTFUL)
-    elif free := _gaps(message):
+    elif free := message.gaps:
         bits = ", ".join(f"{a}" if a == b else f"{a} to {b}" for a, b in free)
         say("IMP035", f"no field covers bit {bits}", "such bits are reserved; make sure that no row was lost")
     return True
@@ -172,16 +172,3 @@ def _lacking(message: ReadMessage) -> list[str]:
     """What a message needs and its rule does not give."""
     given = {"name": message.name, "kind": message.kind, "id": any(one is not None for one in message.ids)}
     return [key for key, value in given.items() if not value]
-
-
-def _gaps(message: ReadMessage) -> list[tuple[int, int]]:
-    """Runs of bits, first and last, that no field covers."""
-    total = 8 * (message.length or 0)
-    free, at = [], 0
-    for start, end in sorted(message.extents()):
-        if start > at:
-            free.append((at, min(start, total) - 1))
-        at = max(at, end)
-    if at < total:
-        free.append((at, total - 1))
-    return [(first, last) for first, last in free if last >= first]

@@ -34,13 +34,12 @@ def read_roles(
     columns = _columns(rule, table, titles, rows, notes)
     made: list[Roles] = []
     for row in rows:
-        given = dict(row.roles)
+        given = _translated(rule, row.roles)
         for column, names in columns:
             text = " ".join(filter(None, (one_line(row, name, known) for name in names)))
             if len(names) > 1:
                 text = "".join(one_line(row, name, known) for name in names)
-            given.update(_taken(rule, table, row, names[0], column.patterns, text, notes))
-        _translate(rule, given)
+            _add(given, _taken(rule, table, row, names[0], column.patterns, text, notes))
         if rule.melt is not None:
             made += _melted(rule, table, titles, row, given, known, notes)
         elif rule.lines:
@@ -48,7 +47,6 @@ def read_roles(
         else:
             made.append(Roles(given, row))
     for roles in made:
-        _translate(rule, roles.given)
         roles.given = {**rule.each, **roles.given}
         for correction in rule.corrections:
             if all(pattern.search(roles.get(role)) for role, pattern in correction.where.items()):
@@ -57,11 +55,17 @@ def read_roles(
     return made
 
 
-def _translate(rule: Rule, given: dict[str, str]) -> None:
-    """Replace the words that `map` names."""
-    for role, words in rule.map.items():
-        if (meaning := words.get(given.get(role, "").casefold())) is not None:
-            given[role] = meaning
+def _translated(rule: Rule, given: dict[str, str]) -> dict[str, str]:
+    """The roles, the words that `map` names replaced by their meanings."""
+    return {role: rule.map.get(role, {}).get(text.casefold(), text) for role, text in given.items()}
+
+
+def _add(given: dict[str, str], further: dict[str, str]) -> None:
+    """Add the roles of a further cell of the row; descriptions from several cells are joined."""
+    texts = [text for roles in (given, further) if (text := roles.get("text"))]
+    given.update(further)
+    if texts:
+        given["text"] = "; ".join(texts)
 
 
 def find_columns(column: Column, titles: list[str]) -> list[str]:
@@ -134,7 +138,7 @@ def _columns(
 def _taken(
     rule: Rule, table: SourceTable, row: DataRow, name: str, patterns: tuple[Pattern, ...], text: str, notes: Notes
 ) -> dict[str, str]:
-    """The roles of one text; reports a text that no pattern takes, and what a pattern leaves of it."""
+    """The translated roles of one text; reports a text that no pattern takes, and what a pattern leaves of it."""
     if not text:
         return {}
     taken = take(patterns, text)
@@ -156,7 +160,7 @@ def _taken(
             "let the pattern take it, for instance as `{text}`",
             patterns[0].place,
         )
-    return taken.roles
+    return _translated(rule, taken.roles)
 
 
 def _melted(
@@ -201,14 +205,15 @@ def _melted(
                 rule.melt.place,
             )
             continue
-        roles = dict(shared)
+        position = {}
         for role in ("byte", "bit"):
             found = [
                 n for end in ends for key in (role, f"last_{role}") if (n := whole_number(end.get(key, ""))) is not None
             ]
             if found:
-                roles[role], roles[f"last_{role}"] = str(min(found)), str(max(found))
-        roles.update(_taken(rule, table, row, title, star.patterns, text, notes))
+                position[role], position[f"last_{role}"] = str(min(found)), str(max(found))
+        roles = {**shared, **_translated(rule, position)}
+        _add(roles, _taken(rule, table, row, title, star.patterns, text, notes))
         yield Roles(roles, row, byte_shift=shift)
 
 
@@ -234,5 +239,7 @@ def _from_lines(rule: Rule, table: SourceTable, row: DataRow, given: dict[str, s
                 else:
                     position = {} if "byte" in roles else position
                     outer = {role: text for role, text in given.items() if role not in ("bytes", "bits")}
-                    made.append(Roles({**outer, **position, **roles}, row))
+                    field_roles = {**outer, **position}
+                    _add(field_roles, roles)
+                    made.append(Roles(field_roles, row))
     return made or [whole]

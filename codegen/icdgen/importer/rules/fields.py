@@ -23,6 +23,7 @@ from icdgen.importer.words import tidy_unit
 
 MOST_BITS = 64  # of a number
 _EMPTY = ("", "-", "–", "—", "n/a", "none")
+_IN_PARENTHESES = re.compile(r"\A\(([^()]*(?:\([^()]*\)[^()]*)*)\)\Z")  # `(V)`, but not `(N)·(m)`
 _VALUE = r"(?:0x[0-9a-f]+|0b[01]+|-?[0-9]+)"
 _MEMBER = re.compile(  # a comma separates members only in front of a value: names may contain one
     rf"(?P<value>{_VALUE})\s*[:=–-]?\s*(?P<name>[^;\n]*?[^\s;,])\s*(?:[;\n]|,(?=\s*{_VALUE})|\Z)", re.I
@@ -241,7 +242,7 @@ class FieldReader:
             made = descriptions.read(text, self.profile, is_enum=kind == "enum")
         for problem in made.problems:
             self.notes.warn("IMP040", f"{where}: {problem}: `{text[-160:]}`", spot, "read the page")
-        unit = tidy_unit(roles.get("unit")).strip("()")
+        unit = _IN_PARENTHESES.sub(r"\1", tidy_unit(roles.get("unit")))
         if unit.casefold() not in _EMPTY:
             made.unit = unit
         if const := roles.get("const"):
