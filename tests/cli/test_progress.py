@@ -60,6 +60,7 @@ def folder(tmp_path):
     return tmp_path
 
 
+@pytest.mark.pty
 @pytest.mark.parametrize("name", COMMANDS)
 def test_a_command_that_takes_long_shows_on_a_terminal_what_it_does(name, folder):
     arguments, text = COMMANDS[name]
@@ -67,6 +68,7 @@ def test_a_command_that_takes_long_shows_on_a_terminal_what_it_does(name, folder
     assert (status, text in shown) == (0, True), shown
 
 
+@pytest.mark.pty
 def test_a_command_that_ends_soon_shows_nothing(folder):
     assert on_terminal(COMMANDS["vectors"][0], folder, delay=60) == (0, "")
 

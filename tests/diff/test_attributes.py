@@ -10,7 +10,6 @@ import pytest
 from icdgen.diff.compare import compare
 from icdgen.icd.curve import table
 from icdgen.icd.display import display_of
-from icdgen.icd.flat import with_flat_lists
 from icdgen.icd.formula import Scale
 from icdgen.icd.layout import Array, Condition, Limits, Orders, Scalar, Special, StructRef
 from icdgen.icd.layout_copies import with_attributes, with_enum, with_node, with_struct_layout
@@ -83,7 +82,7 @@ def reported(icd: Icd, *, message: Message | None = None, enum: Enum | None = No
         message = replace(node.messages[0], layout=layout)
     enums = (enum, *node.enums[1:]) if enum is not None else node.enums
     new = replace(node, messages=(message,), enums=enums)
-    return {change.code for change in compare(icd, with_flat_lists(Icd((new,)))).changes}
+    return {change.code for change in compare(icd, Icd((new,))).changes}
 
 
 def names(kind: type) -> list[str]:

@@ -67,7 +67,7 @@ def served() -> Iterator[str]:
     server.server_close()
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")  # while it is open, an event loop runs in this thread, and tests of asyncio fail
 def browser():
     from playwright.sync_api import sync_playwright
 

@@ -217,7 +217,14 @@ def test_the_rule_as_yaml_says_what_the_page_has_no_control_for(page):
 def test_the_command_serves_the_page_until_it_is_interrupted(tmp_path):
     manual(tmp_path / "motor.pdf")
     command = [sys.executable, "-m", "icdgen", "import", "motor.pdf", "--profile", "mine.yaml", "--workbench"]
-    with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+    with subprocess.Popen(
+        command,
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a job in the background ignores it
+    ) as running:
         line = running.stdout.readline()
         address = re.search("http://[0-9.:]+", line)
         assert line.startswith("motor.pdf: 3 tables; open http://127.0.0.1:") and address
