@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from icdgen.importer.model import Found, ReadMessage
 from icdgen.importer.rules.bit_order import Order, bits_of, run_of
 from icdgen.importer.rules.fields import Draft
@@ -10,6 +12,7 @@ from icdgen.importer.rules.notes import Notes
 from icdgen.importer.rules.parts import Part
 from icdgen.importer.words import squeezed
 
+_GROUP = ("group", "counter", "count", "rest", "stride", "up_to")  # roles that bits share with the field they divide
 _SAID = ("kind", "length")
 
 
@@ -23,9 +26,10 @@ def attach(parts: list[Part], messages: list[Part], order: Order, notes: Notes) 
         if not hosts:
             notes.error(
                 "IMP107",
-                f"{part.table.title}: there is no field `{name}` for this {part.rule.what}",
+                f"{part.table.title}: there is no field `{name}`"
+                f"{f' in a message `{part.name}`' if part.name else ''} for this {part.rule.what}",
                 part.table.spot,
-                "correct `of` of the rule, or the pattern with `{of}`",
+                "correct `of` and the name of the message in the rule, or the patterns with `{of}` and `{message}`",
                 part.rule.place,
             )
         for host, field in hosts:
@@ -38,13 +42,26 @@ def attach(parts: list[Part], messages: list[Part], order: Order, notes: Notes) 
 
 
 def _hosts(name: str, part: Part, parts: list[Part], messages: list[Part]) -> list[tuple[Part, Draft]]:
-    """The fields of this name. Where several tables speak of one, each goes to the nearest message above it."""
-    found = [(m, d) for m in messages for d in m.drafts if squeezed(d.name) == squeezed(name) and name]
-    rivals = [p for p in parts if p.rule.what == part.rule.what and squeezed(p.given.get("of", "")) == squeezed(name)]
-    if len(rivals) > 1 or part.rule.what == "bits":
-        above = [(m, d) for m, d in found if m.table.number <= part.table.number]
-        return above[-1:]
-    return found
+    """The fields of this name, in the message that the part names, or in all.
+
+    Where several tables speak of one name, each goes to the nearest message above it.
+    """
+    fields = [
+        (m, d)
+        for m in messages
+        for d in m.drafts
+        if squeezed(d.name) == squeezed(name) and name and squeezed(part.name) in ("", squeezed(m.name))
+    ]
+    rivals = [
+        p
+        for p in parts
+        if p.rule.what == part.rule.what
+        and squeezed(p.given.get("of", "")) == squeezed(name)
+        and squeezed(p.name) == squeezed(part.name)
+    ]
+    if len(rivals) > 1:
+        return [(m, d) for m, d in fields if m.table.number <= part.table.number][-1:]
+    return fields
 
 
 def _lookup(part: Part, field: Draft, notes: Notes) -> None:
@@ -78,6 +95,7 @@ def _divide(part: Part, host: Part, field: Draft, order: Order, notes: Notes) ->
             part.rule.place,
         )
     made = []
+    group = {role: text for role in _GROUP if field.roles.get("group") and (text := field.roles.get(role))}
     for draft in part.drafts:
         run = run_of(whole[draft.at : draft.end], order) if draft.end <= field.bits else None
         if run is None:
@@ -89,8 +107,9 @@ def _divide(part: Part, host: Part, field: Draft, order: Order, notes: Notes) ->
                 part.rule.place,
             )
             continue
-        draft.at, draft.order = run[0], run[1] if run[1] != order else None
-        made.append(draft)
+        own_order = run[1] if run[1] != order else None
+        roles = replace(draft.roles, given=draft.roles.given | group)
+        made.append(replace(draft, at=run[0], order=own_order, facts=dict(draft.facts), roles=roles))
     index = next(i for i, draft in enumerate(host.drafts) if draft is field)
     host.drafts[index : index + 1] = made
 

@@ -8,10 +8,11 @@ from icdgen.importer.model import Found, ReadEnum, ReadField, ReadMember, ReadMe
 from icdgen.importer.profile import Profile
 from icdgen.importer.rules import attach, lists
 from icdgen.importer.rules.bit_order import Order
-from icdgen.importer.rules.fields import Draft, joined_parts
+from icdgen.importer.rules.fields import Draft
 from icdgen.importer.rules.language import KINDS, normalised
 from icdgen.importer.rules.notes import Notes
 from icdgen.importer.rules.parts import Part
+from icdgen.importer.rules.split_fields import joined_parts
 from icdgen.importer.words import squeezed
 
 
@@ -223,7 +224,7 @@ class Builder:
             )
             return
         fields = []
-        for draft in drafts:
+        for draft in sorted(drafts, key=lambda draft: draft.at):
             draft.facts = {key: value for key, value in draft.facts.items() if key not in ("count", "size", "up_to")}
             field = self.field(draft, part)
             field.at -= start

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 from decimal import Decimal
-from itertools import pairwise
 from typing import Any
 
 from icdgen.import_results.findings import Spot
@@ -13,8 +12,7 @@ from icdgen.importer import descriptions, formulas
 from icdgen.importer.descriptions import Described
 from icdgen.importer.document import SourceTable
 from icdgen.importer.profile import Profile
-from icdgen.importer.rules import bit_order
-from icdgen.importer.rules.bit_order import Bit, Order
+from icdgen.importer.rules.bit_order import Order
 from icdgen.importer.rules.cells import Roles
 from icdgen.importer.rules.language import NUMBERS, TypeName, decimal, type_of, whole_number
 from icdgen.importer.rules.notes import Notes
@@ -47,6 +45,7 @@ class Draft:
     facts: dict[str, Any] = field(default_factory=dict)  # further keys of the field in the ICD
     part: tuple[int, int] | None = None  # bit numbers of the whole field that this piece has
     order: Order | None = None  # where it is not the node's
+    window: tuple[int, int] = (0, 0)  # first byte and number of the bytes from whose least significant bit `at` counts
 
     @property
     def size(self) -> int:
@@ -117,6 +116,9 @@ class FieldReader:
                 "or a type with a width; `width: unit` makes a single position one bit or byte",
             )
             return None
+        window = self.window(numbers, at, bits * (count or 1), where, spot)
+        if window is None:
+            return None
         kind = printed.kind
         if kind in ("uint", "int") and bits in (40, 48, 56) and range_size and not printed.bits and not count:
             self.notes.warn(
@@ -135,6 +137,7 @@ class FieldReader:
             )
             return None
         made = Draft(name, at, bits, kind, self.described(roles, kind, where, spot), spot, roles, count)
+        made.window = window
         self.facts(made, numbers, where, spot)
         self.next = made.end
         return made
@@ -197,8 +200,37 @@ class FieldReader:
         first_byte = numbers.get("byte", 0)
         if "last_byte" in numbers:
             first_byte, last = sorted((first_byte, numbers["last_byte"]))
-            size = size or 8 * (last - first_byte + 1)
+            size = size if "bit" in numbers else 8 * (last - first_byte + 1)
         return 8 * (first_byte - self.rule.origin + roles.byte_shift) + first_bit, size
+
+    def window(self, numbers: dict[str, int], at: int, size: int, where: str, spot: Spot) -> tuple[int, int] | None:
+        """First byte and number of the bytes in which a big-endian value has its bit numbers; (0, 0) for a place that counts
+        through the frame. None, with a finding, if bytes and bit numbers do not agree.
+
+        Bit 15 of two big-endian bytes is the most significant bit of the first one.
+        """
+        if self.rule.what != "message" or "byte" not in numbers or "bit" not in numbers:
+            return 0, 0
+        printed = numbers["byte"], numbers.get("last_byte", numbers["byte"])
+        count = max(printed) - min(printed) + 1
+        start = at - min(numbers["bit"], numbers.get("last_bit", numbers["bit"]))  # bit 0 of the bytes
+        highest = max(numbers["bit"], numbers.get("last_bit", 0))
+        order = f"byte_order: {self.order.byte_order}, bit_order: {self.order.bit_order}"
+        is_ambiguous = self.order in (Order("big", "lsb0"), Order("little", "msb0"))
+        help = ""
+        if "last_byte" in numbers and max(highest + 1, at + size - start) > 8 * count:
+            help = (
+                f"bits are numbered from 0 to {8 * count - 1} in these bytes; give the position by bytes or bits only"
+            )
+        elif "last_byte" not in numbers and highest > 7 and is_ambiguous:
+            help = f"with `{order}`, state all bytes in which the bits are numbered: the roles `byte` and `last_byte`"
+        elif count > 1 and self.order == Order("little", "msb0"):
+            help = f"with `{order}`, bit numbers in several bytes have no order: state that of the source under `node:`"
+        if help:
+            bytes_ = f"byte {printed[0]}" if count == 1 else f"bytes {printed[0]} to {printed[1]}"
+            self.error("IMP105", f"{where}: the place of bit {highest} in {bytes_} is not clear", spot, help)
+            return None
+        return (start // 8, count) if count > 1 and is_ambiguous else (0, 0)
 
     def size(
         self, numbers: dict[str, int], printed: TypeName, roles: Roles, where: str, spot: Spot
@@ -309,8 +341,19 @@ class FieldReader:
                     "state it: `each: {up_to: 255}`, or under `set:`",
                 )
         made.members = self.members(roles, where, spot)
-        if made.members and made.kind in ("uint", "int") and not made.described.formula:
+        enumeration = roles.get("enumeration")
+        if (made.members or enumeration) and made.kind in ("uint", "int") and not made.described.formula:
             made.kind = "enum"
+        if enumeration and not made.members:
+            made.described.enum_title = enumeration
+            if made.kind != "enum":
+                self.error(
+                    "IMP050",
+                    f"{where}: a field of the type {made.kind}{' with a formula' if made.described.formula else ''} "
+                    f"cannot have the enumeration `{enumeration[:40]}`",
+                    spot,
+                    "correct the roles `type` and `enumeration`",
+                )
         text = roles.get("part")
         if text:
             first = 0 if text in "Ll" else 1 if text in "Hh" else int(text)
@@ -373,61 +416,3 @@ def scale_formula(scale: str | None, offset: str | None, bias: str | None) -> st
     if offset is not None and Decimal(offset) != 0:
         made = f"{made} {'-' if offset.startswith('-') else '+'} {offset.lstrip('-')}"
     return "" if made == "raw" else made
-
-
-def joined_parts(
-    drafts: list[Draft], order: Order, is_register: bool, length: int, notes: Notes, rule: Rule
-) -> list[Draft]:
-    """Return the fields with those of one name and consecutive parts put together (``CB5`` to ``CB1``, ``D15`` to ``D0``).
-
-    Each field gets the number of its first bit in the node's order, or an order of its own if it is no run of bits there.
-    """
-    made: list[Draft] = []
-    pieces: dict[str, list[Draft]] = {}
-    for draft in drafts:
-        if draft.part is None:
-            made.append(draft)
-            continue
-        if draft.name not in pieces:
-            made.append(draft)
-        pieces.setdefault(draft.name, []).append(draft)
-    for name, split in pieces.items():
-        split.sort(key=lambda piece: piece.part or (0, 0))
-        ends = [piece.part for piece in split if piece.part is not None]
-        if any(before[1] + 1 != after[0] for before, after in pairwise(ends)):
-            numbers = ", ".join(str(first) if first == last else f"{last}:{first}" for first, last in ends)
-            notes.error(
-                "IMP105",
-                f"the parts {numbers} of `{name}` are not consecutive",
-                split[0].spot,
-                "a part is missing, or two have the same number: compare with the table",
-                rule.place,
-            )
-            made = [draft for draft in made if draft.name != name or draft.part is None]
-    kept = []
-    for draft in made:
-        parts = pieces[draft.name] if draft.part is not None else [draft]
-        bits = [bit for piece in parts for bit in _bits(piece, order, is_register, length)]
-        if draft.count or draft.size == 0:
-            kept.append(draft)  # elements stand one after the other: their first bit is as printed
-            continue
-        run = bit_order.run_of(bits, order)
-        if run is None:
-            notes.error(
-                "IMP105",
-                f"the bits of `{draft.name}` are not consecutive in any order",
-                draft.spot,
-                "state the byte order of the node, or read the parts as fields of their own",
-                rule.place,
-            )
-            continue
-        draft.at, draft.bits = run[0], len(bits)
-        draft.order = run[1] if run[1] != order else None
-        kept.append(draft)
-    return sorted(kept, key=lambda draft: draft.at)
-
-
-def _bits(piece: Draft, order: Order, is_register: bool, length: int) -> list[Bit]:
-    if is_register:
-        return bit_order.bits_of_register(piece.at, piece.size, length, order.byte_order)
-    return bit_order.bits_of(piece.at, piece.size, order)

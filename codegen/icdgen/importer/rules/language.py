@@ -69,6 +69,21 @@ MESSAGE_ROLES = {
     "mask": "mask of bytes in hexadecimal of which one bit selects a frame for a log",
 }
 ROLES = PLACE_ROLES | VALUE_ROLES | TEXT_ROLES | MESSAGE_ROLES
+_FIELD_ROLES = {*PLACE_ROLES, *VALUE_ROLES, *TEXT_ROLES}
+_IDS = {"id", "set_id", "get_id"}
+_PROSE = {"text", "message_text", "section", "default", "access"}  # without effect where nothing represents it
+_MESSAGE = {*_FIELD_ROLES, *_IDS, *_PROSE, "message", "kind", "length", "enumeration"}
+ROLES_OF = {
+    "message": _MESSAGE,
+    "registers": _MESSAGE,
+    "index": {*_PROSE, "message", "id", "kind", "length"},
+    "list": {*_PROSE, *_IDS, "message", "kind", "length", "node"},
+    "loggable": {*_PROSE, "message", "id", "mask", "bit"},
+    "enumeration": {*_PROSE, "value", "member", "of", "message", "enumeration"},
+    "lookup": {*_PROSE, "value", "points", "of", "message"},
+    "bits": {*_FIELD_ROLES, *_PROSE, "of", "message"},
+}
+"""The roles that each kind of rule (`what`) uses."""
 INTEGERS = frozenset({*PLACE_ROLES, "value", "id", "set_id", "get_id", "length", "up_to", "const"} - {"part"})
 NUMBERS = frozenset({"scale", "offset", "bias", "min", "max"})
 _PATTERN_OF = {

@@ -9,7 +9,7 @@ from typing import Any
 
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.icd.located import Map, Seq
-from icdgen.importer.rules.language import KINDS, MESSAGE_ROLES, ROLES, Pattern, PatternError, compile_pattern
+from icdgen.importer.rules.language import KINDS, MESSAGE_ROLES, ROLES, ROLES_OF, Pattern, PatternError, compile_pattern
 from icdgen.suggest import close_to
 
 CODE = "IMP001"
@@ -188,6 +188,7 @@ class _Reader:
             getattr(made, key).extend(str(text) for text in tree.get(key, ()))
         self.together(made, tree)
         self.belongs(made)
+        self.used(made, tree)
         return made
 
     def conditions(self, made: Rule, tree: Map) -> None:
@@ -226,6 +227,28 @@ class _Reader:
                 made.place,
                 "add `message: {of: FIELD}`, or a pattern with `{of}`",
             )
+
+    def used(self, made: Rule, tree: Map) -> None:
+        """Check that rules of this kind use the roles that the rule gives."""
+        if made.what not in ROLES_OF:
+            return
+        message = tree.get("message") or Map(made.place)
+        given = [("message" if key == "name" else key, message.at(key)) for key in message]
+        given = [(role, place) for role, place in given if role in made.literals]
+        given += [(role, tree["each"].key_at(role)) for role in made.each]
+        given += [(role, correction.place) for correction in made.corrections for role in correction.roles]
+        columns = (pattern for column in (*made.columns, *made.lines) for pattern in column.patterns)
+        sources = (pattern for patterns in made.sources.values() for pattern in patterns)
+        melt = (made.melt,) if made.melt is not None else ()
+        given += [(role, p.place) for p in (*sources, *columns, *melt) for role in sorted(p.roles)]
+        for role, place in given:
+            kinds = [what for what, roles in ROLES_OF.items() if role in roles]
+            if role in ROLES and made.what not in kinds:
+                self.add(
+                    f"a rule with `what: {made.what}` does not use the role `{role}`",
+                    place,
+                    f"rules with `what: {'`, `'.join(kinds)}` use it; a column without a role belongs under `ignore`",
+                )
 
     def patterns(self, value: Any, place: Place) -> tuple[Pattern, ...]:
         """The patterns of a text, or of a list of them."""

@@ -1,0 +1,82 @@
+"""Fields as printed -> their bits in the frame: split fields are put together, bit numbers are brought into the node's order."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+from icdgen.importer.rules import bit_order
+from icdgen.importer.rules.bit_order import Bit, Order
+from icdgen.importer.rules.fields import Draft
+from icdgen.importer.rules.notes import Notes
+from icdgen.importer.rules.rule import Rule
+
+
+def joined_parts(
+    drafts: list[Draft], order: Order, is_register: bool, length: int, notes: Notes, rule: Rule
+) -> list[Draft]:
+    """Return the fields with those of one name and consecutive parts put together (``CB5`` to ``CB1``, ``D15`` to ``D0``).
+
+    Each field gets the number of its first bit in the node's order, or an order of its own if it is no run of bits there.
+    """
+    made: list[Draft] = []
+    pieces: dict[str, list[Draft]] = {}
+    for draft in drafts:
+        if draft.part is None:
+            made.append(draft)
+            continue
+        if draft.name not in pieces:
+            made.append(draft)
+        pieces.setdefault(draft.name, []).append(draft)
+    for name, split in pieces.items():
+        split.sort(key=lambda piece: piece.part or (0, 0))
+        ends = [piece.part for piece in split if piece.part is not None]
+        if any(before[1] + 1 != after[0] for before, after in pairwise(ends)):
+            numbers = ", ".join(str(first) if first == last else f"{last}:{first}" for first, last in ends)
+            notes.error(
+                "IMP105",
+                f"the parts {numbers} of `{name}` are not consecutive",
+                split[0].spot,
+                "a part is missing, or two have the same number: compare with the table",
+                rule.place,
+            )
+            made = [draft for draft in made if draft.name != name or draft.part is None]
+    kept = []
+    for draft in made:
+        parts = pieces[draft.name] if draft.part is not None else [draft]
+        bits = [bit for piece in parts for bit in _bits(piece, order, is_register, length)]
+        if draft.count and draft.window[1]:
+            notes.error(
+                "IMP105",
+                f"the elements of the array `{draft.name}` have bit numbers in a range of bytes",
+                draft.spot,
+                "give the position of an array by its first byte only",
+                rule.place,
+            )
+            continue
+        if draft.count or draft.size == 0:
+            kept.append(draft)  # elements stand one after the other: their first bit is as printed
+            continue
+        run = bit_order.run_of(bits, order)
+        if run is None:
+            notes.error(
+                "IMP105",
+                f"the bits of `{draft.name}` are not consecutive in any order",
+                draft.spot,
+                "state the byte order of the node, or read the parts as fields of their own",
+                rule.place,
+            )
+            continue
+        draft.at, draft.bits = run[0], len(bits)
+        draft.order = run[1] if run[1] != order else None
+        kept.append(draft)
+    return sorted(kept, key=lambda draft: draft.at)
+
+
+def _bits(piece: Draft, order: Order, is_register: bool, length: int) -> list[Bit]:
+    if is_register:
+        return bit_order.bits_of_register(piece.at, piece.size, length, order.byte_order)
+    first, count = piece.window
+    if count:
+        counted = bit_order.bits_of_register(piece.at - 8 * first, piece.size, count, order.byte_order)
+        return [(first + byte, weight) for byte, weight in counted]
+    return bit_order.bits_of(piece.at, piece.size, order)
