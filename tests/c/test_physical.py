@@ -120,7 +120,7 @@ def tables(field: NodePlace, wide: int):
 
 def storage_ends(field: NodePlace) -> tuple[int, int]:
     bits = next(b for b in (8, 16, 32, 64) if field.bits <= b)
-    return (-(1 << (bits - 1)), (1 << (bits - 1)) - 1) if field.signed else (0, (1 << bits) - 1)
+    return (-(1 << (bits - 1)), (1 << (bits - 1)) - 1) if field.is_signed else (0, (1 << bits) - 1)
 
 
 def table(keys: bytes, values: bytes) -> bytes:

@@ -52,8 +52,8 @@ def test_the_longest_frame_has_a_place_for_each_field(path):
         assert [one.name for one in placed] == [field.name for field in message.fields]
         for one, field in zip(placed, message.fields, strict=True):
             assert (one.at, one.bits) == (field.at, field.bits), f"{message.name}: {one.name}"
-            assert (one.role == "count") == field.implied
-            if not field.implied:
+            assert (one.role == "count") == field.is_count
+            if not field.is_count:
                 effective = field.orders_in_effect(node.orders)
                 assert field.derived is not None or (one.byte_order, one.bit_order) == (effective.byte, effective.bit)
 
@@ -63,7 +63,7 @@ def test_lengths_of_frames_follow_from_the_sizes_of_their_variable_parts(path):
     for _, node, message in messages(path):
         layout = message.layout
         for most in (False, True):
-            sizes = {one.name: getattr(size_of(one), "most" if most else "fewest") for one in layout.sequence}
+            sizes = {part.name: part.most if most else part.fewest for part in layout.parts}
             placed = flatten(layout, node.orders, sizes)
             end = max((one.at + one.bits for one in placed if one.role == "field"), default=0)
             expected = layout.longest if most else layout.shortest

@@ -26,7 +26,7 @@ def _facts(node: Node, message: Message) -> tuple:
 
 def _place(node: Node, field: NodePlace) -> object:
     """Where each of its bits lies; what only the end of a frame counts has none."""
-    if field.is_bytes or field.implied:
+    if field.is_bytes or field.is_count:
         return field.at
     orders = field.orders_in_effect(node.orders)
     return codec._runs(field.at, field.bits, orders.byte, orders.bit)

@@ -83,7 +83,7 @@ class _Home:
             one.pop("listed", None)
             if message.fields:  # what the manual divides in words is its parts
                 one["fields"] = [
-                    _line(one) for one in places_in(message.layout) if not one.implied and one.derived is None
+                    _line(one) for one in places_in(message.layout) if not one.is_count and one.derived is None
                 ]
             tree["messages"] = [one]
             tree["structs"] = structs = list(self._used(one))

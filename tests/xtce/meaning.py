@@ -42,7 +42,7 @@ def messages(icd: Icd, node: Node) -> dict[tuple[str, str], dict]:
 def _message(one: Message, node: Node, direction: str, id: int) -> dict:
     is_sent = direction == "telecommand"
     has_views = not is_sent and all(is_ordered(field, node) for field in raw_fields_in(one.layout))
-    fields = [field for field in one.fields if not (field.implied or field.derived) and (has_views or not field.view)]
+    fields = [field for field in one.fields if not (field.is_count or field.derived) and (has_views or not field.view)]
     own, parts = one.layout, one.layout.parts
     open_ = bool(parts) and not has_open_end(one)
     fields = [field for field in fields if not (open_ and field.at >= own.length * 8) and is_ordered(field, node)]
@@ -103,7 +103,7 @@ def _field(field: NodePlace, bits: list[int]) -> dict:
     return {
         "bits": bits,
         "type": field.type,
-        "signed": is_number and field.signed,
+        "signed": is_number and field.is_signed,
         "enum": field.enum and _enum(field.enum),
         "unit": field.unit and field.unit.symbol,
         "scale": _scale(field),

@@ -112,7 +112,7 @@ def _unlike(node: Node, message: Message, frame: bytes, theirs: Values) -> tuple
     raw, count = codec.decode(node, message, frame), 0
     end = 8 * (len(frame) if has_open_end(message) else message.layout.length)
     for field in message.fields:
-        is_left_out = field.implied or field.derived or field.at >= end or not is_ordered(field, node)
+        is_left_out = field.is_count or field.derived or field.at >= end or not is_ordered(field, node)
         if (
             is_left_out
             or field.is_bytes

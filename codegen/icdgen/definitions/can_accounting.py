@@ -1,6 +1,6 @@
 """Account of what cantools drops of SYM, KCD and ARXML files, which it reads without a word about it.
 
-The tables list what cantools (39 to 41) reads and `can` uses, or what has no meaning for an ICD; everything else is counted.
+The tables list what cantools reads and `can` uses, or what has no meaning for an ICD; everything else is counted.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ _SYM_LINE = re.compile(r"\s*(\w+)\s*=")
 _SYM_TOKEN = re.compile(r'"(?:\\"|[^"])*"|//.*|/(\w+):')
 _SYM_NUMBERED = re.compile(r'(?:Sig|Var)\s*=\s*(?:"[^"]*"|\w+)\s+(string|raw|char)\b')
 
-# ARXML: the elements of packages that cantools reads; the second set is what these refer to by name or what has no meaning.
+# ARXML: the elements of packages that cantools reads, that these refer to by name, or that have no meaning for an ICD.
 _ARXML = frozenset(
     {
         "BASE-TYPE", "SW-BASE-TYPE", "CAN-CLUSTER", "CAN-FRAME", "COMPU-METHOD", "CONSTANT-SPECIFICATION", "ECU-INSTANCE",

@@ -175,7 +175,7 @@ def member_comment(member: Member, told: Mapping[str, str]) -> Comment:
 def field_comment(field: NodePlace, told: Mapping[str, str], message: Message) -> Comment:
     """Name, place, range and unit; summary; values that are allowed or mean something. ``told``: as for a member."""
     parts = message.layout.parts
-    if field.implied:
+    if field.is_count:
         tail = parts[-1]
         what = f"how much of {words(tail.name)} the frame has, up to {tail.most}; identified by its length"
         return Comment(f"{words(field.name)}: {what}.")

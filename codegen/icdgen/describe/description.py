@@ -12,7 +12,7 @@ from icdgen.describe.enums import EnumDescription, enum_widths
 from icdgen.describe.errata import Thing, first_owners, owners_elsewhere
 from icdgen.describe.named import Named
 from icdgen.describe.scalar import ScalarDescription
-from icdgen.icd.layout import UNDECLARED, Layout, Orders
+from icdgen.icd.layout import UNDECLARED, Layout, Orders, VariablePart
 from icdgen.icd.model import Enum, Icd, Message, Node, Struct
 from icdgen.icd.places import NodePlace, places_of
 from icdgen.once import cached_property
@@ -174,29 +174,11 @@ class FieldDescription(ScalarDescription):
 
 
 class TailDescription(NamedTuple):
-    """A part of variable length: an array, bytes or text. Elements that a frame lacks are 0 in what it is decoded to."""
+    """A part of variable length: an array, bytes or text."""
 
+    model: VariablePart
     part: FieldDescription  # the array as one, or the bytes or text
-    counter: FieldDescription  # how many elements there are; implied, or a field of the frame
-    begin: int  # bytes before it in the longest frame
-    step: int  # bytes of an element
-    most: int  # elements
-    plus: int  # there are so many more elements than the counter says
-
-    @property
-    def fewest(self) -> int:
-        """Elements that every frame has."""
-        return max(0, self.plus)
-
-    @property
-    def low(self) -> int:
-        """The smallest value of the counter."""
-        return max(0, -self.plus)
-
-    @property
-    def high(self) -> int:
-        """The largest value of the counter."""
-        return self.most - self.plus
+    counter: FieldDescription  # how many elements there are; a field of the frame, or what only its length tells
 
     @property
     def element(self) -> StructDescription | None:
@@ -204,14 +186,9 @@ class TailDescription(NamedTuple):
         return self.part.element
 
     @property
-    def least(self) -> int:
-        """Bytes of the shortest frame."""
-        return self.begin + self.fewest * self.step
-
-    @property
     def is_bound(self) -> bool:
         """Whether the integer that holds the count holds larger or smaller ones than there can be."""
-        return self.low > 0 or self.counter.storage.max > self.high
+        return self.model.low > 0 or self.counter.storage.max > self.model.high
 
 
 Fielded = TypeVar("Fielded", bound=Message | Struct)
@@ -290,17 +267,17 @@ class Composite(Named[Fielded]):
     @property
     def fewest(self) -> int:
         """Elements of the open end that every frame has."""
-        return self.tail.fewest if self.tail is not None else 0
+        return self.tail.model.fewest if self.tail is not None else 0
 
     @property
     def frame_members(self) -> tuple[FieldDescription, ...]:
         """Members that have bits in the frame: without the count that only the length of the frame tells."""
-        return self.members if self.tail is None else tuple(one for one in self.members if not one.model.implied)
+        return self.members if self.tail is None else tuple(one for one in self.members if not one.model.is_count)
 
     @cached_property
     def frame_fields(self) -> tuple[FieldDescription, ...]:
         """The fields that have bits in the frame, each element of an array, but those in arrays of structs."""
-        blocks = (block for block in self.flat_members if not block.model.implied and block.element is None)
+        blocks = (block for block in self.flat_members if not block.model.is_count and block.element is None)
         return tuple(scalar for block in blocks for scalar in block.scalars)
 
     @cached_property

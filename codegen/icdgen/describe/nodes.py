@@ -72,8 +72,7 @@ class MessageDescription(Composite[Message]):
         """All parts of variable length, in the order of the frame."""
         by_name = {member.model.name: member for member in self.members}
         return tuple(
-            TailDescription(by_name[part.name], by_name[part.counter], part.begin, part.step, part.most, part.plus)
-            for part in self.model.layout.parts
+            TailDescription(part, by_name[part.name], by_name[part.counter]) for part in self.model.layout.parts
         )
 
     @cached_property

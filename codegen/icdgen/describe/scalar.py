@@ -40,7 +40,7 @@ class ScalarDescription(Named[NodePlace]):
     ) -> None:
         super().__init__(place, vocabulary, owner)
         self.enum, self.node_orders = enum, node_orders
-        self.storage = enum.storage if enum is not None else storage_of(place.bits, place.signed)
+        self.storage = enum.storage if enum is not None else storage_of(place.bits, place.is_signed)
         self.steps, self.curve = steps.steps(place), place.curve
         if place.derived is not None and place.unit is not None:  # it is a physical value, and has no raw one
             self.name = f"{self.name}_{place.unit.identifier}"
@@ -61,7 +61,7 @@ class ScalarDescription(Named[NodePlace]):
     @property
     def fresh(self) -> int:
         """The raw value in a new message, as a number."""
-        return self.model.const or self.model.counts_from
+        return self.model.const or self.model.smallest_raw
 
     @property
     def orders(self) -> Orders:
@@ -131,7 +131,7 @@ class ScalarDescription(Named[NodePlace]):
     @property
     def is_set(self) -> bool:
         """Whether a physical value sets it."""
-        return not self.model.view and self.model.leads_back
+        return not self.model.view and self.model.is_invertible
 
     @cached_property
     def bounds(self) -> tuple[Bound, ...]:

@@ -290,7 +290,7 @@ _MESSAGES_LIKELY = ((_moved_message, _name, SAME_MESSAGE), (_renamed_message, _m
 def _fields(pair: MessagePair) -> list[FieldPair]:
     """Those that the ICD has lines for, those of structs wherever they stand."""
     old, new = (
-        sorted((line for line in lines(message.layout) if not line.implied), key=_place) if message else []
+        sorted((line for line in lines(message.layout) if not line.is_count), key=_place) if message else []
         for message in (pair.before, pair.after)
     )
     pairs = _side_by_side(old, new, lambda known_pairs, *left: _renamed_fields(pair, known_pairs, *left))

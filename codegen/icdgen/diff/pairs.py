@@ -249,7 +249,7 @@ def kind(line: Line) -> str:
     if line.is_bytes:
         return "bytes"
     if line.type in ("uint", "int", "enum", "bool"):
-        return "int" if line.signed else "unsigned"
+        return "int" if line.is_signed else "unsigned"
     return line.type
 
 

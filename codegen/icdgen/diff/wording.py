@@ -70,13 +70,13 @@ def type_of(field: Line) -> str:
 
 def _type_of(field: Line) -> str:
     if field.type == "enum":
-        return f"{field.bits}-bit {'signed ' if field.signed else ''}enum {field.enum.name if field.enum else '?'}"
+        return f"{field.bits}-bit {'signed ' if field.is_signed else ''}enum {field.enum.name if field.enum else '?'}"
     return "bool" if field.type == "bool" and field.bits == 1 else f"{field.bits}-bit {field.type}"
 
 
 def read_as(field: Line) -> str:
     """``int``, ``enum``, ``signed enum``"""
-    return f"signed {field.type}" if field.type == "enum" and field.signed else field.type
+    return f"signed {field.type}" if field.type == "enum" and field.is_signed else field.type
 
 
 def ids(values: Iterable[int | None]) -> str:

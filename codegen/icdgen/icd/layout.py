@@ -82,11 +82,6 @@ class Counted:
     most: int
     plus: int = 0
 
-    @property
-    def fewest(self) -> int:
-        """Elements of the shortest frame."""
-        return max(0, self.plus)
-
 
 @dataclass(frozen=True, slots=True)
 class Rest:
@@ -94,11 +89,6 @@ class Rest:
 
     counter: Scalar
     most: int
-
-    @property
-    def fewest(self) -> int:
-        """Elements of the shortest frame: none."""
-        return 0
 
 
 Size: TypeAlias = "int | Counted | Rest"
@@ -235,18 +225,18 @@ class Layout:
     @property
     def longest(self) -> int:
         """Bytes of the longest frame."""
-        return self.length + sum(size_of(node).most * stride(node) // 8 for node in self.sequence)
+        return self.length + sum(part.most * part.step for part in self.parts)
 
     @property
     def shortest(self) -> int:
         """Bytes of the shortest frame. A frame that may end early has at least one byte."""
-        least = self.length + sum(size_of(node).fewest * stride(node) // 8 for node in self.sequence)
+        least = self.length + sum(part.fewest * part.step for part in self.parts)
         return min(1, least) if self.may_end_early else least
 
     @property
     def lengths(self) -> range:
         """Lengths that frames can have; with several variable parts, also some that their counters exclude."""
-        step = gcd(*(stride(node) // 8 for node in self.sequence)) or 1
+        step = gcd(*(part.step for part in self.parts)) or 1
         return range(self.shortest, self.longest + 1, step)
 
     @cached_property
@@ -264,9 +254,7 @@ class Layout:
 
     def smallest_raw(self, counter: str) -> int:
         """Return the smallest raw value of a field that counts; 0 for any other field."""
-        sizes = (size_of(node) for node in self.sequence)
-        plus = (size.plus for size in sizes if isinstance(size, Counted) and size.counter == counter)
-        return max((-value for value in plus if value < 0), default=0)
+        return max((part.low for part in self.parts if part.counter == counter), default=0)
 
 
 class VariablePart(NamedTuple):

@@ -22,7 +22,7 @@ from icdgen.icd.layout import Layout, Orders
 from icdgen.icd.layout import Limits as Limits
 from icdgen.icd.layout import Special as Special
 from icdgen.icd.located import Map, unread
-from icdgen.icd.places import NodePlace, raw_fields_in, scalars_in
+from icdgen.icd.places import NodePlace, scalars_in
 from icdgen.icd.units import Unit
 
 TELECOMMAND, TELEMETRY, CONFIGURATION = "telecommand", "telemetry", "configuration"
@@ -101,7 +101,7 @@ class Message:
 
     @property
     def fields(self) -> tuple[NodePlace, ...]:
-        """The fields of the longest frame, each element of an array and each field of a struct one: `Layout.scalars`."""
+        """The fields of the longest frame, each element of an array and each field of a struct one: `scalars_in`."""
         return scalars_in(self.layout)
 
     @property
@@ -113,13 +113,6 @@ class Message:
     def has_conditions(self) -> bool:
         """Whether a field of it is not always there."""
         return any(node.present_if for node in self.layout.fixed)
-
-    @property
-    def fresh(self) -> dict[str, int | bytes]:
-        """The raw values of a new message by the names of its fields, but for views and what is not there."""
-        fields = raw_fields_in(self.layout)
-        fresh = {field.name: field.fresh for field in fields}
-        return {one.name: one.fresh for one in fields if all(fresh.get(c.field) in c.values for c in one.when)}
 
     @property
     def telecommand_id(self) -> int | None:

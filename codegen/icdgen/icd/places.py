@@ -130,31 +130,6 @@ class NodePlace(OfScalar):
         return "count" if self.is_count else "field"
 
     @property
-    def implied(self) -> bool:
-        """Whether it has no bits, because the length of the frame tells its value."""
-        return self.is_count
-
-    @property
-    def counts_from(self) -> int:
-        """The smallest raw value, of a field that counts elements."""
-        return self.smallest_raw
-
-    @property
-    def signed(self) -> bool:
-        """See `Scalar.is_signed`."""
-        return self.scalar.is_signed
-
-    @property
-    def leads_back(self) -> bool:
-        """See `Scalar.is_invertible`."""
-        return self.scalar.is_invertible
-
-    @property
-    def ends(self) -> tuple[int, int]:
-        """See `Scalar.settable_raws`."""
-        return self.scalar.settable_raws
-
-    @property
     def fresh(self) -> int | bytes:
         """The raw value in a new message: the only valid one, or the smallest; of a float its bits."""
         return bytes(self.bits // 8) if self.is_bytes else self.const or self.smallest_raw
@@ -224,18 +199,17 @@ def places_of(layout: Layout, outer: Orders = UNDECLARED) -> tuple[NodePlace, ..
     """
     orders = layout.orders.within(outer)
     found = [_place(node, orders, smallest_raw=layout.smallest_raw(node.name)) for node in layout.fixed]
-    end = 8 * layout.length
-    for part in layout.sequence:
-        size, own, steps = size_of(part), part.orders.within(orders), (PathStep(part),)
-        if isinstance(part, Array):
-            found.append(_place_of_item(steps, part.item, end, own, size.most))
+    for part in layout.parts:
+        node, size, at = part.node, size_of(part.node), 8 * part.begin
+        own, steps = node.orders.within(orders), (PathStep(node),)
+        if isinstance(node, Array):
+            found.append(_place_of_item(steps, node.item, at, own, part.most))
         else:
-            found.append(NodePlace(steps, part, None, end, 8 * size.most, own))
-        end += size.most * stride(part)
+            found.append(NodePlace(steps, node, None, at, 8 * part.most, own))
         if isinstance(size, Rest):
-            counter = size.counter
+            counter, end = size.counter, 8 * (part.begin + part.most * part.step)
             found.append(NodePlace((PathStep(counter),), counter, None, end, counter.bits, UNDECLARED, is_count=True))
-    found += (_place(node, UNDECLARED, end) for node in layout.derived)
+    found += (_place(node, UNDECLARED, 8 * layout.longest) for node in layout.derived)
     return tuple(found)
 
 

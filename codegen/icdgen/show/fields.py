@@ -33,7 +33,7 @@ _COLUMNS = [
 
 def field_table(message: Message | Struct, node: Node, width: int | None = None) -> str:
     """Fields and reserved bits in the order of the frame; empty for a message without any."""
-    rows = [(field.at, _row(field, message)) for field in lines(message.layout) if not field.implied]
+    rows = [(field.at, _row(field, message)) for field in lines(message.layout) if not field.is_count]
     reserved = ("reserved", "", "", "", "", "", "")
     rows += [(gap.at, (str(gap.at), str(gap.bits), *reserved)) for gap in layout.gaps(message, node)]
     return render(_COLUMNS, [row for _, row in sorted(rows, key=lambda r: r[0])], width)

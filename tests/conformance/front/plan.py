@@ -42,7 +42,7 @@ def _message(message: Message) -> dict[str, Any]:
                 "type": field.type,
                 "bits": field.bits,
                 "scaled": field.has_formula or field.type == "text",
-                "settable": ((field.has_formula and field.leads_back) or field.type == "text") and not field.view,
+                "settable": ((field.has_formula and field.is_invertible) or field.type == "text") and not field.view,
                 "view": field.view,
                 "conditional": bool(field.when),
             }

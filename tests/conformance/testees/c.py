@@ -174,7 +174,7 @@ class _Rows:
         field, stem = one.model, names.stem(owner)
         macros = [(constant.key, names.constant(owner, constant.name)) for constant in one.constants]
         return FieldRow(
-            type="TESTEE_SIGNED" if field.signed else TYPES.get(field.type, "TESTEE_UNSIGNED"),
+            type="TESTEE_SIGNED" if field.is_signed else TYPES.get(field.type, "TESTEE_UNSIGNED"),
             name=one.name,
             member=one.member,
             holder=one.holder,

@@ -158,16 +158,18 @@ def _tail(message: MessageDescription, tail: TailDescription) -> dict[str, objec
             "reading": reading,
             "walking": names.walking(message, tail.part.name) if not message.inner else "",
             "there": decoding.there(tail),
-            "place": decoding.place(tail.begin, tail.step),
+            "place": decoding.place(tail.model.begin, tail.model.step),
             "decode": decoding.of_elements(tail, reading),
-            "encode": [decoding.for_each(tail.part.member, decoding.elements(tail), writing, tail.begin, tail.step)],
+            "encode": [
+                decoding.for_each(tail.part.member, decoding.elements(tail), writing, tail.model.begin, tail.model.step)
+            ],
         }
     return {
         "element": of_element,
         "inner": decoding.of_inner(message),
         "size": encoding.size(message),
         "misfit_length": decoding.misfit_length(
-            tail, names.constant(message, "length"), tail.begin if message.inner else 0
+            tail, names.constant(message, "length"), tail.model.begin if message.inner else 0
         ),
         "miscounted": decoding.miscounted(tail),
         "elements": decoding.elements(tail),

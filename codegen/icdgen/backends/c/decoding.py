@@ -25,7 +25,7 @@ def statements(message: Composite[Any], groups: Groups) -> list[str]:
     if not message.members:
         return ["(void)buffer;", f"message->{EMPTY} = 0u;"]
     found = [_one(one) if isinstance(one, FieldDescription) else _group(one, message) for one in groups]
-    if message.tail is not None and message.tail.counter.model.implied:
+    if message.tail is not None and message.tail.counter.model.is_count:
         counter = message.tail.counter
         found.append(f"message->{counter.name} = {cast(_count(message.tail), counter.storage.bits)};")
     return found
@@ -33,29 +33,29 @@ def statements(message: Composite[Any], groups: Groups) -> list[str]:
 
 def _count(tail: TailDescription) -> str:
     """How many elements there are in ``length`` bytes, without the fewest that there can be."""
-    rest = f"length - {tail.least}u" if tail.least else "length"
-    if tail.step == 1:
+    rest = f"length - {tail.model.shortest}u" if tail.model.shortest else "length"
+    if tail.model.step == 1:
         return rest
-    return f"({rest}) / {tail.step}u" if tail.least else f"{rest} / {tail.step}u"
+    return f"({rest}) / {tail.model.step}u" if tail.model.shortest else f"{rest} / {tail.model.step}u"
 
 
 def misfit_length(tail: TailDescription, longest: str, known: int = 0) -> str:
     """What holds of a ``length`` of ``known`` bytes or more that no frame has; ``longest`` is the macro of the longest."""
-    tests = [f"length < {tail.least}u"] if tail.least > known else []
+    tests = [f"length < {tail.model.shortest}u"] if tail.model.shortest > known else []
     tests.append(f"length > {longest}")
-    if tail.step > 1:
-        rest = f"(length - {tail.least}u)" if tail.least else "length"
-        tests.append(f"({rest} % {tail.step}u) != 0u")
+    if tail.model.step > 1:
+        rest = f"(length - {tail.model.shortest}u)" if tail.model.shortest else "length"
+        tests.append(f"({rest} % {tail.model.step}u) != 0u")
     return either(tests)
 
 
 def miscounted(tail: TailDescription) -> tuple[str, str, str] | None:
     """Type and reading of the count that a frame holds, as ``value``, and what holds where it is not that of its length."""
-    if tail.counter.model.implied:
+    if tail.counter.model.is_count:
         return None
     bits = max(tail.counter.storage.bits, 32)
     value = "value" if tail.counter.storage.bits == bits else cast("value", bits)
-    told = cast(_count(tail), bits) + (f" + {tail.low}u" if tail.low else "")
+    told = cast(_count(tail), bits) + (f" + {tail.model.low}u" if tail.model.low else "")
     return type_of(tail.counter), number(tail.counter, "value"), f"{value} != {told}"
 
 
@@ -66,9 +66,9 @@ def of_inner(message: MessageDescription) -> list[dict[str, object]]:
             "type": type_of(one.counter),
             "reading": number(one.counter, "value"),
             "misfit": miscount(one, "value") if one.is_bound else "",
-            "begin": one.begin,
-            "there": _bytes(elements(one, "value"), one.step),
-            "given": _bytes(elements(one), one.step),
+            "begin": one.model.begin,
+            "there": _bytes(elements(one, "value"), one.model.step),
+            "given": _bytes(elements(one), one.model.step),
             "miscount": miscount(one) if one.is_bound else "",
             "counter": one.counter,
         }
@@ -83,7 +83,7 @@ def _bytes(count: str, step: int) -> str:
 def of_elements(tail: TailDescription, reading: str) -> list[str]:
     """The statements that read the structs of an open end, each where it stands in ``buffer``."""
     name = tail.part.member
-    loop_over = for_each(name, there(tail), reading, tail.begin, tail.step)
+    loop_over = for_each(name, there(tail), reading, tail.model.begin, tail.model.step)
     return [f"(void)memset(message->{name}, 0, sizeof message->{name});", loop_over]
 
 
@@ -104,7 +104,7 @@ def there(tail: TailDescription) -> str:
     """How many elements a frame of ``length`` bytes has."""
     count = _count(tail)
     count = f"({count})" if " " in count else count
-    return count + (f" + {tail.fewest}u" if tail.fewest else "")
+    return count + (f" + {tail.model.fewest}u" if tail.model.fewest else "")
 
 
 def place(begin: int, step: int, in_round: int = 1) -> str:
@@ -117,16 +117,16 @@ def place(begin: int, step: int, in_round: int = 1) -> str:
 def elements(tail: TailDescription, counter: str = "") -> str:
     """How many elements a message has."""
     count = f"ICDGEN_SIZE({counter or f'message->{tail.counter.name}'})"
-    if not tail.plus:
+    if not tail.model.plus:
         return count
-    return f"({count} {'+' if tail.fewest else '-'} {abs(tail.plus)}u)"
+    return f"({count} {'+' if tail.model.fewest else '-'} {abs(tail.model.plus)}u)"
 
 
 def miscount(tail: TailDescription, counter: str = "") -> str:
     """What holds of a message whose count is none that it can have."""
     count = counter or f"message->{tail.counter.name}"
-    tests = [f"{count} < {tail.low}u"] if tail.low else []
-    tests += [f"{count} > {tail.high}u"] if tail.counter.storage.max > tail.high else []
+    tests = [f"{count} < {tail.model.low}u"] if tail.model.low else []
+    tests += [f"{count} > {tail.model.high}u"] if tail.counter.storage.max > tail.model.high else []
     return either(tests)
 
 

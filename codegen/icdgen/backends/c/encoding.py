@@ -17,32 +17,34 @@ def size(message: MessageDescription) -> list[str]:
     """Bytes of the frame that a message makes, as the terms of a sum."""
     tail = message.tail
     assert tail is not None
-    parts = [_held(one) if one.step == 1 else f"{_held(one)} * {one.step}u" for one in (*message.inner, tail)]
+    parts = [
+        _held(one) if one.model.step == 1 else f"{_held(one)} * {one.model.step}u" for one in (*message.inner, tail)
+    ]
     if message.inner:
         return [f"{message.model.layout.length}u", *parts]
-    if not tail.begin:
+    if not tail.model.begin:
         return parts
-    return [f"{tail.begin}u", parts[0] if tail.step == 1 else f"({parts[0]})"]
+    return [f"{tail.model.begin}u", parts[0] if tail.model.step == 1 else f"({parts[0]})"]
 
 
 def _held(tail: TailDescription) -> str:
     """How many elements there are; none where the counter is smaller than any frame has it."""
-    if not tail.low:
+    if not tail.model.low:
         return elements(tail)
-    return f"((message->{tail.counter.name} > {tail.low}u) ? {elements(tail)} : 0u)"
+    return f"((message->{tail.counter.name} > {tail.model.low}u) ? {elements(tail)} : 0u)"
 
 
 def counted_text(tail: TailDescription) -> str:
     """What the counter of an open text says of a ``text``, which is filled up to the fewest characters."""
-    if tail.fewest:
-        return f"(strlen(text) > {tail.fewest}u) ? (strlen(text) - {tail.fewest}u) : 0u"
-    return f"strlen(text) + {tail.low}u" if tail.low else "strlen(text)"
+    if tail.model.fewest:
+        return f"(strlen(text) > {tail.model.fewest}u) ? (strlen(text) - {tail.model.fewest}u) : 0u"
+    return f"strlen(text) + {tail.model.low}u" if tail.model.low else "strlen(text)"
 
 
 def statements(message: Composite[Any], groups: Groups) -> list[str]:
     """Statements that write every byte of the frame once, in order, but for structs of an open end."""
     if message.tail is not None and message.tail.element is not None:
-        return _Frame(message, groups, message.tail.begin).in_order()
+        return _Frame(message, groups, message.tail.model.begin).in_order()
     frame = _Frame(message, groups, message.model.length)
     unused = [] if message.members else ["(void)message;"]
     if not message.members and not message.model.length:

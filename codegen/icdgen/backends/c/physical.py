@@ -56,7 +56,7 @@ def _on_curve(field: FieldDescription, curve: Curve) -> Scaled:
     if field.model.type == "float":
         setter: tuple[str, ...] = f"icdgen_set_curve_f{field.model.bits}", "value", "curve"
     else:
-        limits = (_limit(end, storage) for end in field.model.ends)
+        limits = (_limit(end, storage) for end in field.model.settable_raws)
         setter = f"icdgen_set_curve_{_kind(storage)}", "value", "curve", count, *limits
     return Scaled(getter, setter, tuple(_declared(curve)))
 

@@ -168,7 +168,7 @@ class _Rows:
 def _type(field: NodePlace) -> str:
     if field.derived is not None:
         return "ICDGEN_SELFTEST_DERIVED"
-    return f"ICDGEN_SELFTEST_{'SIGNED' if field.signed else TYPES.get(field.type, 'UNSIGNED')}"
+    return f"ICDGEN_SELFTEST_{'SIGNED' if field.is_signed else TYPES.get(field.type, 'UNSIGNED')}"
 
 
 def _id(id: int, message: Message | None) -> str:
@@ -210,7 +210,7 @@ def _tail(message: MessageDescription, tail: TailDescription, vectors: MessageVe
     return {
         "least": message.model.layout.shortest,
         "counter": next(place for place, one in enumerate(message.all_fields) if one.model is tail.counter.model),
-        "high": tail.high,
+        "high": tail.model.high,
         "frames": _bytes(b"".join(frame.ljust(message.model.length, b"\0") for frame in vectors.miscounted)),
         "frame_lengths": list(map(len, vectors.miscounted)),
     }

@@ -105,7 +105,7 @@ class _Canvas:
         """Key of the field that each bit of the frame belongs to, in bytes of bits from the left; 0: reserved."""
         owner = [0] * (8 * self.message.length)
         for shape, one in zip(self.shapes, scalars_in(self.message.layout), strict=True):
-            if one.view or one.implied:
+            if one.view or one.is_count:
                 continue
             if one.is_bytes:
                 owner[one.at : one.at + one.bits] = [shape.key] * one.bits

@@ -64,7 +64,7 @@ def rows(message: Message, node: Node, links: Links) -> list[FieldRow]:
     found = [
         _row(key, field, message, links, anchors[key - 1])
         for key, field in enumerate(scalars_in(message.layout), 1)
-        if not field.implied and repeats.is_shown(key)
+        if not field.is_count and repeats.is_shown(key)
     ]
     for gap in layout.gaps(message, node):
         found += [FieldRow(0, at, bits) for at, bits in repeats.shown_parts(gap.at, gap.bits)]

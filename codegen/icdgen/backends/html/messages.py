@@ -37,7 +37,7 @@ def values(relations: Relations, node: Node, message: Message, render: Renderer)
     rows = fields.rows(message, node, relations.links)
     shown = examples(message, node)
     is_received = message.telemetry_id is not None
-    data = shown[0].frame if shown and is_received else codec.encode(node, message, message.fresh)
+    data = shown[0].frame if shown and is_received else codec.encode(node, message, codec.initial_values(node, message))
     return {
         "message": message,
         "node": node,
@@ -72,7 +72,7 @@ def _facts(relations: Relations, node: Node, message: Message) -> list[tuple[str
     source = [f"{word} {number}" for word, number in (("table", message.table), ("page", message.page)) if number]
     facts = [
         ("Length", length_text(message), ""),
-        ("Fields", str(sum(not field.implied for _, field in relations.shown_fields(message))), ""),
+        ("Fields", str(sum(not field.is_count for _, field in relations.shown_fields(message))), ""),
         *_open_parts(message),
         ("End", "trailing zeros may be omitted" if message.may_end_early else "", ""),
         ("Reserved", f"last {count(message.reserved, 'byte')}" if message.reserved else "", ""),

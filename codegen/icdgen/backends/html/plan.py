@@ -55,27 +55,27 @@ def _field(field: NodePlace, message: Message, node: Node, places: Mapping[str, 
     scaled, curve, how = steps(field), field.curve, field.derived
     variable = message.layout.sequence
     digits, base = digits_of(field), base_of(field)
-    pieces = () if field.implied or field.is_bytes else layout.pieces(field, node)
-    is_part = bool(curve) and field.leads_back and field.ends != (field.raw_min, field.raw_max)
+    pieces = () if field.is_count or field.is_bytes else layout.pieces(field, node)
+    is_part = bool(curve) and field.is_invertible and field.settable_raws != (field.raw_min, field.raw_max)
     limits = {one.key: [integer(one.value.numerator), integer(one.value.denominator)] for one in bounds(field.limits)}
     plan: dict[str, object] = {
         "name": field.name,
         "type": "bytes" if field.is_bytes else field.type,
         "bits": field.bits,
-        "signed": field.signed,
+        "signed": field.is_signed,
         "view": field.view,
-        "implied": field.implied,
+        "implied": field.is_count,
         "text": field.type == "text",
         "first": field.at // 8 if field.is_bytes else None,
         "pieces": None if field.is_bytes else [[p.byte, p.shift, p.bits, p.at] for p in pieces],
         "scale": [integer(term) for term in scaled.terms] if scaled else None,
         "curve": [[start, list(terms)] for start, terms in curve.pieces] if curve else None,
-        "oneWay": curve is not None and not field.leads_back,
+        "oneWay": curve is not None and not field.is_invertible,
         "decimals": digits.decimals if digits else None,
         "digits": digits.significant if digits else None,
         "fixed": digits is not None and digits.is_fixed,
         "base": list(base) if base else None,
-        "ends": list(field.ends) if is_part else None,
+        "ends": list(field.settable_raws) if is_part else None,
         "unit": field.unit_symbol or None,
         "enum": field.enum.name if field.enum else None,
         "const": None if field.const is None else integer(field.const),

@@ -9,7 +9,6 @@ from itertools import pairwise
 from typing import TypeAlias
 
 from icdgen.icd.frames import PathStep, name_of_steps
-from icdgen.icd.layout import size_of
 from icdgen.icd.model import Message
 from icdgen.icd.places import NodePlace, places_in, scalars_in
 
@@ -74,16 +73,15 @@ class Repeats:
         """Find the arrays that are shown by one element."""
         starts = sorted(scalar.at for scalar in scalars)
         for place in _arrays(places_in(message.layout)):
-            node, variable = place.node, message.layout.sequence
-            is_variable = any(node is part for part in variable)
-            if place.count < 2 or not (is_variable or place.struct is not None or place.count > _LONG):
+            node = place.node
+            variable = next((part for part in message.layout.parts if part.node is node), None)
+            if place.count < 2 or not (variable or place.struct is not None or place.count > _LONG):
                 continue
             begin, end = place.at, place.at + place.width
             inside = bisect_left(starts, end) - bisect_left(starts, begin)
             # Other fields at the same place (alternatives, overlays) are to be seen: then every element is shown.
             if begin % 8 == place.bits % 8 == 0 and inside == sum(1 for _ in place.scalars()):
-                size = next((size_of(part) for part in variable if part is node), None)
-                times = str(place.count) if size is None else f"{size.fewest} to {size.most}"
+                times = f"{variable.fewest} to {variable.most}" if variable else str(place.count)
                 label = ".".join(filter(None, (self._label(place.steps[:-1]), node.name)))
                 self._found[_array(place.steps, len(place.steps) - 1)] = Repeat(
                     label, begin // 8, place.bits // 8, place.count, times

@@ -72,7 +72,7 @@ def _arrays(message: Message, repeats: Repeats) -> list[Section]:
     others = [
         key for key in range(1, len(scalars_in(message.layout)) + 1) if repeats.is_shown(key) and key not in shown
     ]
-    others = [key for key in others if not scalars_in(message.layout)[key - 1].implied]
+    others = [key for key in others if not scalars_in(message.layout)[key - 1].is_count]
     if others:
         found.append(Section("Derived values", message.length, message.length, others))
     return [replace(one, keys=[key for key in one.keys if repeats.is_shown(key)]) for one in found]
@@ -120,14 +120,14 @@ def panels(message: Message, repeats: Repeats) -> list[Section]:
         first = min((one.at for one in fields), default=0) // 8
         end = -(-max((one.at + one.bits for one in fields), default=0) // 8)
         title = element or (
-            "Fields" if fields else "Count" if scalars_in(message.layout)[keys[0] - 1].implied else "Derived values"
+            "Fields" if fields else "Count" if scalars_in(message.layout)[keys[0] - 1].is_count else "Derived values"
         )
         found.append(Section(title, first, end, keys, open=not element))
     return found
 
 
 def _has_bits(one: NodePlace) -> bool:
-    return not one.implied and one.derived is None
+    return not one.is_count and one.derived is None
 
 
 def _folded(message: Message, found: list[Section]) -> list[Section]:

@@ -116,15 +116,15 @@ def inner(message: MessageDescription) -> list[str]:
     found = []
     for one in message.inner:
         pieces = [f"({p.byte}, {p.shift}, {p.bits}, {p.at})" for p in one.counter.pieces]
-        found.append(f"({open_part(one)}, {one.begin}, ({', '.join(pieces)}{',' * (len(pieces) == 1)}))")
+        found.append(f"({open_part(one)}, {one.model.begin}, ({', '.join(pieces)}{',' * (len(pieces) == 1)}))")
     return found
 
 
 def open_part(one: TailDescription) -> str:
     """``_base.Tail(...)``: attributes, bytes and elements of what is open."""
-    counter = "" if one.counter.model.implied else one.counter.name
-    plus = f", {one.plus}" if one.plus else ""
-    return f'_base.Tail("{one.part.name}", "{counter}", {one.step}, {one.most}{plus})'
+    counter = "" if one.counter.model.is_count else one.counter.name
+    plus = f", {one.model.plus}" if one.model.plus else ""
+    return f'_base.Tail("{one.part.name}", "{counter}", {one.model.step}, {one.model.most}{plus})'
 
 
 def view_info(field: FieldDescription) -> str:
@@ -170,8 +170,8 @@ def scaled(field: FieldDescription) -> str:
     first, note = (_repeated(field, first), "tuple[float, ...]") if field.count else (first, _perhaps(field, "float"))
     if curve is not None:
         items = [*_pieces(curve), f"default={first}"]
-        if field.is_set and field.model.ends != (field.model.raw_min, field.model.raw_max):
-            items.append(f"ends={field.model.ends}")
+        if field.is_set and field.model.settable_raws != (field.model.raw_min, field.model.raw_max):
+            items.append(f"ends={field.model.settable_raws}")
         return _statement(field.physical_name, note, "curve" if field.is_set else "curve_only", items)
     assert steps is not None
     return _statement(field.physical_name, note, "scaled", [*map(str, steps.terms), f"default={first}"])

@@ -78,7 +78,7 @@ def declared_names(description: Description, package: str) -> Iterator[Identifie
 
 def _fields(one: Composite[Any], scope: str) -> Iterator[Identifier]:
     for field in one.all_members:
-        if field.model.implied:
+        if field.model.is_count:
             continue
         exact = None if field.steps is None else integer_scale(field.steps)
         physical = [field.physical_name] if field.has_physical else []

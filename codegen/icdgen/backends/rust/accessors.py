@@ -90,7 +90,7 @@ def curve_of(field: FieldDescription) -> str:
     """The constant of a field with a curve."""
     assert field.curve is not None
     one = field.model
-    ends = one.ends if one.type != "float" and one.leads_back else (0, 0)
+    ends = one.settable_raws if one.type != "float" and one.is_invertible else (0, 0)
     pieces = [f"({double(start)}, &[{', '.join(map(double, terms))}])" for start, terms in field.curve.pieces]
     listed = "\n".join(["", *(f"{STEP}{piece}," for piece in pieces), ""]) if len(pieces) > 1 else pieces[0]
     items = f"{string(one.name)}, {string(field.takes)}, ({', '.join(map(integer, ends))}), &[{listed}]"

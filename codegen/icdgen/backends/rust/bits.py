@@ -28,7 +28,7 @@ def reading(field: FieldDescription, tables: set[int], depth: int = 3, within: s
         return _called(field, helper, within, depth)
     if field.struct is not None:
         return _struct(field, field.struct, tables, depth, within)
-    if field.model.implied:
+    if field.model.is_count:
         return "0"
     if field.count:
         return _array(field, depth) if is_run(field) else _listed(field, tables, depth)
@@ -94,13 +94,13 @@ def _whole(field: FieldDescription, size: int) -> str:
     if size > 8:
         value = f"{_word(field)}::from_{field.order}_bytes(take!(bytes[{first}; {size // 8}]))"
     else:
-        value = f"i8::from_le_bytes([bytes[{first}]])" if field.model.signed else f"bytes[{first}]"
+        value = f"i8::from_le_bytes([bytes[{first}]])" if field.model.is_signed else f"bytes[{first}]"
     return _typed(field, value, size)
 
 
 def _word(field: FieldDescription) -> str:
     """The type of a word: ``u16``, ``f32``."""
-    return f"{'f' if field.model.type == 'float' else 'i' if field.model.signed else 'u'}{field.model.bits}"
+    return f"{'f' if field.model.type == 'float' else 'i' if field.model.is_signed else 'u'}{field.model.bits}"
 
 
 def _typed(field: FieldDescription, value: str, size: int) -> str:
@@ -115,7 +115,7 @@ def _finished(field: FieldDescription, value: str, size: int) -> str:
     """The unsigned value of ``size`` bits as the field's type."""
     if field.model.type == "float":
         return f"f{size}::from_bits({value})"
-    return _typed(field, _signed(field, value, size) if field.model.signed else value, size)
+    return _typed(field, _signed(field, value, size) if field.model.is_signed else value, size)
 
 
 def _signed(field: FieldDescription, value: str, size: int) -> str:
@@ -171,7 +171,7 @@ def _source(field: FieldDescription, owner: str = "self") -> str:
 
 def writing(field: FieldDescription, owner: str = "self", within: str = "") -> list[str]:
     """Statements that put the raw value into ``bytes``, without the bits that its field has no room for."""
-    if field.model.implied:
+    if field.model.is_count:
         return []
     helper = helper_of(field)
     if helper:
@@ -198,7 +198,7 @@ def writing(field: FieldDescription, owner: str = "self", within: str = "") -> l
     if len(row) > 1:
         lines.append(f"let value = {source};")
         source = "value"
-    if one.signed:
+    if one.is_signed:
         lines.append(f"let value = u{size}::from_le_bytes({source}.to_le_bytes());")
         source = "value"
     return lines + _put_pieces(row, source, size)
@@ -217,7 +217,7 @@ def _put_run(field: FieldDescription, source: str) -> list[str]:
 
 def _put_whole(field: FieldDescription, source: str) -> list[str]:
     first, size, is_enum = field.model.at // 8, field.storage.bits, field.model.type == "enum"
-    if size == 8 and not field.model.signed:
+    if size == 8 and not field.model.is_signed:
         return [f"bytes[{first}] = {source}{'.raw()' if is_enum else ''};"]
     copied = f"put!({'value' if is_enum else source}.to_{field.order}_bytes() => bytes[{first}; {size // 8}]);"
     return [f"let value = {source}.raw();", copied] if is_enum else [copied]

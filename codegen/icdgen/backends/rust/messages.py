@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from icdgen import codec
 from icdgen.backends.rust import arrays, bits, conditional, elements, parts
 from icdgen.backends.rust.names import field_name, integer_type, struct_path
 from icdgen.backends.rust.physical import has_constant
@@ -49,10 +50,10 @@ def values(message: MessageDescription) -> dict[str, object]:
 def _of_end(message: MessageDescription, tail: TailDescription) -> dict[str, object]:
     """What the code of frames that differ in length needs."""
     return {
-        "bytes_of_end": _times(tail.step, f"count + {tail.fewest}" if tail.fewest else "count"),
-        "bytes_of_elements": _times(tail.step, "count"),
-        "length_of_frame": _length(tail.least, tail.step),
-        "length_of_elements": _length(tail.begin, tail.step),
+        "bytes_of_end": _times(tail.model.step, f"count + {tail.model.fewest}" if tail.model.fewest else "count"),
+        "bytes_of_elements": _times(tail.model.step, "count"),
+        "length_of_frame": _length(tail.model.shortest, tail.model.step),
+        "length_of_elements": _length(tail.model.begin, tail.model.step),
         "counted_text": _counted_text(tail),
         "open_parts": [(one, _number(one)) for one in (*message.inner, tail)],
     }
@@ -60,8 +61,8 @@ def _of_end(message: MessageDescription, tail: TailDescription) -> dict[str, obj
 
 def _inner(part: TailDescription) -> tuple[TailDescription, str, str, str]:
     """What is open in front of the end, how its count is read, and its bytes: of a count that there may be, and of any."""
-    count = f"number(self.{field_name(part.counter)}, {part.low}, {part.fewest})"
-    there, any_count = (_times(part.step, one) for one in (count, f"{count}.min({part.most})"))
+    count = f"number(self.{field_name(part.counter)}, {part.model.low}, {part.model.fewest})"
+    there, any_count = (_times(part.model.step, one) for one in (count, f"{count}.min({part.model.most})"))
     return part, bits.reading(part.counter, set(), depth=3), there, any_count
 
 
@@ -119,15 +120,15 @@ def _length(before: int, step: int) -> str:
 
 def _counted_text(tail: TailDescription) -> str:
     """What the counter of an open text says of a ``text``, which is filled up to the fewest characters."""
-    if tail.fewest:
-        return f"text.len().saturating_sub({tail.fewest})"
-    return f"(text.len() + {tail.low})" if tail.low else "text.len()"
+    if tail.model.fewest:
+        return f"text.len().saturating_sub({tail.model.fewest})"
+    return f"(text.len() + {tail.model.low})" if tail.model.low else "text.len()"
 
 
 def _number(tail: TailDescription) -> str:
     """How many elements a message has."""
     counter = f"self.{field_name(tail.counter)}"
-    return f"number({counter}, {tail.low}, {tail.fewest})" if tail.plus else counter
+    return f"number({counter}, {tail.model.low}, {tail.model.fewest})" if tail.model.plus else counter
 
 
 def _is_default(field: FieldDescription) -> bool:
@@ -143,7 +144,7 @@ def _is_default(field: FieldDescription) -> bool:
 
 def _is_there(field: FieldDescription) -> bool:
     """Whether a new message has a field that is not always there."""
-    return field.model.name in field.message.model.fresh
+    return field.model.name in codec.initial_values(field.message.node, field.message.model)
 
 
 def _fresh(field: FieldDescription) -> str:

@@ -136,7 +136,7 @@ class Frames:
     def _open(self, made: Frame, tail: TailDescription) -> Entry | None:
         """An open end that a field counts; None where XTCE has no word for it, as of structs and of what nothing counts."""
         part, node = tail.part, made.message.node
-        is_odd = tail.counter.model.implied or part.struct is not None or part.model.const is not None
+        is_odd = tail.counter.model.is_count or part.struct is not None or part.model.const is not None
         if is_odd or tail.counter.name not in made.names:
             return None
         run = run_of(part.model, node) if part.model.is_bytes else run_of_all(part.model.elements(), node)
@@ -144,7 +144,7 @@ class Frames:
             return None
         name = self._give_name(made, part)
         type_ = self.types.of_open(tail, made.names[tail.counter.name], _type_name(made, name), run.is_little)
-        _add_row(made, part, type_, tail.most)
+        _add_row(made, part, type_, tail.model.most)
         return Entry(name, run._replace(at=self.head + run.at), is_array=not part.model.is_bytes or bool(part.count))
 
     def _give_name(self, made: Frame, one: FieldDescription) -> str:
@@ -163,7 +163,9 @@ class Frames:
 
     def _tell(self, made: Frame, base: Base, value: int, one: FieldDescription, run: Run) -> None:
         """The container below reads a constant, too: it must be known before a program looks for the message."""
-        name = f"{base.name}_{run.at}_{run.bits}{'_le' if run.is_little else ''}{'_signed' if one.model.signed else ''}"
+        name = (
+            f"{base.name}_{run.at}_{run.bits}{'_le' if run.is_little else ''}{'_signed' if one.model.is_signed else ''}"
+        )
         type_ = replace(type_of(one.model, run.is_little), kind="Integer", unit="", enum="", **_PLAIN)
         self.reserved.setdefault(name, Row(name, self.types.name(type_, _named(type_)), is_reserved=True))
         base.entries[name] = Entry(name, run, at=self.head + run.at)
@@ -226,7 +228,7 @@ def _add_row(made: Frame, one: FieldDescription, type_: str, most: int = 0) -> N
 def _parts(message: MessageDescription) -> Iterator[FieldDescription]:
     """What has a fixed place: fields of structs, arrays as one where XTCE can have them so, at last views."""
     for one in message.leaf_members:
-        if one.is_open or one.is_inner or one.model.implied:
+        if one.is_open or one.is_inner or one.model.is_count:
             continue
         is_array = one.model.const is None and one.count and run_of_all(one.model.elements(), message.node) is not None
         yield from (one,) if is_array or not one.count else one.elements

@@ -88,7 +88,7 @@ class Types:
             made = replace(type_of(tail.part.model), bits=0)
         else:
             made, wanted = Type("Array", of=self._element(tail.part, wanted, is_little)), f"{wanted}_Array"
-        return self.name(replace(made, count=tail.most, counter=counter, plus=tail.plus), wanted)
+        return self.name(replace(made, count=tail.model.most, counter=counter, plus=tail.model.plus), wanted)
 
     def _element(self, field: FieldDescription, wanted: str, is_little: bool) -> str:
         element = type_of(field.model, is_little)
@@ -98,7 +98,7 @@ class Types:
 def type_of(field: NodePlace, is_little: bool = False) -> Type:
     """The type of a field, of an array that of an element."""
     order = "" if field.is_bytes else "leastSignificantByteFirst" if is_little else most_first(field.bits)
-    encoding = "" if field.type == "float" or field.is_bytes else "twosComplement" if field.signed else "unsigned"
+    encoding = "" if field.type == "float" or field.is_bytes else "twosComplement" if field.is_signed else "unsigned"
     made = Type(_KINDS[field.type], field.bits, encoding, order, field.unit_symbol)
     if field.enum is not None:
         labels = tuple(one for one in field.enum.members if one.value in _LONG and one.last in _LONG)

@@ -119,7 +119,7 @@ def read_otherwise(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     details: tuple[str, ...] = ()
     if {kind(old), kind(new)} == {"unsigned", "int"} and old.bits == new.bits:
         half = 1 << (new.bits - 1)
-        first, last = (str(half), str(-half)) if new.signed else (str(-half), str(half))
+        first, last = (str(half), str(-half)) if new.is_signed else (str(-half), str(half))
         details = (f"Bits read as {first} is read as {last}.",)
     text = f"{quote(new.name)} is a {type_of(new)}, was a {type_of(old)}"
     yield Found(text, ("type",), read_as(old), read_as(new), details)
