@@ -95,7 +95,7 @@ class Crc:
     init: int = code("init", "initial value of the register")
     reflect_in: bool = flag("reflect_in", "whether each byte enters least significant bit first")
     reflect_out: bool = flag("reflect_out", "whether the bits of the register are reversed at the end")
-    xor_out: int = code("xor_out", "value that is XORed with the register at the end")
+    xor_out: int = code("xor_out", "final XOR value: combined with the register at the end")
     empty: int | None = code("empty", "checksum of no bytes, if it is not the result of the algorithm", None)
 
 

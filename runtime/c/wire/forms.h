@@ -94,7 +94,7 @@ typedef struct {
     bool reflect_in;
     /** Whether the bits of the register are reversed at the end. */
     bool reflect_out;
-    /** Value that is XORed with the register at the end. */
+    /** Final XOR value: combined with the register at the end. */
     uint32_t xor_out;
     /** Whether `empty` is known. */
     bool has_empty;

@@ -184,7 +184,7 @@ class MessageWatch:
 def _notices(long: LongRow, old: NodePlace, now: NodePlace, node: Node, alone: Message, other_bits: int) -> bool:
     """Return whether a row of the vectors fails with another field.
 
-    `alone` is the message with this field only; `others` are the bits of all other fields.
+    `alone` is the message with this field only; `other_bits` are the bits that all other fields set.
     """
     answer = _answer(node, alone, long.frame)
     if answer is None:

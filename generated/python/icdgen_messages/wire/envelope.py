@@ -24,7 +24,7 @@ class CrcForm(NamedTuple):
     reflect_out: bool
     """Whether the bits of the register are reversed at the end."""
     xor_out: int
-    """Value that is XORed with the register at the end."""
+    """Final XOR value: combined with the register at the end."""
     empty: Optional[int] = None
     """Checksum of no bytes, if it is not the result of the algorithm."""
 

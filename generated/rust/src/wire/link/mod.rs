@@ -263,7 +263,7 @@ pub struct CrcForm {
     pub reflect_in: bool,
     /// Whether the bits of the register are reversed at the end.
     pub reflect_out: bool,
-    /// Value that is XORed with the register at the end.
+    /// Final XOR value: combined with the register at the end.
     pub xor_out: u32,
     /// Checksum of no bytes, if it is not the result of the algorithm.
     pub empty: Option<u32>,
