@@ -28,7 +28,7 @@ C = f"""
 #include "battery.h"
 #include <stdio.h>
 
-static bool show(const uint8_t *frame, size_t length)
+static bool show(const uint8_t *data, size_t length)
 {{
     %s
     (void)printf("%%.2f\\n", temperature);
@@ -37,13 +37,13 @@ static bool show(const uint8_t *frame, size_t length)
 
 int main(void)
 {{
-    const uint8_t frame[] = {{{_BYTES}}};
-    return show(frame, sizeof frame) ? 0 : 1;
+    const uint8_t data[] = {{{_BYTES}}};
+    return show(data, sizeof data) ? 0 : 1;
 }}
 """
 RUST = f"""
 fn main() -> Result<(), icd::Error> {{
-    let frame = &[{_BYTES}][..];
+    let data = &[{_BYTES}][..];
     %s
     println!("{{temperature}}");
     Ok(())
@@ -123,7 +123,7 @@ def test_the_c_shown_reads_the_message(battery, tmp_path):
 
 def test_the_python_shown_reads_the_message(battery, tmp_path):
     package = packages.write(packages.read(battery), tmp_path, "readme_messages")
-    values = {"frame": FRAME}
+    values = {"data": FRAME}
     package.module()
     exec(snippet("python").replace("from battery.", "from readme_messages."), values)
     assert values["temperature"] == 21.5

@@ -108,7 +108,7 @@ def _explain(error: Any, path: list[Any], owner: Map, place: Place, lines: Lines
         what = f"this entry of `{path[-2]}`"
     rule = _rule_at(list(error.schema_path))
     about = rule.get("description", "")
-    help = f"{what}: {about}" if about and what != "this" else about
+    help = f"correct {'it' if what == 'this' else what}: {about}" if about else ""
     if name == "required":
         missing = kind.property
         hint = meaning(inside(rule, missing))

@@ -155,7 +155,7 @@ def ids_in_range(ctx: Context) -> Iterator[Fault]:
         for use in (u for n in ctx.scope(node) for u in _uses(n)):
             first, last = ranges.get(use.direction, (0, (1 << node.id_bits) - 1))
             if not first <= use.id <= last and _has_its_bytes(use):
-                help = _remedy(ctx, use, ranges)
+                help = _remedy(ctx, node, use, ranges)
                 message = f"{_id(ctx, use)} is outside the range of {use.direction} ids, {_range_text(ctx, node, use, ranges)}"
                 yield Fault.at(use.source, use.key, message, help)
 
@@ -169,7 +169,9 @@ def _range_text(ctx: Context, node: Node, use: Use, ranges: dict[str, tuple[int,
     return f"{ctx.written(section, 'first')} to {ctx.written(section, 'last')}"
 
 
-def _remedy(ctx: Context, use: Use, ranges: dict[str, tuple[int, int]]) -> str:
+def _remedy(ctx: Context, node: Node, use: Use, ranges: dict[str, tuple[int, int]]) -> str:
+    if not ranges and ctx.is_linked(node):
+        return f"correct `{use.key}`: the links that `protocol` describes carry ids of one byte, except a `stream`"
     if not ranges:
         needed = next(bits for bits in (8, 16, 24, 32) if use.id < 1 << bits)
         return f"correct `{use.key}`, or give the width of all ids in `node`: `id_bits: {needed}`"
