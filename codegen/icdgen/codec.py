@@ -1,11 +1,12 @@
-"""The reference codec: slow, obvious, exact. The judge of all generated code, so it shares nothing with ``layout``.
+"""Reference codec: slow, simple and exact. Tests compare all generated code with it, so it does not use ``icdgen.layout``.
 
 Raw values are int (uint, int, enum, bool as 0 or 1), bytes (bytes and text fields) and, for floats, the int of their
-IEEE 754 bits, so that every NaN survives. Physical values are exact `fractions.Fraction`s, those of curves doubles.
+IEEE 754 bits, which preserves the payload of a NaN. Physical values are exact `fractions.Fraction`s; of fields with a curve
+they are doubles.
 
-`decode_frame` returns the values that a frame has. An object of generated code has room for the longest frame; therefore
-`decode` returns and `encode` takes the values of the longest frame, in which elements that a frame does not have are 0, and
-bytes or text of variable length end with zeros. `decode` and `_shortened` translate between the two forms.
+`decode_frame` returns the values that a frame has. Objects of generated code have room for the longest frame. Therefore
+`decode` returns and `encode` takes the values of the longest frame: elements that a frame does not have are 0, and
+bytes or text of variable length are padded with zeros. `decode` and `_shortened` convert between the two forms.
 """
 
 from __future__ import annotations
@@ -27,17 +28,19 @@ Raw: TypeAlias = "int | bytes"
 
 
 class CodecError(ValueError):
-    """The value or the frame does not fit the message; the message says what was expected and what was given."""
+    """A value is out of range, or a frame does not match the message. The text has the expected and the actual value."""
 
 
 class LengthError(CodecError):
+    """A frame has a length in bytes that the message cannot have."""
+
     def __init__(self, message: Message, expected: int, actual: int) -> None:
         super().__init__(f"{message.name} has {expected} bytes, {actual} given")
         self.expected, self.actual = expected, actual
 
 
 def decode(node: Node, message: Message, frame: bytes) -> dict[str, Raw]:
-    """Return the raw values of the longest frame by name, without optional fields that are absent. Raises `LengthError`."""
+    """Return the raw values of the longest frame by name, without absent optional fields. Raises `LengthError`."""
     raw = decode_frame(node, message, frame)
     if not message.layout.parts:
         return raw
@@ -54,11 +57,12 @@ def decode(node: Node, message: Message, frame: bytes) -> dict[str, Raw]:
 def decode_frame(node: Node, message: Message, frame: bytes) -> dict[str, Raw]:
     """Return the raw values that a frame has, by name. Raises `LengthError`.
 
-    Array elements beyond its number of elements and optional fields that are absent have no value.
+    The result has no entries for array elements that the frame lacks and for absent optional fields.
     """
     sizes = sizes_of_frame(node, message, frame)
     fields = frame_fields(message.layout, node.orders, sizes)
-    bits = int.from_bytes(frame, "little")  # a frame that ends early lacks zeros
+    # A frame that ends early lacks trailing zeros only, and missing bits of the number read as 0.
+    bits = int.from_bytes(frame, "little")
     raw: dict[str, Raw] = {}
     optional = []
     for field in fields:
@@ -68,21 +72,22 @@ def decode_frame(node: Node, message: Message, frame: bytes) -> dict[str, Raw]:
             optional.append(field)
         elif field.role != "derived":
             raw[field.name] = _read(field, bits)
-    for field in optional:  # they may depend on fields behind them
+    # A condition can name a field that comes later in the frame.
+    for field in optional:
         if is_present(field, raw):
             raw[field.name] = _read(field, bits)
     return raw | derived(message, raw) if message.layout.derived else raw
 
 
 def fields_of_frame(node: Node, message: Message, raw: Mapping[str, Raw]) -> list[FrameField]:
-    """List the scalars with values in `raw`, where they stand in the frame of these values. Raises `CodecError`."""
+    """List the scalars with values in `raw`, at their positions in the frame of these values. Raises `CodecError`."""
     return [
         field for field in frame_fields(message.layout, node.orders, sizes_of_values(message, raw)) if field.name in raw
     ]
 
 
 def derived(message: Message, raw: Mapping[str, Raw]) -> dict[str, Raw]:
-    """Return the derived values, each as the bits of a double; none whose operands have no raw value."""
+    """Return the derived values whose operands have raw values, each as the bits of a double."""
     scalars: dict[str, Scalar] = {}
     for node in message.layout.nodes:
         if isinstance(node, Scalar | Overlay | Derived):
@@ -97,7 +102,7 @@ def derived(message: Message, raw: Mapping[str, Raw]) -> dict[str, Raw]:
 
 
 def sizes_of_frame(node: Node, message: Message, frame: bytes) -> Sizes:
-    """Return the size of each variable-length node of a frame. Raises `LengthError` for a length that it cannot have."""
+    """Return the size of each variable-length node of a frame. Raises `LengthError` if no sizes give its length."""
     layout, actual = message.layout, len(frame)
     if actual < layout.shortest:
         raise LengthError(message, layout.shortest, actual)
@@ -121,7 +126,7 @@ def sizes_of_frame(node: Node, message: Message, frame: bytes) -> Sizes:
 
 
 def _counters(node: Node, layout: Layout, frame: bytes) -> dict[str, int]:
-    """Return the raw values of the scalars that count the elements of variable-length nodes."""
+    """Return the raw values of the fields that count the elements of variable-length nodes."""
     names = {part.counter for part in layout.parts if not part.is_rest}
     if not names:
         return {}
@@ -131,9 +136,12 @@ def _counters(node: Node, layout: Layout, frame: bytes) -> dict[str, int]:
 
 
 def _check_length(message: Message, lengths: range, actual: int) -> None:
-    """Raise `LengthError` for another length: with the longest possible one below, or the least."""
+    """Raise `LengthError` for a length that is not in `lengths`.
+
+    The expected length is the longest valid length below `actual`, or else the shortest.
+    """
     if actual not in lengths:
-        raise LengthError(message, max((one for one in lengths if one < actual), default=lengths[0]), actual)
+        raise LengthError(message, max((length for length in lengths if length < actual), default=lengths[0]), actual)
 
 
 def _number(raw: Raw) -> int:
@@ -142,12 +150,12 @@ def _number(raw: Raw) -> int:
 
 
 def sizes_of_values(message: Message, raw: Mapping[str, Raw]) -> Sizes:
-    """Return the size of each variable-length node, as these values count them. Raises `CodecError`."""
+    """Return the size of each variable-length node, from the values of its counter. Raises `CodecError`."""
     return {part.name: size_of_values(part, raw) for part in message.layout.parts}
 
 
 def size_of_values(part: VariablePart, raw: Mapping[str, Raw]) -> int:
-    """Return the number of elements, or of bytes, that these values count. Raises `CodecError` if there cannot be so many."""
+    """Return the number of elements, or of bytes, of a part from its counter. Raises `CodecError` if it is out of range."""
     value = _number(raw.get(part.counter, part.low))
     if not part.low <= value <= part.high:
         raise CodecError(f"{part.counter!r} takes {part.low} to {part.high}, not {value}")
@@ -155,56 +163,57 @@ def size_of_values(part: VariablePart, raw: Mapping[str, Raw]) -> int:
 
 
 def frame_of(frame: bytes, values: Mapping[FrameField, int]) -> bytes:
-    """Return the frame with other values of some of its numbers."""
+    """Return a copy of a frame with new values of some numbers."""
     bits = int.from_bytes(frame, "little")
     for field, value in values.items():
-        mine = _written(field, -1 if field.is_signed else (1 << field.bits) - 1)
-        bits = bits & ~mine | _written(field, value)
+        mask = _written(field, -1 if field.is_signed else (1 << field.bits) - 1)
+        bits = bits & ~mask | _written(field, value)
     return bits.to_bytes(len(frame), "little")
 
 
 def is_present(field: FrameField, raw: Mapping[str, Raw]) -> bool:
-    """Return whether all conditions of a field hold in a message with these raw values."""
+    """Return whether a message with these raw values meets all conditions of a field."""
     return not field.scalar.present_if or all(raw.get(need.field, 0) in need.values for need in field.scalar.present_if)
 
 
-def which(icd: Icd, messages: Sequence[Message], frame: bytes) -> Message | None:
-    """Of messages that share an id return the one that a frame is of; None if it is of none of them.
+def message_of_frame(icd: Icd, messages: Sequence[Message], frame: bytes) -> Message | None:
+    """Return the message of a frame among messages that share an id; None if the frame matches none of them.
 
-    It is of a length and has the constants of that message, but for those that all of them have alike and for those of elements;
-    of several that of the most constants. Raises `LengthError` if no message has that length and all have the same.
+    A frame matches a message that can have its length and whose constants it has. Constants of array elements, and constants
+    that all the messages have in common, are not compared. If several messages match, the message with the most constants is
+    returned. Raises `LengthError` if all messages have the same fixed length and the frame has another.
     """
     bits = int.from_bytes(frame, "little")
     constants = {id(message): _constants(icd.node(message.node), message) for message in messages}
     shared = set.intersection(*(set(places) for places in constants.values())) if constants else set()
-    fitting = []
+    matches = []
     for message in messages:
-        mine = constants[id(message)]
+        own = constants[id(message)]
         if len(frame) not in message.layout.lengths:
             continue
-        if all(_read(field, bits) == field.const for place, field in mine.items() if place not in shared):
-            fitting.append((len(mine), message))
-    if fitting:
-        return max(fitting, key=lambda pair: pair[0])[1]
+        if all(_read(field, bits) == field.const for place, field in own.items() if place not in shared):
+            matches.append((len(own), message))
+    if matches:
+        return max(matches, key=lambda match: match[0])[1]
     lengths = {length for message in messages for length in (message.layout.shortest, message.layout.longest)}
     if len(lengths) == 1 and len(frame) not in lengths:
         raise LengthError(messages[0], lengths.pop(), len(frame))
     return None
 
 
-def which_if_any(icd: Icd, known: Sequence[Message], frame: bytes) -> Message | None:
-    """`which`, and None also if no message has that length."""
+def message_of_frame_if_any(icd: Icd, messages: Sequence[Message], frame: bytes) -> Message | None:
+    """Return the result of `message_of_frame`, and None where that raises `LengthError`."""
     try:
-        return which(icd, known, frame)
+        return message_of_frame(icd, messages, frame)
     except LengthError:
         return None
 
 
 def encode(node: Node, message: Message, raw: Mapping[str, Raw]) -> bytes:
-    """Return the frame of values of the longest frame, reserved bits 0.
+    """Return the frame with these values of the longest frame; reserved bits are 0.
 
-    Values of overlays, of derived values and of what is not in the frame are ignored. Raises `CodecError` for a missing,
-    unknown or unfit value.
+    Values of overlay fields, derived values and fields that are absent from the frame are ignored. Raises `CodecError` for
+    a missing, unknown or invalid value.
     """
     fields = frame_fields(message.layout, node.orders)
     names = {field.name for field in fields}
@@ -218,7 +227,7 @@ def encode(node: Node, message: Message, raw: Mapping[str, Raw]) -> bytes:
 
 
 def initial_values(node: Node, message: Message) -> dict[str, Raw]:
-    """Return the raw values of a new message, by name, without overlays, derived values and what is absent."""
+    """Return the raw values of a new message by name, without overlay fields, derived values and absent optional fields."""
     fields = [field for field in frame_fields(message.layout, node.orders) if field.is_raw]
     raw = {field.name: initial_value(message, field) for field in fields}
     return {
@@ -227,7 +236,7 @@ def initial_values(node: Node, message: Message) -> dict[str, Raw]:
 
 
 def initial_value(message: Message, field: FrameField) -> Raw:
-    """Return the raw value of a field of a new message: the only valid one, else the smallest; of bytes zeros."""
+    """Return the raw value of a field of a new message: the constant, else the smallest valid value; for bytes zeros."""
     if field.is_bytes:
         return bytes(field.bits // 8)
     return field.const or message.layout.smallest_raw(field.name)
@@ -236,7 +245,7 @@ def initial_value(message: Message, field: FrameField) -> Raw:
 def new(node: Node, message: Message) -> dict[str, Raw]:
     """Return the raw values of the longest frame for a new message.
 
-    Generated code sets the constants of all elements of variable-length nodes but the last one, also if a new message has none.
+    Generated code sets constants also in absent elements of variable-length nodes, except of the last node.
     """
     values = initial_values(node, message)
     inner = {part.name for part in message.layout.parts[:-1]}
@@ -248,10 +257,7 @@ def new(node: Node, message: Message) -> dict[str, Raw]:
 
 
 def frame_with(node: Node, message: Message, raw: Mapping[str, Raw]) -> bytes:
-    """Return the frame in which these fields have these values of the longest frame, and all other bits are 0.
-
-    Raises `CodecError` for an unfit value.
-    """
+    """Return the frame with these values of the longest frame; all other bits are 0. Raises `CodecError` if one is invalid."""
     layout, bits = message.layout, 0
     sizes = sizes_of_values(message, raw)
     for field in frame_fields(layout, node.orders, sizes):
@@ -262,7 +268,10 @@ def frame_with(node: Node, message: Message, raw: Mapping[str, Raw]) -> bytes:
 
 
 def _shortened(field: FrameField, value: Raw) -> Raw:
-    """Return of bytes of the longest frame those that `field` has room for. Raises `CodecError` for another number of bytes."""
+    """Return a value of the longest frame, cut to the size of `field` if it is variable-length bytes.
+
+    Raises `CodecError` if the value does not have the length of the longest frame.
+    """
     if field.scalar.length is None or not isinstance(value, (bytes, bytearray)):
         return value
     if len(value) != field.scalar.length.most:
@@ -271,7 +280,7 @@ def _shortened(field: FrameField, value: Raw) -> Raw:
 
 
 def check_raw(field: AnyScalar, value: int | bytes) -> None:
-    """Raises `CodecError` unless the field can hold the raw value."""
+    """Raise `CodecError` if the raw value has the wrong type, size or range for the field."""
     if field.is_bytes:
         if not isinstance(value, (bytes, bytearray)) or len(value) != field.bits // 8:
             raise CodecError(f"{field.name!r} takes {field.bits // 8} bytes")
@@ -284,12 +293,12 @@ def check_raw(field: AnyScalar, value: int | bytes) -> None:
 
 
 def physical(field: AnyScalar, raw: int) -> Fraction | None:
-    """Exact physical value of an integer field with a scale, else None."""
+    """Return the exact physical value of an integer field with a scale; None for any other field."""
     return field.scale.physical(raw) if field.scale else None
 
 
 def physical_double(field: AnyScalar, raw: int) -> float | None:
-    """The correctly rounded double of the physical value; of a curve, what its definition gives."""
+    """Return the physical value as the nearest double, or the double that a curve gives; None without a formula."""
     if field.curve is not None:
         return field.curve.double(float_value(field, raw) if field.type == "float" else raw)
     exact = physical(field, raw)
@@ -297,7 +306,7 @@ def physical_double(field: AnyScalar, raw: int) -> float | None:
 
 
 def value_double(field: AnyScalar, raw: int) -> float:
-    """The physical value of a number, of one without a formula its raw value, as a double."""
+    """Return the physical value of a number as a double; without a formula its raw value."""
     physical = physical_double(field, raw)
     if physical is not None:
         return physical
@@ -305,7 +314,7 @@ def value_double(field: AnyScalar, raw: int) -> float:
 
 
 def raw_from_physical(field: AnyScalar, value: Fraction | int | float) -> int:
-    """Nearest raw value, ties to even. Raises `CodecError` if it is not finite or does not fit."""
+    """Return the nearest raw value, ties to even. Raises `CodecError` if the value is not finite or out of range."""
     if isinstance(value, float) and not math.isfinite(value):
         raise CodecError(f"{field.name!r} takes a finite number, not {value}")
     if field.curve is not None:
@@ -319,6 +328,7 @@ def raw_from_physical(field: AnyScalar, value: Fraction | int | float) -> int:
 
 
 def _raw_on_curve(field: AnyScalar, curve: Curve, value: float) -> int:
+    """Return the raw value whose physical value on a curve is nearest. Raises `CodecError` if the value is out of range."""
     if not field.is_invertible:
         raise CodecError(f"the physical value of {field.name!r} does not lead back to a raw value")
     if field.type == "float":
@@ -334,12 +344,12 @@ def _raw_on_curve(field: AnyScalar, curve: Curve, value: float) -> int:
 
 
 def text(raw: bytes) -> str:
-    """What a text field says: its characters up to the first NUL, or to its end; U+FFFD for each that is not ASCII."""
+    """Return the characters of a text field up to the first NUL; U+FFFD for each byte that is not ASCII."""
     return raw.split(b"\0", 1)[0].decode("ascii", "replace")
 
 
 def raw_from_text(field: AnyScalar, value: str) -> bytes:
-    """The bytes of a text, filled with NUL. Raises `CodecError` if it is too long, not ASCII or has a NUL in it."""
+    """Return the bytes of a text, padded with NUL. Raises `CodecError` if it is too long, not ASCII or contains a NUL."""
     size = field.bits // 8
     if not value.isascii() or "\0" in value or len(value) > size:
         raise CodecError(f"{field.name!r} takes up to {size} ASCII characters, none of them NUL")
@@ -347,25 +357,26 @@ def raw_from_text(field: AnyScalar, value: str) -> bytes:
 
 
 def special_of(field: AnyScalar, raw: int) -> Special | None:
-    """The meaning that a raw value has, of floats the number: each NaN is the same, and so are both zeros."""
+    """Return the special value that a raw value is, if any. Floats compare as numbers, so all NaNs are equal."""
     if field.type != "float":
-        return next((one for one in field.special if one.value == raw), None)
-    for one in field.special:
-        value, number = float_value(field, one.value), float_value(field, raw)
+        return next((special for special in field.special if special.value == raw), None)
+    number = float_value(field, raw)
+    for special in field.special:
+        value = float_value(field, special.value)
         if value == number or (value != value and number != number):
-            return one
+            return special
     return None
 
 
 def float_value(field: AnyScalar, bits: int) -> float:
-    """The number that the bits of a float field stand for."""
+    """Return the value of the IEEE 754 bits of a float field."""
     packed = bits.to_bytes(field.bits // 8, "little")
     value: float = struct.unpack("<f" if field.bits == 32 else "<d", packed)[0]
     return value
 
 
 def float_bits(field: AnyScalar, value: float) -> int:
-    """The bits of the nearest float of the field's width. Raises `CodecError` on overflow."""
+    """Return the bits of the nearest float of the width of the field. Raises `CodecError` on overflow."""
     try:
         packed = struct.pack("<f" if field.bits == 32 else "<d", value)
     except OverflowError:
@@ -374,56 +385,57 @@ def float_bits(field: AnyScalar, value: float) -> int:
 
 
 def to_double(exact: Fraction) -> float:
-    """The nearest double, ties to even."""
-    return exact.numerator / exact.denominator  # int / int rounds correctly, once
+    """Return the nearest double, ties to even."""
+    # Python rounds int / int once, correctly, also for integers that are too large for a double.
+    return exact.numerator / exact.denominator
 
 
-# A frame is handled as one number: bit w (0: least significant) of byte b is bit 8 * b + w of it.
+# Below, a frame is one number: bit w (0: least significant) of byte b is bit 8 * b + w of the number.
 
 
 @lru_cache(maxsize=1 << 16)
 def _runs(at: int, bits: int, byte_order: str, bit_order: str) -> tuple[tuple[int, int, int], ...]:
-    """Where the value's bits lie: (bit of the frame, bit of the value, how many in a row), together all of them."""
+    """Return the runs of contiguous bits of a value: (bit of the frame, bit of the value, number of bits)."""
     places = []
     for number in range(at, at + bits):
         byte, bit = divmod(number, 8)
         places.append((byte, bit if bit_order == "lsb0" else 7 - bit))
-    # the byte with the least significant bits first, and within a byte the least significant bit
+    # Sort by significance: first the byte with the least significant bits, and in it the least significant bit.
     places.sort(key=lambda place: (place[0] if byte_order == "little" else -place[0], place[1]))
     runs: list[tuple[int, int, int]] = []
     for index, (byte, weight) in enumerate(places):
-        here = 8 * byte + weight
-        if runs and here == runs[-1][0] + runs[-1][2]:
+        start = 8 * byte + weight
+        if runs and start == runs[-1][0] + runs[-1][2]:
             runs[-1] = (*runs[-1][:2], runs[-1][2] + 1)
         else:
-            runs.append((here, index, 1))
+            runs.append((start, index, 1))
     return tuple(runs)
 
 
 def _read(field: FrameField, frame: int) -> Raw:
-    """Return the raw value of a field of a frame."""
+    """Return the raw value of a field from a frame."""
     scalar = field.scalar
     if scalar.is_bytes:
         part = frame >> field.at // 8 * 8 & (1 << field.bits) - 1
         return part.to_bytes(field.bits // 8, "little")
     value = 0
-    for here, index, count in _runs(field.at, field.bits, field.byte_order, field.bit_order):
-        value |= (frame >> here & (1 << count) - 1) << index
+    for start, index, count in _runs(field.at, field.bits, field.byte_order, field.bit_order):
+        value |= (frame >> start & (1 << count) - 1) << index
     if scalar.is_signed and value >> (field.bits - 1):
         value -= 1 << field.bits
     return value
 
 
 def _written(field: FrameField, value: Raw) -> int:
-    """The frame's bits that the value sets."""
+    """Return the bits of the frame that a value sets. Raises `CodecError` if the value is invalid."""
     check_raw(field, value)
     if not field.has_bits:
         return 0
     if isinstance(value, (bytes, bytearray)):
         return int.from_bytes(value, "little") << field.at // 8 * 8
     frame, value = 0, int(value)
-    for here, index, count in _runs(field.at, field.bits, field.byte_order, field.bit_order):
-        frame |= (value >> index & (1 << count) - 1) << here
+    for start, index, count in _runs(field.at, field.bits, field.byte_order, field.bit_order):
+        frame |= (value >> index & (1 << count) - 1) << start
     return frame
 
 
@@ -431,7 +443,7 @@ _Place: TypeAlias = tuple[tuple[tuple[int, int, int], ...], int]  # runs of bits
 
 
 def _constants(node: Node, message: Message) -> dict[_Place, FrameField]:
-    """Return the constants that every frame of a message has, by their place and value."""
+    """Return the constants that every frame of a message has, by position and value."""
     constants: dict[_Place, FrameField] = {}
     for field in frame_fields(message.layout, node.orders):
         if field.has_bits and field.const is not None and not field.conditions and field.at < 8 * message.layout.length:

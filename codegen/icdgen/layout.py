@@ -1,6 +1,6 @@
-"""Where each bit of each field lies in the bytes: the plan that all backends share.
+"""Positions of the bits of fields within the bytes of a frame. All backends use them.
 
-A field is a row of pieces, each a run of bits of one byte. See 'Bits' in ``docs/reference/icd-format.md`` for the numbering.
+A field consists of pieces, each a run of bits of one byte. 'Bits' in ``docs/reference/icd-format.md`` describes the numbering.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from icdgen.icd.variants import Variant
 
 
 class Piece(NamedTuple):
-    """``bits`` bits of byte ``byte``, from its bit ``shift`` (0: least significant) up, are bits ``at`` and up of the value."""
+    """A run of bits of a value within one byte."""
 
     byte: int
-    shift: int
+    shift: int  # lowest bit of the run in the byte; 0 is the least significant
     bits: int
-    at: int
+    at: int  # lowest bit of the run in the value
 
     @property
     def mask(self) -> int:
@@ -31,7 +31,7 @@ class Piece(NamedTuple):
 
 @lru_cache(maxsize=65536)
 def pieces_at(at: int, bits: int, byte_order: str, bit_order: str) -> tuple[Piece, ...]:
-    """The pieces of a value, in the order of their bytes."""
+    """Return the pieces of a value, in the order of their bytes."""
     runs = []
     start, end = at, at + bits
     while start < end:
@@ -48,9 +48,9 @@ def pieces_at(at: int, bits: int, byte_order: str, bit_order: str) -> tuple[Piec
 
 
 def pieces(field: FrameField | NodePlace, node: Node) -> tuple[Piece, ...]:
-    """Return the pieces of a number, none of a derived one. Bytes are whole bytes in order: see `byte_range`.
+    """Return the pieces of a number; an empty tuple for a derived value. For bytes and text see `byte_range`.
 
-    `node` is the ICD node whose orders a field has that declares none.
+    `node` is the ICD node with the default orders.
     """
     if field.derived:
         return ()
@@ -58,46 +58,47 @@ def pieces(field: FrameField | NodePlace, node: Node) -> tuple[Piece, ...]:
 
 
 def mask(field: FrameField | NodePlace, node: Node) -> int:
-    """The bits of the frame that the field has; bit w of byte b is bit 8 * b + w."""
+    """Return a mask of the bits of a field in the frame; bit w of byte b is bit 8 * b + w."""
     if field.is_bytes:
         return ((1 << field.bits) - 1) << field.at
     return sum(piece.mask << 8 * piece.byte for piece in pieces(field, node))
 
 
-class Sign(NamedTuple):
-    """What a byte of the frame holds, in the bits of ``mask``, where a constant is in it."""
+class ConstantByte(NamedTuple):
+    """A byte of the frame with bits of constants: frames of the message have ``value`` in the bits of ``mask``."""
 
     byte: int
     mask: int
     value: int
 
 
-def signs(variant: Variant) -> tuple[Sign, ...]:
-    """The bytes by which a frame of the right length is known to be the message, in their order; none without constants."""
+def constant_bytes(variant: Variant) -> tuple[ConstantByte, ...]:
+    """Return the bytes that identify a frame of the message among frames of the same length, in order."""
     masks: dict[int, tuple[int, int]] = {}
     for field in variant.constants:
         for piece in pieces(field, variant.node):
             mask, value = masks.get(piece.byte, (0, 0))
-            here = (field.const or 0) >> piece.at & (1 << piece.bits) - 1
-            masks[piece.byte] = mask | piece.mask, value | here << piece.shift
-    return tuple(Sign(byte, *found) for byte, found in sorted(masks.items()))
+            bits = (field.const or 0) >> piece.at & (1 << piece.bits) - 1
+            masks[piece.byte] = mask | piece.mask, value | bits << piece.shift
+    return tuple(ConstantByte(byte, mask, value) for byte, (mask, value) in sorted(masks.items()))
 
 
 def byte_range(field: FrameField | NodePlace) -> range:
-    """The bytes that the field touches."""
+    """Return the indices of the bytes with bits of a field."""
     return range(field.at // 8, (field.at + field.bits + 7) // 8)
 
 
 class Gap(NamedTuple):
-    """Reserved bits: ``bits`` bits from bit ``at`` of the frame, counted as the node counts them."""
+    """A run of reserved bits, from bit ``at`` of the frame on, counted in the bit order of the ICD node."""
 
     at: int
     bits: int
 
 
 def gaps(message: Message | Struct, node: Node) -> tuple[Gap, ...]:
-    """Bits of the frame that no field covers, in order."""
-    free = bytearray(b"\1" * (message.length * 8))  # a byte for each bit, in the order in which the node counts them
+    """Return the runs of bits of the longest frame that no field covers, in order."""
+    # One byte per bit of the frame, in the bit order of the node; 1 if no field has the bit.
+    free = bytearray(b"\1" * (message.length * 8))
     for field in frame_fields(message.layout, node.orders):
         if not field.has_bits:
             continue

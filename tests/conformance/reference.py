@@ -82,7 +82,7 @@ class Reference:
 
     def dispatched(self, messages: list[Message], frame: bytes) -> dict:
         """Which of the messages of an id a frame is."""
-        found = codec.which(self.icd, messages, frame)
+        found = codec.message_of_frame(self.icd, messages, frame)
         if found is None:
             raise Refusal("unknown-id")
         node = self.icd.node(found.node)

@@ -165,7 +165,7 @@ def _codec(subject: Subject) -> object:
 
 
 def _which(subject: Subject, known: list[Message], data: bytes) -> str | None:
-    found = codec.which(subject.icd, known, data)
+    found = codec.message_of_frame(subject.icd, known, data)
     return found.name if found else None
 
 

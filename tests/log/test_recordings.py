@@ -245,7 +245,7 @@ def _is_sent(icd, one, row) -> bool:
     known = [variant.message for variant in ids_of(icd, icd.nodes[0]).telemetry[one.message.telemetry_id]]
     try:
         codec.decode(icd.nodes[0], one.message, row.frame)
-        return codec.which(icd, known, row.frame) is one.message
+        return codec.message_of_frame(icd, known, row.frame) is one.message
     except codec.LengthError:
         return False
 

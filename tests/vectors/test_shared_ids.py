@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from icdgen import codec
 from icdgen.icd.model import Icd
 from icdgen.icd.variants import common_length, ids_of
-from icdgen.layout import signs
+from icdgen.layout import constant_bytes
 from icdgen.vectors.make import make
 from tests.conformance import odd
 from tests.conformance.icds import icd_of
@@ -30,7 +30,7 @@ def told(icd: Icd, group, frame: bytes) -> object:
     for one in group:
         whole = frame.ljust(one.message.length, b"\0")
         if len(frame) in one.message.layout.lengths and all(
-            whole[at] & mask == value for at, mask, value in signs(one)
+            whole[at] & mask == value for at, mask, value in constant_bytes(one)
         ):
             return one.message.name
     length = common_length(group)
@@ -39,7 +39,7 @@ def told(icd: Icd, group, frame: bytes) -> object:
 
 def demanded(icd: Icd, group, frame: bytes) -> object:
     try:
-        found = codec.which(icd, [one.message for one in group], frame)
+        found = codec.message_of_frame(icd, [one.message for one in group], frame)
     except codec.LengthError as error:
         return error.expected
     return found and found.name
@@ -91,5 +91,5 @@ def test_a_general_message_takes_what_is_none_of_the_narrower_ones(apart):
     frames = {"567800000000": "Arm at once", "567800000001": "Arm command", "123456789abc": "Reset command"}
     frames |= {"1234": "Short command", "000000000000": "Any command", "785600000000": "Any command"}
     for frame, name in frames.items():
-        assert codec.which(apart, known, bytes.fromhex(frame)).name == name
-    assert codec.which(apart, known, b"\x12\x35") is None
+        assert codec.message_of_frame(apart, known, bytes.fromhex(frame)).name == name
+    assert codec.message_of_frame(apart, known, b"\x12\x35") is None

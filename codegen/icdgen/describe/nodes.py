@@ -128,7 +128,7 @@ class MessageOfId(NamedTuple):
 
     message: MessageDescription
     id_name: str
-    signs: tuple[layout.Sign, ...]
+    signs: tuple[layout.ConstantByte, ...]
 
 
 class MessagesOfId(NamedTuple):
@@ -248,7 +248,9 @@ class NodeDescription:
     def _under(self, other_name: str, id: int, variants: tuple[Variant, ...]) -> MessagesOfId:
         message = self._description.message
         found = (
-            MessageOfId(message(one.message), "id" if one.message.id is not None else other_name, layout.signs(one))
+            MessageOfId(
+                message(one.message), "id" if one.message.id is not None else other_name, layout.constant_bytes(one)
+            )
             for one in variants
         )
         return MessagesOfId(id, tuple(found), common_length(variants))

@@ -35,7 +35,7 @@ class Heard:
 
     def message_of(self, id: int, data: bytes) -> Message | None:
         """The message that came; None if it is none of those that have its id."""
-        return codec.which_if_any(self.icd, [one.message for one in self.known.get(id, ())], data)
+        return codec.message_of_frame_if_any(self.icd, [one.message for one in self.known.get(id, ())], data)
 
     def text(self) -> str:
         """What was wrong, in a line; empty if nothing was."""

@@ -152,7 +152,7 @@ class Recording:
             tally.fault(event)
             return None
         known = self._known[event.id]
-        message = known[0] if len(known) == 1 else codec.which_if_any(self.icd, known, event.data)
+        message = known[0] if len(known) == 1 else codec.message_of_frame_if_any(self.icd, known, event.data)
         opened: Opened = (event.data, None, {})
         try:
             if message is not None and key(message) not in self._alike:

@@ -91,7 +91,7 @@ def message_of(icd: Icd, known: Sequence[Message], data: bytes) -> Message | Non
     if len(known) < 2:
         return known[0] if known else None
     try:
-        return codec.which(icd, known, data)
+        return codec.message_of_frame(icd, known, data)
     except codec.LengthError:
         return None
 

@@ -62,7 +62,9 @@ class EnvelopeLine(DeviceLine):
 
     def _telecommand(self, now: int, id: int, data: bytes) -> None:
         program = self.computer.program
-        message = codec.which_if_any(program.icd, [one.message for one in self.ids.telecommand.get(id, ())], data)
+        message = codec.message_of_frame_if_any(
+            program.icd, [one.message for one in self.ids.telecommand.get(id, ())], data
+        )
         if message is None or not self._is_taken(message, data):
             program.count("refused")
             return

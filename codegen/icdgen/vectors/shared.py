@@ -44,7 +44,7 @@ def rows(icd: Icd, node: Node) -> Iterator[SharedRow]:
 def _row(icd: Icd, direction: str, id: int, messages: list[Message], frame: bytes) -> SharedRow | None:
     """None if the frame does not have as many elements as it says: the vectors of the message have such frames."""
     try:
-        found = codec.which(icd, messages, frame)
+        found = codec.message_of_frame(icd, messages, frame)
     except codec.LengthError as error:
         return SharedRow(direction, id, frame, None, error.expected)
     if found is not None:

@@ -59,7 +59,7 @@ def _answer(icd: Icd, row: SharedRow, messages: Sequence[Message]) -> object:
     if len(candidates) == 1:  # the id alone tells: frames are answered with all values
         return () if len(row.frame) in candidates[0].layout.lengths else candidates[0].layout.longest
     try:
-        message = codec.which(icd, candidates, row.frame) if candidates else None
+        message = codec.message_of_frame(icd, candidates, row.frame) if candidates else None
     except codec.LengthError as error:
         return error.expected
     except (ValueError, OverflowError):

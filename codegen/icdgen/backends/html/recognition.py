@@ -12,7 +12,7 @@ from icdgen.icd import wire_ids
 from icdgen.icd.model import Message, Node
 from icdgen.icd.places import places_in
 from icdgen.icd.variants import Variant, ids_of
-from icdgen.layout import signs
+from icdgen.layout import constant_bytes
 from icdgen.protocol import facts
 
 
@@ -50,7 +50,8 @@ def script(relations: Relations) -> str:
 def numbers_of(ids: dict[int, tuple[Variant, ...]], numbers: dict[tuple[str, str], int]) -> dict[str, Any]:
     """The number of the message of each id; where several share it, each with the bytes that its constants are in."""
     found = {
-        id: [(numbers[one.message.node, one.message.name], signs(one)) for one in those] for id, those in ids.items()
+        id: [(numbers[one.message.node, one.message.name], constant_bytes(one)) for one in those]
+        for id, those in ids.items()
     }
     return {str(id): those if len(those) > 1 else those[0][0] for id, those in found.items()}
 
