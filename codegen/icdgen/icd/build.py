@@ -1,4 +1,7 @@
-"""Tree -> model. Silent and tolerant: what does not fit is left out here and reported by the rules."""
+"""Build the model from the tree of a file.
+
+Reports nothing: mappings with errors are left out of the model, and the rules in `icdgen.icd.rules` report them.
+"""
 
 from __future__ import annotations
 
@@ -40,7 +43,7 @@ _LIMITS = frozenset({"min", "max", "above", "below"})
 
 
 class Scope:
-    """What a node may refer to: enumerations, structs, units and vocabulary of its own and of what it includes."""
+    """Enumerations, structs, units and vocabulary that a node and the nodes it includes declare."""
 
     def __init__(self, included: Iterable[model.Node]) -> None:
         self.enums: dict[str, model.Enum] = {}
@@ -48,29 +51,29 @@ class Scope:
         self.units: dict[str, Unit] = dict(STANDARD)
         self.vocabulary: list[str] = []
         for node in included:
-            self.enums.update((e.name, e) for e in node.enums)
-            self.structs.update((one.name, one) for one in node.structs)
-            self.units.update((u.symbol, u) for u in node.units)
+            self.enums.update((enum.name, enum) for enum in node.enums)
+            self.structs.update((struct.name, struct) for struct in node.structs)
+            self.units.update((unit.symbol, unit) for unit in node.units)
             self.vocabulary += node.vocabulary
 
 
 class Builder:
-    """Builds one node. ``broken`` holds the ids of mappings that violate the schema: they are left out."""
+    """Builds one node. ``broken`` has the `id()` of each mapping that violates the schema; the model omits these."""
 
     def __init__(self, tree: Map, applied: Applied, broken: set[int], scope: Scope) -> None:
         self.tree, self.applied, self.broken, self.scope = tree, applied, broken, scope
         self.name = ""
 
     def node(self, includes: tuple[str, ...], digest: str) -> model.Node | None:
-        """The node, or None if its own head is broken."""
+        """Return the node; None if the mapping `node` of the file violates the schema."""
         head = self.tree.get("node")
         if not isinstance(head, Map) or id(head) in self.broken:
             return None
         self.name = head["name"]
         units = tuple(map(unit, self.items("units")))
-        self.scope.units.update((u.symbol, u) for u in units)
+        self.scope.units.update((unit.symbol, unit) for unit in units)
         enums = tuple(map(self.enum, self.items("enums")))
-        self.scope.enums.update((e.name, e) for e in enums)
+        self.scope.enums.update((enum.name, enum) for enum in enums)
         structs = self.structs()
         listed, protocol = self.tree.get("vocabulary"), self.tree.get("protocol")
         words = tuple(w for w in (listed if isinstance(listed, list) else ()) if isinstance(w, str) and w.isalnum())
@@ -100,12 +103,12 @@ class Builder:
         )
 
     def items(self, key: str, owner: Map | None = None) -> list[Map]:
-        """What is listed under a key, of the file or a mapping in it, but for what is broken."""
-        found = mappings((self.tree if owner is None else owner).get(key))
-        return [item for item in found if id(item) not in self.broken]
+        """Return the mappings listed under a key of a mapping, by default of the file, without broken mappings."""
+        listed = mappings((self.tree if owner is None else owner).get(key))
+        return [item for item in listed if id(item) not in self.broken]
 
     def named(self, item: Map) -> dict[str, Any]:
-        """What is said in the same way of all that has a name."""
+        """Return the attributes that all named objects of the model have."""
         return {
             "name": item["name"],
             "identifier": item.get("identifier"),
@@ -123,25 +126,27 @@ class Builder:
         return model.Member(value=item["value"], to=item.get("to"), **self.named(item))
 
     def structs(self) -> tuple[model.Struct, ...]:
-        """Those of the node, each after what it has in it. Of a circle, none has the next in it: it is a finding."""
+        """Return the structs of the node, each after the structs that it contains."""
         listed = self.items("structs")
         items = {item["name"]: item for item in reversed(listed)}
-        made: list[model.Struct] = []
-        begun: set[str] = set()
+        structs: list[model.Struct] = []
+        visited: set[str] = set()
 
-        def make(name: str) -> None:
-            begun.add(name)
+        def add(name: str) -> None:
+            # A struct that contains itself is not visited twice: `node_of` omits its field, and a rule reports the cycle.
+            visited.add(name)
             for row in self.items("fields", items[name]):
-                if row.get("struct") in items and row["struct"] not in begun:
-                    make(row["struct"])
-            made.append(self.struct(items[name]))
-            self.scope.structs[name] = made[-1]
+                if row.get("struct") in items and row["struct"] not in visited:
+                    add(row["struct"])
+            structs.append(self.struct(items[name]))
+            self.scope.structs[name] = structs[-1]
 
         for name in items:
-            if name not in begun:
-                make(name)
-        made += (self.struct(item) for item in listed if item is not items[item["name"]])  # names that are there twice
-        return tuple(made)
+            if name not in visited:
+                add(name)
+        # A rule reports duplicate names. The first struct of a name is the one that fields refer to.
+        structs += (self.struct(item) for item in listed if item is not items[item["name"]])
+        return tuple(structs)
 
     def struct(self, item: Map) -> model.Struct:
         return model.Struct(
@@ -191,7 +196,7 @@ class Builder:
         return layout
 
     def fixed_nodes(self, owner: Map) -> tuple[FixedNode, ...]:
-        """Return the nodes at fixed positions of a message or struct; a split field gives one for each of its parts."""
+        """Return the nodes at fixed positions of a message or struct; a split field has one node per part."""
         nodes: list[FixedNode] = []
         for item in self.items("fields", owner):
             if tails.is_open(item) or any(id(item.get(key)) in self.broken for key in ("when", "count", "size")):
@@ -207,17 +212,17 @@ class Builder:
         return tuple(nodes)
 
     def parts_of_split_field(self, owner: Map, item: Map) -> Iterator[FixedNode]:
-        """Yield the parts of a split field at their bits of the frame; the field itself if it cannot be split."""
+        """Yield the parts of a split field at their positions in the frame; the field itself if it cannot be split."""
         head = self.tree["node"]
-        own = orders(item, orders(owner))
-        used = own[0] or head["byte_order"], own[1] or head["bit_order"]
+        declared = orders(item, orders(owner))
+        effective = declared[0] or head["byte_order"], declared[1] or head["bit_order"]
         parts = division.parts_of(item)
-        if not parts or any(id(part) in self.broken for part in parts) or any(division.obstacles(item, *used)):
+        if not parts or any(id(part) in self.broken for part in parts) or any(division.obstacles(item, *effective)):
             yield _overlaid(self.scalar(item, item["at"]), item)
             return
         for part in parts:
             scalar = replace(
-                self.scalar(part, division.place(item, part, *used)),
+                self.scalar(part, division.place(item, part, *effective)),
                 summary=division.described(item, part),
                 orders=Orders(*orders(part, orders(item))),
                 errata=self.applied.about(item),
@@ -225,13 +230,13 @@ class Builder:
             yield _overlaid(scalar, part)
 
     def variable_nodes(self, message: Map) -> tuple[VariableNode, ...]:
-        """Return the nodes of variable length; none if one of them is wrong, because their positions depend on each other."""
+        """Return the nodes of variable length; an empty tuple if one has an error, because their positions are dependent."""
         items = tails.open_parts(message)
-        known = {name: struct.length for name, struct in self.scope.structs.items()}
-        read = (*items, *(tails.counter_of(message, item) for item in items))
-        if any(id(item) in self.broken for item in read):
+        lengths = {name: struct.length for name, struct in self.scope.structs.items()}
+        counters = [tails.counter_of(message, item) for item in items]
+        if any(id(item) in self.broken for item in (*items, *counters)):
             return ()
-        if any(any(tails.obstacles(message, item, known)) for item in items):
+        if any(any(tails.obstacles(message, item, lengths)) for item in items):
             return ()
         nodes: list[VariableNode] = []
         for item in items:
@@ -248,9 +253,9 @@ class Builder:
         return tuple(nodes)
 
     def node_of(self, item: Map, at: int, size: Size | None) -> FixedNode | None:
-        """Return the node of a line; None if it refers to a struct that does not exist.
+        """Return the node of a line; None if it refers to an unknown struct.
 
-        With a size it is an array, or bytes and text of variable length.
+        With a size, the node is an array, or bytes or text of variable length.
         """
         is_array = size is not None and "count" in item
         node: Scalar | StructRef
@@ -268,10 +273,10 @@ class Builder:
         return _overlaid(node, item) if isinstance(node, Scalar) else node
 
     def scalar(self, item: Map, at: int) -> Scalar:
-        """Return the scalar of a line at a bit of its layout or array element."""
+        """Return the scalar of a line that begins at bit `at` of its layout or array element."""
         get = item.get
         kind = get("type", "uint")  # optional for parts of a split field
-        scale, line = calibration(get("formula"), kind) if "points" not in item else (None, table(item, kind))
+        scale, curve = calibration(get("formula"), kind) if "points" not in item else (None, table(item, kind))
         return Scalar(
             at=at,
             bits=get("bits", 0),  # variable-length bytes and text have no `bits`
@@ -280,7 +285,7 @@ class Builder:
             unit=self.scope.units.get(get("unit", "")),
             formula=get("formula", ""),
             scale=scale,
-            curve=line,
+            curve=curve,
             const=get("const"),
             special=self.special(item, kind) if "special" in item else (),
             limits=limits(item),
@@ -290,10 +295,10 @@ class Builder:
         )
 
     def special(self, item: Map, kind: str) -> tuple[model.Special, ...]:
-        """The values with a meaning of a field of a type, but what it cannot hold."""
+        """Return the special values of a field, without values that its type cannot represent."""
         bits = item.get("bits", 0)
-        found = (special(kind, bits, one["value"], one["meaning"]) for one in self.items("special", item))
-        return tuple(one for one in found if one is not None)
+        values = (special(kind, bits, row["value"], row["meaning"]) for row in self.items("special", item))
+        return tuple(value for value in values if value is not None)
 
     def loggable(self, item: Map) -> annex.Loggable:
         errata = self.applied.about(item)
@@ -301,17 +306,17 @@ class Builder:
 
 
 def unit(item: Map) -> Unit:
-    """A unit that the file declares."""
+    """Return a unit that the file declares."""
     return Unit(item["symbol"], item["identifier"], item["quantity"], item.get("summary", ""))
 
 
 def missing(item: Map) -> annex.Missing:
-    """A message that the manual does not describe."""
+    """Return an entry of `missing`: a message that the manual names but does not describe."""
     return annex.Missing(item["kind"], wire_ids.number(item["id"]), item["name"], item["why"])
 
 
 def _printed(item: Map) -> Map:
-    """Where the manual prints it."""
+    """Return the table and page of the manual; an empty mapping if the ICD gives none."""
     return item.get("source") or unread()
 
 
@@ -333,12 +338,12 @@ def derived_node(row: Map, derivation: Derivation, unit: Unit | None) -> Derived
 
 
 def _overlaid(scalar: Scalar, item: Map) -> Scalar | Overlay:
-    """Return the scalar, or the overlay that reads it if the line is one."""
+    """Return the scalar, or its overlay node if the line declares an overlay field."""
     return overlay_of(scalar) if item.get("view", False) else scalar
 
 
 def _is_without_fields(node: Array | Scalar) -> bool:
-    """Whether a variable-length array consists of structs none of whose fields can be read."""
+    """Return whether a node is an array of structs without readable fields."""
     return isinstance(node, Array) and isinstance(node.item, StructRef) and not node.item.layout.fixed
 
 
@@ -346,9 +351,9 @@ def _id(item: Map, key: str) -> int | None:
     return wire_ids.number(item[key]) if key in item else None
 
 
-def orders(item: Map, around: tuple[str, str] = ("", "")) -> tuple[str, str]:
-    """Byte order and bit order that a mapping gives, or else the mapping around it."""
-    return item.get("byte_order", around[0]), item.get("bit_order", around[1])
+def orders(item: Map, outer: tuple[str, str] = ("", "")) -> tuple[str, str]:
+    """Return the byte order and bit order that a mapping declares; `outer` if it declares none."""
+    return item.get("byte_order", outer[0]), item.get("bit_order", outer[1])
 
 
 def declared_orders(item: Map) -> Orders:
@@ -358,9 +363,10 @@ def declared_orders(item: Map) -> Orders:
 
 
 def calibration(text: str | None, kind: str) -> tuple[formula.Scale | None, curve.Curve | None]:
-    """What a field of a type makes of the text of a formula: of integers a line is a scale, the rest are curves.
+    """Return the scale or the curve that the text of a formula means for a field of a type.
 
-    Nothing where there is no formula, or a bad one.
+    Linear formulas of integers give an exact `Scale`; polynomials, and all formulas of floats, a `Curve` in doubles.
+    Returns (None, None) without a formula or if the formula has an error.
     """
     if not text or kind not in ("uint", "int", "float"):
         return None, None
@@ -373,7 +379,7 @@ def calibration(text: str | None, kind: str) -> tuple[formula.Scale | None, curv
 
 
 def table(item: Map, kind: str) -> curve.Curve | None:
-    """The table of points of a field of a type; nothing where it is bad. Without ``outside``, nothing is."""
+    """Return the lookup table of a field; None if it has an error. Without ``outside``, no value outside is valid."""
     if kind not in ("uint", "int", "float"):
         return None
     with suppress(formula.FormulaError):
@@ -382,7 +388,7 @@ def table(item: Map, kind: str) -> curve.Curve | None:
 
 
 def special(kind: str, bits: int, value: int | float | str, meaning: str) -> model.Special | None:
-    """A value with a meaning; None if a field of the type has no such value."""
+    """Return a special value; None if a field of this type and width cannot have the value."""
     if kind != "float":
         return model.Special(value, meaning) if isinstance(value, int) else None
     raw = float_bits(value, bits)
@@ -390,7 +396,7 @@ def special(kind: str, bits: int, value: int | float | str, meaning: str) -> mod
 
 
 def float_bits(value: int | float | str, bits: int) -> int | None:
-    """The bits of what an ICD says is the value of a float of that width; None if that is none."""
+    """Return the bits of a float of this width from its value in an ICD; None if the width or the value is not valid."""
     if bits not in floats.WIDTHS or (isinstance(value, str) and value not in floats.NAMED):
         return None
     with suppress(OverflowError):
@@ -401,12 +407,13 @@ def float_bits(value: int | float | str, bits: int) -> int | None:
 
 
 def limits(item: Map) -> model.Limits | None:
-    """The limits of a field, exact: 0.1 is one tenth."""
+    """Return the limits of a field as exact numbers; None if it has no limits."""
     if _LIMITS.isdisjoint(item):
         return None
     return model.Limits(**{key: exact(item[key]) for key in _LIMITS & item.keys()})
 
 
 def exact(number: int | float) -> Fraction:
-    """The number as it is written."""
+    """Return the exact value of a number of a file."""
+    # repr() gives the shortest decimal, so 0.1 is one tenth and not the nearest double.
     return Fraction(number) if isinstance(number, int) else Fraction(repr(number))

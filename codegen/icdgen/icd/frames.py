@@ -1,7 +1,7 @@
 """Scalars of one frame with their bits, for the codec, logs and the simulator.
 
-In: a layout, and the sizes of its variable parts. Read `icdgen.layout` next, which turns the position of a scalar into runs
-of bits of bytes.
+`frame_fields` computes them from a layout and the sizes of its variable parts. Read next: `icdgen.layout`, which converts the
+position of a scalar into runs of bits within bytes.
 """
 
 from __future__ import annotations
@@ -36,44 +36,43 @@ from icdgen.icd.layout import (
 from icdgen.icd.units import Unit
 from icdgen.once import cached_property, kept_by_owner
 
-_KEPT_FRAMES = 64
-"""Number of frame sizes per layout whose scalars are cached: a log repeats few sizes."""
+# Limit of cached frames per layout, one for each combination of sizes: a log repeats few sizes.
+_CACHED_FRAMES = 64
 
-
-_KEPT_SCALARS = 100_000
-"""Number of scalars per layout in all these frames, about 50 MB: arrays can have thousands of elements."""
+# Limit of scalars in all cached frames of a layout, about 50 MB: arrays can have thousands of elements.
+_CACHED_SCALARS = 100_000
 
 
 @dataclass(frozen=True, slots=True)
 class PathStep:
-    """A node on the way to a scalar, and which element of it if it is an array."""
+    """A node on the path to a scalar; of an array, with the index of an element."""
 
     node: LayoutNode
     element: int | None = None
 
     def text(self, name: str) -> str:
-        """Return a name of the node with the element behind it: ``Satellites[2]``."""
+        """Return a name of the node with the index of the element: ``Satellites[2]``."""
         return name if self.element is None else f"{name}[{self.element}]"
 
 
 def name_of_steps(steps: Sequence[PathStep]) -> str:
-    """Return the name of what stands at the end of a path: ``Satellites[2].GNSS``."""
+    """Return the name of the node at the end of a path: ``Satellites[2].GNSS``."""
     return ".".join(step.text(step.node.name) for step in steps)
 
 
 def alias_of_steps(steps: Sequence[PathStep]) -> str | None:
-    """Return the name with identifiers in place of names; None if no node on the path has an identifier."""
+    """Return the name with identifiers instead of names; None if no node on the path has an identifier."""
     if not any(step.node.identifier for step in steps):
         return None
     return ".".join(step.text(step.node.identifier or step.node.name) for step in steps)
 
 
 Role: TypeAlias = Literal["field", "overlay", "derived", "count"]
-"""Role of a scalar in a frame: `count` is a number of elements that follows from the length of the frame, without bits."""
+"""Role of a scalar in a frame. A `count` is a number of elements without bits: it follows from the length of the frame."""
 
 
 class OfScalar:
-    """Something with a scalar. It has the attributes of the scalar that give a raw value its meaning."""
+    """Base of classes that have a scalar. Passes on the attributes of the scalar that give a raw value its meaning."""
 
     scalar: Scalar
 
@@ -170,11 +169,11 @@ class OfScalar:
 
 @dataclass(frozen=True, eq=False)
 class FrameField(OfScalar):
-    """A scalar where it stands in one frame. Compared by identity: `frame_fields` makes each once."""
+    """A scalar at its position in one frame. Compared by identity: `frame_fields` caches the objects."""
 
-    steps: tuple[PathStep, ...]  # from the node of the message's own layout to the scalar
-    at: int  # bit of the frame, counted in the bit order in effect
-    bits: int  # of bytes and text those of the frame
+    steps: tuple[PathStep, ...]  # path from the layout of the message to the scalar
+    at: int  # first bit in the frame, counted in the bit order in effect
+    bits: int  # of variable-length bytes and text: in this frame
     scalar: Scalar
     byte_order: str  # in effect
     bit_order: str  # in effect
@@ -187,55 +186,52 @@ class FrameField(OfScalar):
 
     @property
     def alias(self) -> str | None:
-        """Return the name with identifiers in place of names; None if no node on the way has an identifier."""
+        """Return the name with identifiers instead of names; None if no node on the path has an identifier."""
         return alias_of_steps(self.steps)
 
     @property
     def conditions(self) -> tuple[Condition, ...]:
-        """It is in the frame only if all of them hold."""
+        """Conditions of an optional field: a frame has the field if all of them are met."""
         return self.scalar.present_if
 
     @property
     def has_bits(self) -> bool:
-        """Whether it owns bits of the frame."""
+        """Whether the field owns bits of the frame."""
         return self.role == "field"
 
     @property
     def is_raw(self) -> bool:
-        """Return whether a raw value has to be given for it: it owns bits, or is the number of elements."""
+        """Return whether a message needs a raw value for the field: it owns bits, or counts elements."""
         return self.role in ("field", "count")
 
     @property
     def derived(self) -> Derivation | None:
-        """Return how a derived value is computed; None for any other role."""
+        """Return the computation of a derived value; None for any other role."""
         node = self.steps[-1].node
         return node.derivation if isinstance(node, Derived) else None
 
 
 def frame_fields(layout: Layout, orders: Orders, sizes: Sizes | None = None) -> tuple[FrameField, ...]:
-    """Return the scalars of a frame, as `flatten` lists them; the last `_KEPT_FRAMES` results of a layout are kept."""
+    """Return the scalars of a frame as `flatten` lists them. Caches the last results of each layout."""
     frames = _frames(layout)
     key = orders, None if sizes is None or not layout.sequence else tuple(sizes[node.name] for node in layout.sequence)
     fields = frames.get(key)
     if fields is None:
-        kept_fields = sum(map(len, frames.values()))
-        while frames and (len(frames) >= _KEPT_FRAMES or kept_fields > _KEPT_SCALARS):
-            kept_fields -= len(frames.pop(next(iter(frames))))
+        cached_scalars = sum(map(len, frames.values()))
+        while frames and (len(frames) >= _CACHED_FRAMES or cached_scalars > _CACHED_SCALARS):
+            cached_scalars -= len(frames.pop(next(iter(frames))))
         fields = frames[key] = tuple(flatten(layout, orders, sizes))
     return fields
 
 
 @kept_by_owner
 def _frames(layout: Layout) -> dict[tuple[Orders, tuple[int, ...] | None], tuple[FrameField, ...]]:
-    """The results of `frame_fields`, the oldest first."""
+    """Return the cache of `frame_fields`, the oldest entry first."""
     return {}
 
 
 def flatten(layout: Layout, orders: Orders, sizes: Sizes | None = None) -> list[FrameField]:
-    """List the scalars of a frame with these sizes; without sizes those of the longest frame.
-
-    `orders` are those of the ICD node. `frame_fields` keeps the result.
-    """
+    """List the scalars of a frame with these sizes, or of the longest frame. `orders` are the defaults of the ICD node."""
     fields: list[FrameField] = []
     orders = layout.orders.within(orders)
     for node in layout.fixed:
@@ -261,7 +257,7 @@ def flatten(layout: Layout, orders: Orders, sizes: Sizes | None = None) -> list[
 
 
 def _scalars(node: FixedNode, steps: tuple[PathStep, ...], at: int, orders: Orders) -> Iterator[FrameField]:
-    """List the scalars of a node of fixed size that begins at bit `at`."""
+    """Yield the scalars of a node of fixed size that begins at bit `at`."""
     match node:
         case Scalar(bits=bits):
             yield FrameField(steps, at, bits, node, orders.byte, orders.bit)

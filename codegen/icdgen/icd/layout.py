@@ -1,10 +1,10 @@
 """Layout of a message or a struct as a tree with one node per line of the ICD.
 
-In: what `icdgen.icd.build` reads from the mappings of a file. Out: nodes, and `walk`, which visits the declarations.
-Positions and orders stay as the ICD declares them; orders are resolved on the way down, because the same struct can stand in
-messages of different orders.
+`icdgen.icd.build` makes the nodes from the mappings of a file. `walk` visits all declarations.
+Nodes store positions and orders as the ICD declares them. Orders in effect are resolved on the way down, because messages
+of different orders can use the same struct.
 
-Read next: `icdgen.icd.places` for the longest frame, `icdgen.icd.frames` for one frame of certain sizes.
+Read next: `icdgen.icd.places` for the longest frame, `icdgen.icd.frames` for a frame of given sizes.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ Sizes: TypeAlias = Mapping[str, int]
 
 @dataclass(frozen=True, slots=True)
 class Special:
-    """A raw value with a meaning of its own, such as 0xFFFF for 'no time-out', or NaN for 'not known'."""
+    """A raw value with a special meaning, such as 0xFFFF for 'no time-out', or NaN for 'not available'."""
 
-    value: int  # bits of the value if the scalar is a float
+    value: int  # of a float: its IEEE 754 bits
     meaning: str
     number: str = ""  # of a float: `nan`, `inf`, `-inf`, or the shortest decimal
 
@@ -59,14 +59,15 @@ class Condition:
 
 @dataclass(frozen=True, slots=True)
 class Orders:
-    """Byte order and bit order as the ICD declares them in one place; empty where it declares none."""
+    """Byte order and bit order that one mapping of the ICD declares; empty if it declares none."""
 
     byte: str = ""  # little | big
     bit: str = ""  # lsb0 | msb0
 
     def within(self, outer: Orders) -> Orders:
-        """Return the orders in effect: an order that is not declared here is taken from outside."""
-        if self is UNDECLARED:  # most lines of an ICD declare none
+        """Return the orders in effect: an undeclared order is inherited from `outer`."""
+        # Most lines of an ICD declare no order.
+        if self is UNDECLARED:
             return outer
         return Orders(self.byte or outer.byte, self.bit or outer.bit)
 
@@ -76,19 +77,19 @@ UNDECLARED = Orders()
 
 @dataclass(frozen=True, slots=True)
 class Counted:
-    """A size that a field of the fixed part gives: its raw value plus `plus`."""
+    """Number of elements that a field of the fixed part counts: its raw value plus `plus`."""
 
     counter: str  # name of the field
-    most: int
+    most: int  # elements
     plus: int = 0
 
 
 @dataclass(frozen=True, slots=True)
 class Rest:
-    """A size that only the length of the frame gives; `counter` is what code calls the number of elements."""
+    """Number of elements that follows from the length of the frame."""
 
-    counter: Scalar
-    most: int
+    counter: Scalar  # without bits in the frame; generated code has a member for it
+    most: int  # elements
 
 
 Size: TypeAlias = "int | Counted | Rest"
@@ -96,12 +97,12 @@ Size: TypeAlias = "int | Counted | Rest"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LayoutNode:
-    """A line of the ICD: the attributes that all kinds of nodes have."""
+    """A line of the ICD: attributes that all kinds of nodes have."""
 
     name: str
-    at: int = 0  # bit of its layout, counted in its own bit order; of a sequence, where the fixed part ends
+    at: int = 0  # first bit in the layout, counted in its own bit order; in a sequence: the end of the fixed part
     identifier: str | None = None
-    aliases: tuple[str, ...] = ()  # other names by which people look for it
+    aliases: tuple[str, ...] = ()  # other names that a search matches
     summary: str = ""
     orders: Orders = UNDECLARED
     present_if: tuple[Condition, ...] = ()
@@ -114,7 +115,7 @@ class Scalar(LayoutNode):
     """A number, flag, enumeration value, byte string or text of `bits` bits."""
 
     type: str  # uint | int | bool | enum | float | bytes | text
-    bits: int  # of variable-length bytes and text those of one byte
+    bits: int  # 8 for bytes and text of variable length
     length: Counted | Rest | None = None  # number of bytes of variable-length bytes and text
     enum: Enum | None = None
     unit: Unit | None = None
@@ -128,7 +129,7 @@ class Scalar(LayoutNode):
 
     @property
     def is_signed(self) -> bool:
-        """Return whether the raw value is in two's complement."""
+        """Return whether the raw value is a two's complement number."""
         return self.type == "int" or (self.enum is not None and self.enum.signed)
 
     @property
@@ -138,17 +139,17 @@ class Scalar(LayoutNode):
 
     @property
     def unit_symbol(self) -> str:
-        """Return the unit as it is written; empty without one."""
+        """Return the symbol of the unit; empty if the scalar has no unit."""
         return self.unit.symbol if self.unit else ""
 
     @property
     def raw_min(self) -> int:
-        """Return the smallest raw value of a number that is no float."""
+        """Return the smallest raw value. Not for floats."""
         return -(1 << (self.bits - 1)) if self.is_signed else 0
 
     @property
     def raw_max(self) -> int:
-        """Return the largest raw value of a number that is no float."""
+        """Return the largest raw value. Not for floats."""
         return (1 << (self.bits - self.is_signed)) - 1
 
     @property
@@ -158,26 +159,26 @@ class Scalar(LayoutNode):
 
     @property
     def is_invertible(self) -> bool:
-        """Return whether a physical value gives the nearest raw value; some curves do not."""
+        """Return whether each physical value has one nearest raw value; some lookup tables and polynomials fail this."""
         return self.curve is None or leads_back(self.curve, self.type == "float", self.raw_min, self.raw_max)
 
     @property
     def settable_raws(self) -> tuple[int, int]:
-        """Return the least and the largest raw value that setting a physical value can give."""
-        every = self.raw_min, self.raw_max
-        return every if self.curve is None or self.type == "float" else self.curve.ends(*every)
+        """Return the smallest and the largest raw value that a physical value can be converted to."""
+        raws = self.raw_min, self.raw_max
+        return raws if self.curve is None or self.type == "float" else self.curve.ends(*raws)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StructRef(LayoutNode):
-    """A place where a struct stands; all places share its layout."""
+    """Use of a struct in a message or in another struct; all uses share the layout of the struct."""
 
     layout: Layout
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Array(LayoutNode):
-    """Elements of one kind, one after the other."""
+    """Array of scalars or structs, contiguous in the frame."""
 
     item: Scalar | StructRef  # at bit 0 of an element
     size: Size
@@ -185,16 +186,16 @@ class Array(LayoutNode):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Overlay(LayoutNode):
-    """A number over bits that other nodes own."""
+    """Overlay field: a number that reads bits of other fields."""
 
     scalar: Scalar
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Derived(LayoutNode):
-    """A double that is computed from the values of other nodes."""
+    """Derived value: a double that is computed from other fields and has no bits in the frame."""
 
-    scalar: Scalar  # a 64-bit float without bits in the frame
+    scalar: Scalar  # a 64-bit float
     derivation: Derivation
 
 
@@ -206,12 +207,12 @@ VariableNode: TypeAlias = Scalar | Array
 
 @dataclass(frozen=True)
 class Layout:
-    """The nodes of a message or of a struct. A struct has fixed nodes only."""
+    """Nodes of a message or of a struct. A struct has fixed nodes only."""
 
     name: str
     length: int  # bytes of the fixed part
     fixed: tuple[FixedNode, ...]  # at fixed bits, in the order of the ICD
-    sequence: tuple[VariableNode, ...] = ()  # behind the fixed part, one after the other
+    sequence: tuple[VariableNode, ...] = ()  # behind the fixed part, contiguous
     derived: tuple[Derived, ...] = ()
     orders: Orders = UNDECLARED  # as the message declares them
     may_end_early: bool = False
@@ -219,29 +220,30 @@ class Layout:
 
     @cached_property
     def nodes(self) -> tuple[LayoutNode, ...]:
-        """All nodes, in the order in which code declares them."""
+        """All nodes, in the order of their declarations in generated code."""
         return (*self.fixed, *self.sequence, *self.derived)
 
     @property
     def longest(self) -> int:
-        """Bytes of the longest frame."""
+        """Length of the longest frame in bytes."""
         return self.length + sum(part.most * part.step for part in self.parts)
 
     @property
     def shortest(self) -> int:
-        """Bytes of the shortest frame. A frame that may end early has at least one byte."""
-        least = self.length + sum(part.fewest * part.step for part in self.parts)
-        return min(1, least) if self.may_end_early else least
+        """Length of the shortest frame in bytes; at least 1 if frames may end early, unless the message is empty."""
+        shortest = self.length + sum(part.fewest * part.step for part in self.parts)
+        return min(1, shortest) if self.may_end_early else shortest
 
     @property
     def lengths(self) -> range:
-        """Lengths that frames can have; with several variable parts, also some that their counters exclude."""
+        """Possible lengths of a frame in bytes. With several variable parts, it includes lengths that no counters give."""
+        # gcd() of no arguments is 0, and a range needs a step.
         step = gcd(*(part.step for part in self.parts)) or 1
         return range(self.shortest, self.longest + 1, step)
 
     @cached_property
     def parts(self) -> tuple[VariablePart, ...]:
-        """The parts of variable length, in the order of the frame."""
+        """Variable-length parts, in the order of the frame."""
         parts: list[VariablePart] = []
         begin = self.length
         for node in self.sequence:
@@ -258,59 +260,59 @@ class Layout:
 
 
 class VariablePart(NamedTuple):
-    """A part of a message of which a frame need not have all, where it stands in the longest frame.
+    """Variable-length array, bytes or text of a message, at its position in the longest frame.
 
-    Elements that a frame lacks are 0 in what it is decoded to.
+    A frame can have fewer elements than `most`. Generated code sets absent elements to 0 when it decodes a frame.
     """
 
     node: VariableNode
-    counter: str  # the field that says how many elements there are
-    is_rest: bool  # the counter has no bits: the length of the frame tells it
-    begin: int  # bytes before it
+    counter: str  # name of the field that counts the elements
+    is_rest: bool  # the counter has no bits: its value follows from the length of the frame
+    begin: int  # offset in bytes
     step: int  # bytes of an element
     most: int  # elements
-    plus: int  # there are so many more elements than the counter says
+    plus: int  # number of elements minus value of the counter
 
     @property
     def name(self) -> str:
-        """The name of its node."""
+        """Name of the node."""
         return self.node.name
 
     @property
     def is_array(self) -> bool:
-        """Whether it is an array, and not bytes or text."""
+        """Whether the part is an array, not bytes or text."""
         return isinstance(self.node, Array)
 
     @property
     def fewest(self) -> int:
-        """Elements that every frame has."""
+        """Smallest number of elements."""
         return max(0, self.plus)
 
     @property
     def low(self) -> int:
-        """The smallest value of the counter."""
+        """Smallest value of the counter."""
         return max(0, -self.plus)
 
     @property
     def high(self) -> int:
-        """The largest value of the counter."""
+        """Largest value of the counter."""
         return self.most - self.plus
 
     @property
     def shortest(self) -> int:
-        """Bytes up to its end with the fewest elements, if all is there before it."""
+        """Offset of its end in bytes if it has the fewest elements and all parts before it have the most."""
         return self.begin + self.fewest * self.step
 
 
 def size_of(node: VariableNode) -> Counted | Rest:
-    """Return the size of a node of a sequence."""
+    """Return the size of a node of `Layout.sequence`."""
     size = node.size if isinstance(node, Array) else node.length
     assert isinstance(size, Counted | Rest), "a sequence has nodes of variable length only"
     return size
 
 
 def stride(node: LayoutNode) -> int:
-    """Return the bits from one element of an array to the next; the bits of any other node."""
+    """Return the distance of array elements in bits; the width of any other node. Raises `TypeError` for derived values."""
     match node:
         case Array(item=item):
             return stride(item)
@@ -322,22 +324,22 @@ def stride(node: LayoutNode) -> int:
 
 
 def overlay_of(scalar: Scalar) -> Overlay:
-    """Return the overlay that reads a scalar; both have the same name and position."""
+    """Return the overlay node of a scalar. Both have the same name and position."""
     return Overlay(scalar=scalar, **_attributes(scalar))
 
 
 def derived_of(scalar: Scalar, derivation: Derivation) -> Derived:
-    """Return the node that computes a scalar; both have the same name."""
+    """Return the derived node of a scalar. Both have the same name."""
     return Derived(scalar=scalar, derivation=derivation, **_attributes(scalar))
 
 
 def _attributes(node: LayoutNode) -> dict[str, Any]:
-    """Return what all kinds of nodes have."""
+    """Return the attributes of `LayoutNode`, which all kinds of nodes have."""
     return {name: getattr(node, name) for name in LayoutNode.__dataclass_fields__}
 
 
 def scalar_of(node: LayoutNode) -> Scalar | None:
-    """Return the scalar that a node is, reads or computes, or that is an element of it; None for structs."""
+    """Return the scalar of a node, or of an element of an array of scalars; None for structs."""
     match node:
         case Scalar():
             return node
@@ -347,13 +349,16 @@ def scalar_of(node: LayoutNode) -> Scalar | None:
 
 
 def struct_layout_of(node: LayoutNode) -> Layout | None:
-    """Return the layout of the struct that a node refers to; None if it refers to none."""
+    """Return the layout of the struct that a node, or an element of an array, refers to; None for scalars."""
     item = node.item if isinstance(node, Array) else node
     return item.layout if isinstance(item, StructRef) else None
 
 
 def counter_of_rest(name: str, identifier: str | None, is_array: bool, most: int, source: Map) -> Scalar:
-    """Return the scalar by which code calls a number of elements, or bytes, that only the length of a frame gives."""
+    """Return the scalar that counts the elements of `name` if the length of the frame is their only counter.
+
+    Generated code has a member of this name, such as ``Records Count``, or ``Text Size`` for bytes and text.
+    """
     noun = "Count" if is_array else "Size"
     return Scalar(
         name=f"{name} {noun}",
@@ -365,17 +370,17 @@ def counter_of_rest(name: str, identifier: str | None, is_array: bool, most: int
 
 
 class Visit(NamedTuple):
-    """A node on the way through a layout."""
+    """A node that `walk` visits."""
 
     node: LayoutNode
-    owners: tuple[LayoutNode, ...]  # arrays and struct references around it, the outermost first
-    orders: Orders  # in effect here
+    owners: tuple[LayoutNode, ...]  # arrays and struct references that contain it, the outermost first
+    orders: Orders  # in effect
 
 
 def walk(layout: Layout, orders: Orders, owners: tuple[LayoutNode, ...] = ()) -> Iterator[Visit]:
-    """Visit each line of the ICD once, the nodes of a struct behind the node that refers to it.
+    """Visit each line of the ICD once. The nodes of a struct follow the node that refers to it.
 
-    `orders` are those of the ICD node.
+    `orders` are the defaults of the ICD node.
     """
     orders = layout.orders.within(orders)
     for node in layout.nodes:

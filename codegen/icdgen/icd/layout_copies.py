@@ -1,4 +1,4 @@
-"""Copies of layouts with other nodes: a layout never changes."""
+"""Modified copies of layouts, which are immutable."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ NodeT = TypeVar("NodeT", bound=LayoutNode)
 
 
 def without_nodes(layout: Layout, is_left_out: Callable[[LayoutNode], bool]) -> Layout:
-    """Return a layout without some of its own nodes; the same object if all of them stay.
+    """Return a layout without some of its own nodes; the same object if no node is removed.
 
-    A value that is derived from a node that is left out is left out, too. So are all variable-length nodes if one of
-    them, or a field that counts one of them, is left out: their positions depend on each other.
+    Also removes values that are derived from a removed node. If a variable-length node, or the counter of one, is removed,
+    removes all variable-length nodes, because their positions depend on each other.
     """
     if not any(map(is_left_out, layout.nodes)):
         return layout
@@ -29,7 +29,8 @@ def without_nodes(layout: Layout, is_left_out: Callable[[LayoutNode], bool]) -> 
             sequence = ()
     names.update(node.name for node in sequence)
     derived: list[Derived] = []
-    for value in layout.derived:  # each may be derived from those in front of it
+    # A derived value can be an operand of the derived values after it.
+    for value in layout.derived:
         if not is_left_out(value) and names.issuperset(value.derivation.fields):
             derived.append(value)
             names.add(value.name)
@@ -37,10 +38,10 @@ def without_nodes(layout: Layout, is_left_out: Callable[[LayoutNode], bool]) -> 
 
 
 def with_attributes(node: NodeT, **changes: Any) -> NodeT:
-    """Return a copy of a node with other attributes of its own, or of its scalar or item.
+    """Return a copy of a node with changed attributes of the node, or of its scalar or item.
 
-    Attributes that all kinds of nodes have change in both, because an array has the names of its item, and an overlay
-    those of its scalar. Only an array has another position than its item.
+    Attributes that all kinds of nodes have change in both, because an array and its item, or an overlay and its scalar,
+    have the same names. Only the position of an array differs from the position of its item.
     """
     own = {name: value for name, value in changes.items() if name in node.__dataclass_fields__}
     match node:
@@ -54,7 +55,7 @@ def with_attributes(node: NodeT, **changes: Any) -> NodeT:
 
 
 def with_node(layout: Layout, old: LayoutNode, new: LayoutNode) -> Layout:
-    """Return a layout with another node in the place of one of its own."""
+    """Return a layout in which `new` replaces its node `old`."""
 
     def replaced(nodes: tuple[Any, ...]) -> tuple[Any, ...]:
         return tuple(new if node is old else node for node in nodes)
@@ -65,7 +66,7 @@ def with_node(layout: Layout, old: LayoutNode, new: LayoutNode) -> Layout:
 
 
 def with_struct_layout(layout: Layout, old: Layout, new: Layout) -> Layout:
-    """Return a layout in which a struct has another layout wherever it stands; the same object if it stands nowhere."""
+    """Return a layout with `new` as the layout of a struct, at any depth; the same object if it does not use `old`."""
     for node in layout.nodes:
         struct = struct_layout_of(node)
         if struct is not None:
@@ -76,7 +77,7 @@ def with_struct_layout(layout: Layout, old: Layout, new: Layout) -> Layout:
 
 
 def with_enum(layout: Layout, old: Enum, new: Enum) -> Layout:
-    """Return a layout with another enumeration in the place of one; the same object if no field has it."""
+    """Return a layout in which the enumeration `new` replaces `old`; the same object if no field uses `old`."""
     for node in layout.nodes:
         scalar, struct = scalar_of(node), struct_layout_of(node)
         if scalar is not None and scalar.enum is old:

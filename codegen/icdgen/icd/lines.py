@@ -1,4 +1,4 @@
-"""The lines of an ICD where they stand in a message: a field of a struct once, however many elements have it."""
+"""Lines of the ICD at their positions in a message: the field of a struct in an array is one line, not one per element."""
 
 from __future__ import annotations
 
@@ -15,44 +15,44 @@ from icdgen.icd.places import NodePlace, places_in
 
 @dataclass(frozen=True)
 class Level:
-    """A node on the way to a line: an array with its elements, a struct, or the field itself."""
+    """A node on the path to a line: an array, a struct, or the field itself."""
 
     node: LayoutNode
-    count: int  # elements; 0 if it is no array
-    stride: int  # bits from one element to the next
-    struct: Layout | None  # whose fields the next level has
+    count: int  # elements; 0 if the node is not an array
+    stride: int  # distance of elements in bits
+    struct: Layout | None  # of a struct or an array of structs: its layout
 
 
 @dataclass(frozen=True, eq=False)
 class Line(NodePlace):
-    """A line at the place that it has in the first element of all arrays around it."""
+    """A line of the ICD, at its position in the first element of each array that contains it."""
 
-    levels: tuple[Level, ...] = ()  # the outermost first, the line itself last
+    levels: tuple[Level, ...] = ()  # the outermost first, the field last
 
     @cached_property
     def name(self) -> str:
         """``Satellites[].GNSS``"""
-        owners = (f"{one.node.name}[]" if one.count else one.node.name for one in self.levels[:-1])
+        owners = (f"{level.node.name}[]" if level.count else level.node.name for level in self.levels[:-1])
         return ".".join((*owners, self.node.name))
 
     @property
     def own_count(self) -> int:
-        """Elements of the array that the line itself is; 0 if it is none. `count` is over all structs around it."""
+        """Elements of the field itself; 0 if it is not an array. `count` includes the elements of all owners."""
         return self.levels[-1].count
 
     @property
     def is_of_struct(self) -> bool:
-        """Whether a struct declares it."""
+        """Whether a struct declares the field."""
         return len(self.levels) > 1
 
     @property
     def content(self) -> tuple[object, ...]:
-        """All that the ICD says about it, for comparison."""
-        around = tuple((one.node.name, one.node.identifier, one.count, one.stride) for one in self.levels)
-        return self.node, self.at, self.bits, self.declared_orders, self.smallest_raw, around
+        """All attributes of the line in the ICD, to compare two lines."""
+        levels = tuple((level.node.name, level.node.identifier, level.count, level.stride) for level in self.levels)
+        return self.node, self.at, self.bits, self.declared_orders, self.smallest_raw, levels
 
     def starts(self, first_only: bool = False) -> list[int]:
-        """Return the bits at which its elements begin; with `first_only` those of the outermost array's first element."""
+        """Return the first bit of each element; with `first_only` only within the first element of the outermost array."""
         starts = [self.at]
         for level in self.levels[1:] if first_only else self.levels:
             steps = range(0, level.stride * level.count, level.stride) if level.count else (0,)
@@ -61,12 +61,13 @@ class Line(NodePlace):
 
 
 def lines(layout: Layout) -> tuple[Line, ...]:
-    """Return the lines of a message, or of a struct, in the order in which code declares them."""
+    """Return the lines of a message or a struct, in the order of their declarations in generated code."""
     return tuple(line for place in places_in(layout) for line in _lines(place, ()))
 
 
-def _lines(place: NodePlace, around: tuple[Level, ...]) -> Iterator[Line]:
-    levels = (*around, Level(place.node, place.count, place.bits if place.count else 0, place.struct))
+def _lines(place: NodePlace, owners: tuple[Level, ...]) -> Iterator[Line]:
+    """Yield the lines of a place: one, or for a struct one per field."""
+    levels = (*owners, Level(place.node, place.count, place.bits if place.count else 0, place.struct))
     if place.struct is not None:
         steps = (*place.steps[:-1], PathStep(place.node, 0 if place.count else None))
         for inner in replace(place, steps=steps, count=0).inner():

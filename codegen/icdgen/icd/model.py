@@ -1,7 +1,7 @@
-"""The model of an ICD: what every backend, the codec, the vectors and the diff are made from.
+"""Model of an ICD: the input of all backends, the codec, the vectors and the diff.
 
-All objects are immutable. Positions are kept as ``source``, the mapping that the object was read from (an empty one
-where a model was made in memory or came from the cache).
+All objects are immutable. ``source`` is the mapping that an object was read from, with its position in the file. It is
+empty in a model that was made in memory or came from the cache.
 """
 
 from __future__ import annotations
@@ -27,21 +27,21 @@ from icdgen.icd.units import Unit
 
 TELECOMMAND, TELEMETRY, CONFIGURATION = "telecommand", "telemetry", "configuration"
 
-# kind -> the keys of its ids and the direction each belongs to
+# Keys of the ids of each kind of message, with the direction of each id.
 KEYS_OF_IDS = {
     TELECOMMAND: (("id", TELECOMMAND),),
     TELEMETRY: (("id", TELEMETRY),),
     CONFIGURATION: (("set_id", TELECOMMAND), ("get_id", TELEMETRY)),
 }
 
-# Where the ICD gives no other numbers.
+# Limits of CAN if the ICD declares no others.
 CAN_DATA_BYTES = 8  # of a packet
 CAN_PACKETS = 256  # of an extended message
 
 
 @dataclass(frozen=True, slots=True)
 class Struct:
-    """Fields that stand together, in messages and in other structs; declared once."""
+    """A group of fields that messages and other structs use; declared once."""
 
     name: str
     layout: Layout
@@ -49,19 +49,19 @@ class Struct:
     summary: str = ""
     table: int | None = None
     node: str = ""  # name of the node that declares it
-    aliases: tuple[str, ...] = ()  # other names by which people look for it
+    aliases: tuple[str, ...] = ()  # other names that a search matches
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
 
     @property
     def length(self) -> int:
-        """Its bytes."""
+        """Length in bytes."""
         return self.layout.length
 
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A frame that a composite frame repeats from bit ``at``."""
+    """A message whose frame a composite message contains, from bit ``at`` on."""
 
     message: str
     at: int
@@ -84,55 +84,55 @@ class Message:
     summary: str = ""
     acknowledge: bool = True
     expects_reset: bool = False  # not acknowledged because the node restarts instead
-    hazard: str = ""  # what is lost, or cannot be undone, once it is sent
-    assumptions: tuple[tuple[str, str], ...] = ()  # key and reason of what is assumed
+    hazard: str = ""  # irreversible effect of sending the message
+    assumptions: tuple[tuple[str, str], ...] = ()  # key and reason of each assumption
     contains: tuple[Part, ...] = ()
-    reserved: int = 0  # bytes at the end that are said to be reserved
-    may_end_early: str = ""  # "zeros": frames may be sent without the zeros that they end with; else empty
+    reserved: int = 0  # reserved bytes at the end
+    may_end_early: str = ""  # "zeros": frames may be sent without their trailing zeros; else empty
     node: str = ""  # name of the node that declares it
-    aliases: tuple[str, ...] = ()  # other names by which people look for it
+    aliases: tuple[str, ...] = ()  # other names that a search matches
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
 
     @property
     def length(self) -> int:
-        """Bytes of a frame, without the id; where frames differ, of the longest."""
+        """Length of the longest frame in bytes, without the id."""
         return self.layout.longest
 
     @property
     def fields(self) -> tuple[NodePlace, ...]:
-        """The fields of the longest frame, each element of an array and each field of a struct one: `scalars_in`."""
+        """Scalars of the longest frame, each array element and each field of a struct separately: `scalars_in`."""
         return scalars_in(self.layout)
 
     @property
     def field_count(self) -> int:
-        """How many fields there are, each element of an array one; a count that only the end of a frame tells is none."""
+        """Number of scalars of the longest frame, without counts that have no bits."""
         return sum(not scalar.is_count for scalar in scalars_in(self.layout))
 
     @property
     def has_conditions(self) -> bool:
-        """Whether a field of it is not always there."""
+        """Whether the message has optional fields."""
         return any(node.present_if for node in self.layout.fixed)
 
     @property
     def telecommand_id(self) -> int | None:
-        """The id under which it is sent, if it can be sent."""
+        """Id for sending the message; None if it cannot be sent."""
         return {TELECOMMAND: self.id, CONFIGURATION: self.set_id}.get(self.kind)
 
     @property
     def telemetry_id(self) -> int | None:
-        """The id under which it is requested, if it can be requested."""
+        """Id for requesting the message; None if it cannot be requested."""
         return {TELEMETRY: self.id, CONFIGURATION: self.get_id}.get(self.kind)
 
     @property
     def ids(self) -> tuple[int, ...]:
         """All wire ids: one, or set id and get id."""
-        return tuple(i for i in (self.id, self.set_id, self.get_id) if i is not None)
+        return tuple(id for id in (self.id, self.set_id, self.get_id) if id is not None)
 
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """One ICD file, errata applied. Messages of included nodes are not repeated here: see `Icd.messages_of`."""
+    """One ICD file with its errata applied. `Icd.messages_of` also returns the messages of included nodes."""
 
     name: str
     title: str
@@ -141,69 +141,69 @@ class Node:
     bit_order: str  # "lsb0" | "msb0"
     messages: tuple[Message, ...]
     enums: tuple[Enum, ...]
-    structs: tuple[Struct, ...] = ()  # each after those that it has in it
+    structs: tuple[Struct, ...] = ()  # each after the structs that it contains
     node_type: int | None = None
     interface_version: int | None = None
     document: tuple[tuple[str, str], ...] = ()
     includes: tuple[str, ...] = ()  # names of the nodes it includes
-    vocabulary: tuple[str, ...] = ()  # its own and what it includes
+    vocabulary: tuple[str, ...] = ()  # of included nodes and its own
     units: tuple[Unit, ...] = ()  # units that this file declares
     protocol: dict[str, Any] = field(default_factory=dict, hash=False)
     loggable: tuple[Loggable, ...] = ()
     missing: tuple[Missing, ...] = ()
     errata: tuple[Erratum, ...] = ()  # all entries of its overlay, in order, then all notes
-    digest: str = ""  # SHA-256 over the file, its overlay and what it includes
+    digest: str = ""  # SHA-256 over the file, its overlay and its included files
     file: str = ""
-    id_bits: int = 8  # of every id that it speaks; sent as whole bytes, the most significant first
+    id_bits: int = 8  # of each message id; sent as whole bytes, the most significant first
     source: Map = field(default_factory=unread, compare=False, repr=False)
 
     @property
     def orders(self) -> Orders:
-        """Byte order and bit order that hold where a message, a struct or a field declares none."""
+        """Default byte order and bit order of messages, structs and fields."""
         return Orders(self.byte_order, self.bit_order)
 
 
 @dataclass(frozen=True, slots=True)
 class Icd:
-    """A set of nodes; a node stands after those that it includes."""
+    """A set of nodes, ordered so that a node follows the nodes that it includes."""
 
     nodes: tuple[Node, ...]
 
     def node(self, name: str) -> Node:
-        """The node called ``name``. Raises `KeyError`."""
+        """Return the node called ``name``. Raises `KeyError`."""
         for node in self.nodes:
             if node.name == name:
                 return node
         raise KeyError(name)
 
     def included(self, node: Node) -> tuple[Node, ...]:
-        """All nodes that ``node`` includes, directly or not, each once, in the order of the set."""
+        """Return all nodes that ``node`` includes, directly or indirectly, each once, in the order of the set."""
         return closure(self.nodes, node.includes)
 
     def messages_of(self, node: Node) -> tuple[Message, ...]:
-        """All messages that the node speaks: those of included nodes first, then its own."""
-        return tuple(m for n in (*self.included(node), node) for m in n.messages)
+        """Return all messages of the node: first the messages of included nodes, then its own."""
+        return tuple(message for owner in (*self.included(node), node) for message in owner.messages)
 
     def longest_frame(self, message: Message) -> tuple[FrameField, ...]:
-        """The scalars of the longest frame of a message. Outputs number fields by their index in it."""
+        """Return the scalars of the longest frame of a message. Outputs number fields by their index in it."""
         return frame_fields(message.layout, self.node(message.node).orders)
 
     def protocol_of(self, node: Node) -> dict[str, Any]:
-        """The protocol facts that hold for the node: its own over those of what it includes."""
+        """Return the protocol facts of the node: the facts of included nodes, overridden by its own."""
         merged: dict[str, Any] = {}
-        for one in (*self.included(node), node):
-            merged.update(one.protocol)
+        for owner in (*self.included(node), node):
+            merged.update(owner.protocol)
         return merged
 
 
 def closure(nodes: Iterable[Node], names: Iterable[str]) -> tuple[Node, ...]:
-    """The nodes of these names and all that they include, directly or not, each once, in the order of ``nodes``."""
-    known = {node.name: node for node in reversed(tuple(nodes))}
-    wanted: set[str] = set()
+    """Return the nodes of these names and all that they include, each once, in the order of ``nodes``."""
+    by_name = {node.name: node for node in reversed(tuple(nodes))}
+    selected: set[str] = set()
     queue = list(names)
     while queue:
         name = queue.pop()
-        if name in known and name not in wanted:
-            wanted.add(name)
-            queue += known[name].includes
-    return tuple(node for node in nodes if node.name in wanted)
+        if name in by_name and name not in selected:
+            selected.add(name)
+            queue += by_name[name].includes
+    return tuple(node for node in nodes if node.name in selected)

@@ -1,7 +1,7 @@
-"""Nodes where they stand in the longest frame: what is declared, documented and generated.
+"""Nodes of a layout at their positions in the longest frame. Declarations, documents and generated code use them.
 
-In: a layout. Out: `places_in` lists its nodes, arrays and structs as one, `scalars_in` each element and each field of a struct;
-`NodePlace.elements` and `NodePlace.inner` go further down.
+`places_in` lists the nodes of a layout, an array or a struct as one place. `scalars_in` lists each array element and each
+field of a struct separately. `NodePlace.elements` and `NodePlace.inner` go down one level.
 """
 
 from __future__ import annotations
@@ -31,23 +31,23 @@ from icdgen.icd.layout import (
 from icdgen.icd.located import Map
 from icdgen.once import cached_property, kept_by_owner
 
+# A struct has no scalar; this one makes `NodePlace.type` of a struct "struct".
 _NO_SCALAR = Scalar(name="", type="struct", bits=0)
-"""The scalar of a place where a struct stands."""
 
 
 @dataclass(frozen=True, eq=False)
 class NodePlace(OfScalar):
-    """A node, or an element of an array, at its bit of the longest frame or of a struct."""
+    """A node, or an element of an array, at its position in the longest frame or in a struct."""
 
-    steps: tuple[PathStep, ...]  # from the node of the message's own layout on
-    scalar: Scalar  # that stands here; of an array that stands as one, an element of it
-    struct: Layout | None  # that stands here instead of a scalar
-    at: int  # counted in the bit order in effect
-    bits: int  # of an array those of an element; of variable-length bytes and text the most
-    declared_orders: Orders  # of the node or what it stands in; empty where those of the ICD node hold
-    count: int = 0  # elements of an array that stands as one; else 0
+    steps: tuple[PathStep, ...]  # path from the layout of the message
+    scalar: Scalar  # of an array: its element
+    struct: Layout | None  # of a struct or an array of structs: its layout
+    at: int  # first bit, counted in the bit order in effect
+    bits: int  # of an array: of an element; of variable-length bytes and text: the most
+    declared_orders: Orders  # of the node or an owner; empty if the defaults of the ICD node apply
+    count: int = 0  # elements of an array; 0 for an element and for any other node
     smallest_raw: int = 0  # of a field that counts elements
-    is_count: bool = False  # it has no bits: the length of the frame tells its value
+    is_count: bool = False  # it has no bits: its value follows from the length of the frame
 
     @cached_property
     def name(self) -> str:
@@ -56,72 +56,72 @@ class NodePlace(OfScalar):
 
     @property
     def node(self) -> LayoutNode:
-        """The node that stands here, or the array that it is an element of."""
+        """The node; of an element, its array."""
         return self.steps[-1].node
 
     @property
     def index(self) -> int | None:
-        """Which element of an array it is; None of what is no element."""
+        """Index of an element in its array; None if the place is not an element."""
         return self.steps[-1].element
 
     @property
     def width(self) -> int:
-        """Bits of all that stands here."""
+        """Width in bits; of an array, of all elements together."""
         return self.bits * (self.count or 1)
 
     @property
     def byte_order(self) -> str:
-        """Byte order of the node or what it stands in; empty where that of the ICD node holds."""
+        """Byte order that the node or an owner declares; empty if the default of the ICD node applies."""
         return self.declared_orders.byte
 
     @property
     def bit_order(self) -> str:
-        """Bit order of the node or what it stands in; empty where that of the ICD node holds."""
+        """Bit order that the node or an owner declares; empty if the default of the ICD node applies."""
         return self.declared_orders.bit
 
     @property
     def identifier(self) -> str | None:
-        """The words that the ICD gives instead of the name."""
+        """Identifier that replaces the name in generated code, if the ICD gives one."""
         return self.node.identifier
 
     @property
     def summary(self) -> str:
-        """The summary of the ICD."""
+        """Summary of the node."""
         return self.node.summary
 
     @property
     def aliases(self) -> tuple[str, ...]:
-        """Other names by which people look for it."""
+        """Other names that a search matches."""
         return self.node.aliases
 
     @property
     def errata(self) -> tuple[Erratum, ...]:
-        """The errata of the node."""
+        """Errata of the node."""
         return self.node.errata
 
     @property
     def source(self) -> Map:
-        """The mapping that the node was read from."""
+        """Mapping that the node was read from."""
         return self.node.source
 
     @property
     def when(self) -> tuple[Condition, ...]:
-        """It is in a frame only if all of them hold."""
+        """Conditions of an optional field: a frame has the field if all of them are met."""
         return self.node.present_if
 
     @property
     def view(self) -> bool:
-        """Whether it reads bits of other fields, or is computed."""
+        """Whether the node is an overlay field or a derived value, so it owns no bits."""
         return isinstance(self.node, Overlay | Derived)
 
     @property
     def derived(self) -> Derivation | None:
-        """How it is computed from other fields; None where it is not."""
+        """Computation of a derived value; None for any other node."""
         return self.node.derivation if isinstance(self.node, Derived) else None
 
     @property
     def role(self) -> Role:
-        """What it is in a frame."""
+        """Role of the scalar in a frame."""
         match self.node:
             case Overlay():
                 return "overlay"
@@ -131,15 +131,15 @@ class NodePlace(OfScalar):
 
     @property
     def fresh(self) -> int | bytes:
-        """The raw value in a new message: the only valid one, or the smallest; of a float its bits."""
+        """Raw value in a new message: the constant, or else the smallest valid value; of a float its bits."""
         return bytes(self.bits // 8) if self.is_bytes else self.const or self.smallest_raw
 
     def orders_in_effect(self, outer: Orders) -> Orders:
-        """Return the orders in effect, where those of the ICD node are `outer`."""
+        """Return the orders in effect. `outer` are the defaults of the ICD node."""
         return self.declared_orders.within(outer)
 
     def elements(self) -> tuple[NodePlace, ...]:
-        """Return the elements of an array, structs whole; of anything else the place itself."""
+        """Return the elements of an array, a struct as one place; for any other node the place itself."""
         if not self.count:
             return (self,)
         before, stride = self.steps[:-1], self.bits
@@ -156,12 +156,12 @@ class NodePlace(OfScalar):
         )
 
     def inner(self) -> tuple[NodePlace, ...]:
-        """Return the places of what stands in a struct; of an array of structs, take an element first."""
-        assert self.struct is not None and not self.count, f"{self.name} is no single struct"
+        """Return the places of the fields of a struct. For an array of structs, call it on an element."""
+        assert self.struct is not None and not self.count, f"{self.name} is not a single struct"
         return tuple(_place(node, self.declared_orders, self.at, self.steps) for node in self.struct.fixed)
 
     def scalars(self) -> Iterator[NodePlace]:
-        """Return all scalars that stand here, each element of an array and each field of a struct by itself."""
+        """Yield all scalars of the node: each array element and each field of a struct separately."""
         for element in self.elements():
             if element.struct is None:
                 yield element
@@ -171,52 +171,52 @@ class NodePlace(OfScalar):
 
 
 AnyScalar: TypeAlias = Scalar | FrameField | NodePlace
-"""What gives a raw value its meaning."""
+"""An object that gives a raw value its meaning: type, width, enumeration, unit, scale."""
 
 
 @kept_by_owner
 def places_in(layout: Layout) -> tuple[NodePlace, ...]:
-    """Return the nodes where they stand in the longest frame, in the order of `Layout.nodes`; behind a variable part its count."""
+    """Return the nodes of a message in the longest frame, in the order of `Layout.nodes`.
+
+    A count that follows from the length of the frame comes directly after its array.
+    """
     return places_of(layout)
 
 
 @kept_by_owner
 def scalars_in(layout: Layout) -> tuple[NodePlace, ...]:
-    """Return all scalars of the longest frame: each element of an array and each field of a struct by itself."""
+    """Return all scalars of the longest frame: each array element and each field of a struct separately."""
     return tuple(scalar for place in places_in(layout) for scalar in place.scalars())
 
 
 @kept_by_owner
 def raw_fields_in(layout: Layout) -> tuple[NodePlace, ...]:
-    """Return those of `scalars_in` whose raw value a message has to give: all but overlays and derived values."""
+    """Return the scalars of the longest frame with a raw value: all except overlay fields and derived values."""
     return tuple(scalar for scalar in scalars_in(layout) if not scalar.view)
 
 
 def places_of(layout: Layout, outer: Orders = UNDECLARED) -> tuple[NodePlace, ...]:
-    """Return the places of the nodes of a layout. `outer` are the orders of what it stands in, if it is an element.
-
-    `places_in` keeps those without `outer`.
-    """
+    """Return the places of the nodes of a layout, as `places_in`, but with orders inherited from `outer`; not cached."""
     orders = layout.orders.within(outer)
-    found = [_place(node, orders, smallest_raw=layout.smallest_raw(node.name)) for node in layout.fixed]
+    places = [_place(node, orders, smallest_raw=layout.smallest_raw(node.name)) for node in layout.fixed]
     for part in layout.parts:
         node, size, at = part.node, size_of(part.node), 8 * part.begin
         own, steps = node.orders.within(orders), (PathStep(node),)
         if isinstance(node, Array):
-            found.append(_place_of_item(steps, node.item, at, own, part.most))
+            places.append(_place_of_item(steps, node.item, at, own, part.most))
         else:
-            found.append(NodePlace(steps, node, None, at, 8 * part.most, own))
+            places.append(NodePlace(steps, node, None, at, 8 * part.most, own))
         if isinstance(size, Rest):
             counter, end = size.counter, 8 * (part.begin + part.most * part.step)
-            found.append(NodePlace((PathStep(counter),), counter, None, end, counter.bits, UNDECLARED, is_count=True))
-    found += (_place(node, UNDECLARED, 8 * layout.longest) for node in layout.derived)
-    return tuple(found)
+            places.append(NodePlace((PathStep(counter),), counter, None, end, counter.bits, UNDECLARED, is_count=True))
+    places += (_place(node, UNDECLARED, 8 * layout.longest) for node in layout.derived)
+    return tuple(places)
 
 
 def _place(
     node: LayoutNode, orders: Orders, begin: int = 0, owners: tuple[PathStep, ...] = (), smallest_raw: int = 0
 ) -> NodePlace:
-    """Return the place of a node of fixed size in what begins at bit `begin`."""
+    """Return the place of a node of fixed size in a frame, struct or element that begins at bit `begin`."""
     own, at, steps = node.orders.within(orders), begin + node.at, (*owners, PathStep(node))
     match node:
         case Array(item=item, size=int(count)):
@@ -238,6 +238,6 @@ def _place_of_item(
     count: int,
     smallest_raw: int = 0,
 ) -> NodePlace:
-    """Return the place of a scalar or struct, or of so many of them."""
+    """Return the place of a scalar or struct, or of an array of `count` elements if `count` is not 0."""
     scalar, struct = (item, None) if isinstance(item, Scalar) else (_NO_SCALAR, item.layout)
     return NodePlace(steps, scalar, struct, at, stride(item), orders, count, smallest_raw)
