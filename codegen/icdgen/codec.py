@@ -136,10 +136,7 @@ def _counters(node: Node, layout: Layout, frame: bytes) -> dict[str, int]:
 
 
 def _check_length(message: Message, lengths: range, actual: int) -> None:
-    """Raise `LengthError` for a length that is not in `lengths`.
-
-    The expected length is the longest valid length below `actual`, or else the shortest.
-    """
+    """Raise `LengthError` for a length that is not in `lengths`; it expects the next shorter length, or else the shortest."""
     if actual not in lengths:
         raise LengthError(message, max((length for length in lengths if length < actual), default=lengths[0]), actual)
 
@@ -202,7 +199,7 @@ def message_of_frame(icd: Icd, messages: Sequence[Message], frame: bytes) -> Mes
 
 
 def message_of_frame_if_any(icd: Icd, messages: Sequence[Message], frame: bytes) -> Message | None:
-    """Return the result of `message_of_frame`, and None where that raises `LengthError`."""
+    """Return the result of `message_of_frame`; None if it raises `LengthError`."""
     try:
         return message_of_frame(icd, messages, frame)
     except LengthError:

@@ -1,4 +1,4 @@
-"""What an ICD holds beside its messages: the log mask, and what the manual does not describe."""
+"""Parts of an ICD other than messages: bits of the log mask, and messages that the manual does not describe."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Loggable:
 
 @dataclass(frozen=True, slots=True)
 class Missing:
-    """A message that the manual mentions and does not describe."""
+    """A message that the manual mentions but does not describe."""
 
     kind: str
     id: int

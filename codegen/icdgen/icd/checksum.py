@@ -1,4 +1,4 @@
-"""Arithmetic of checksums, bit by bit, for the rules and for the reference implementation of links."""
+"""Checksum algorithms, bit by bit, for the rules and for the reference implementation of links."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ CRC, FLETCHER, FLETCHER_255, SUM, XOR = KINDS = ("crc", "fletcher", "fletcher_25
 
 
 def crc(data: bytes, width: int, polynomial: int, init: int, reflect_in: bool, reflect_out: bool, xor_out: int) -> int:
-    """The CRC of ``data``, in the parameters of the usual catalogues."""
+    """Return the CRC of ``data``, with the parameters of the Rocksoft model, which CRC catalogues use."""
     value, top = init, 1 << (width - 1)
     for byte in data:
         for position in range(8):
@@ -22,7 +22,10 @@ def crc(data: bytes, width: int, polynomial: int, init: int, reflect_in: bool, r
 
 
 def plain(kind: str, data: bytes, width: int, init: int, xor_out: int) -> int:
-    """The checksum of ``data``, of a kind other than a CRC."""
+    """Return a Fletcher checksum, a sum or an XOR of ``data``.
+
+    The high half of a Fletcher checksum is the second sum; ``init`` and ``xor_out`` have the same layout.
+    """
     if kind in (FLETCHER, FLETCHER_255):
         modulus = 255 if kind == FLETCHER_255 else 256
         first, second = init & 0xFF, init >> 8

@@ -1,4 +1,4 @@
-"""Optional fields: the key `when` names other fields, and the values that they have if the field is present."""
+"""Optional fields. The key `when` names other fields and the values that they have if the field is present."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ from icdgen.icd.roles import CONDITION, INTEGERS, reasons_against
 from icdgen.icd.suggestions import suggestion
 from icdgen.icd.trees import mappings
 
-_LEAST = "`when` names a field that every frame has: an integer without a formula, an enumeration value, or a flag"
+_REQUIREMENT = (
+    "`when` names a field that every frame has: an integer without a formula, an enumeration value, or a flag"
+)
 _TYPES = (*INTEGERS, "float", "bytes", "text")
 
 
@@ -23,7 +25,7 @@ def _when(item: Map) -> Map:
 
 
 def of(message: Map, item: Map, enums: Mapping[str, Enum]) -> tuple[Condition, ...]:
-    """Return the conditions of a field, without those that are wrong."""
+    """Return the valid conditions of a field."""
     fields = _fields(message)
     conditions = []
     for name, listed in _when(item).items():
@@ -37,7 +39,10 @@ def of(message: Map, item: Map, enums: Mapping[str, Enum]) -> tuple[Condition, .
 
 
 def are_understood(node: LayoutNode) -> bool:
-    """Return whether a node has all conditions of its line. Each that is wrong has a finding, and no other follows from it."""
+    """Return whether all conditions of a node are valid.
+
+    Each invalid condition has a finding. Further rules skip such a node, to avoid findings that only follow from it.
+    """
     return len(_when(node.source)) == len(node.present_if)
 
 
@@ -48,13 +53,13 @@ def faults_of_names(message: Map, item: Map) -> Iterator[Fault]:
         if name not in fields:
             text = f"`{item['name']}` depends on `{name}`, but `{message['name']}` has no such field"
             names = (other for other, field in fields.items() if field is not item and _can_decide(field))
-            yield Fault.at_key(when, name, text, *suggestion(name, names, _LEAST))
+            yield Fault.at_key(when, name, text, *suggestion(name, names, _REQUIREMENT))
         elif not _is_sound(fields[name]):
-            continue  # it has a finding
+            continue  # another rule reports the type or the width
         elif name == item["name"]:
-            yield Fault.at_key(when, name, f"`{name}` cannot depend on itself", _LEAST)
+            yield Fault.at_key(when, name, f"`{name}` cannot depend on itself", _REQUIREMENT)
         elif reasons := reasons_against(fields[name], CONDITION):
-            yield Fault.at_key(when, name, f"`{item['name']}` cannot depend on `{name}`: it {reasons[0]}", _LEAST)
+            yield Fault.at_key(when, name, f"`{item['name']}` cannot depend on `{name}`: it {reasons[0]}", _REQUIREMENT)
 
 
 def faults_of_values(message: Map, item: Map, enums: Mapping[str, Enum]) -> Iterator[Fault]:
@@ -63,7 +68,7 @@ def faults_of_values(message: Map, item: Map, enums: Mapping[str, Enum]) -> Iter
     for name, listed in when.items():
         field = fields.get(name)
         if field is None or not _can_decide(field) or (field["type"] == "enum" and field.get("enum", "") not in enums):
-            continue  # it has a finding
+            continue  # `faults_of_names` or another rule reports it
         raws: list[int] = []
         for value in _as_list(listed):
             raw = _raw_value(field, value, enums)
@@ -83,16 +88,17 @@ def faults_of_values(message: Map, item: Map, enums: Mapping[str, Enum]) -> Iter
 
 
 def _as_list(value: object) -> list[object]:
+    """Return a list of values; a single value as a list of one element."""
     return list(value) if isinstance(value, list) else [value]
 
 
 def _shown(value: object) -> str:
-    """Return a value as an ICD writes it; text in backticks."""
+    """Return a value in the syntax of an ICD; text in backticks."""
     return str(value).lower() if isinstance(value, bool) else f"`{value}`" if isinstance(value, str) else str(value)
 
 
 def _raw_value(field: Map, value: object, enums: Mapping[str, Enum]) -> int | None:
-    """Return the raw value that the ICD means by a value; None if the field cannot have it."""
+    """Return the raw value of a value in an ICD; None if the field cannot have it."""
     kind, bits = field["type"], field["bits"]
     if kind == "enum":
         enum = enums.get(field.get("enum", ""))
@@ -115,7 +121,7 @@ def _raw_range(bits: int, is_signed: bool) -> tuple[int, int]:
 
 
 def _is_range(field: Map, value: object, enums: Mapping[str, Enum]) -> bool:
-    """Return whether a value names a member of an enumeration that has several values."""
+    """Return whether a value is the name of a member that stands for a range of values."""
     enum = enums.get(field.get("enum", ""))
     return enum is not None and any(member.name == value and member.to is not None for member in enum.members)
 
@@ -138,7 +144,7 @@ def _can_decide(field: Map) -> bool:
 
 
 def _is_sound(field: Map) -> bool:
-    """Return whether type, width and enumeration of a field have no finding."""
+    """Return whether type, width and enumeration of a field are valid."""
     kind, bits = field.get("type"), field.get("bits", 1 if "size" in field else 0)
     if kind not in _TYPES or type(bits) is not int or not isinstance(field.get("enum", ""), str):
         return False
@@ -146,11 +152,15 @@ def _is_sound(field: Map) -> bool:
 
 
 def _fields(message: Map) -> dict[str, Map]:
-    """Return the fields of a message by name, without structs; of two with one name the first."""
+    """Return the fields of a message by name, without structs. If a name occurs twice, the first field is used."""
     named = [item for item in mappings(message.get("fields")) if isinstance(item.get("name"), str)]
     return {item["name"]: item for item in reversed(named) if "struct" not in item}
 
 
-def exclude(conditions: tuple[Condition, ...], others: tuple[Condition, ...]) -> bool:
-    """Return whether two fields with these conditions are never in the same frame."""
-    return any(a.field == b.field and not set(a.values) & set(b.values) for a in conditions for b in others)
+def exclude(first: tuple[Condition, ...], second: tuple[Condition, ...]) -> bool:
+    """Return whether two fields with these conditions are never present in the same frame."""
+    return any(
+        condition.field == other.field and not set(condition.values) & set(other.values)
+        for condition in first
+        for other in second
+    )

@@ -1,8 +1,8 @@
-"""Calibrations that are computed in doubles: polynomials in the raw value, lines in floats, and tables of points.
+"""Calibrations that are computed in doubles: polynomials, linear formulas of floats, and lookup tables.
 
-What each language computes is defined here to the last bit. A curve is made of pieces. A raw value belongs to the last piece
-that begins at it or below, or else to the first one; its physical value is that of the piece's polynomial in what the raw value
-is above the beginning, by Horner's rule: the difference, each product and each sum are rounded to a double.
+This module defines the result to the last bit for all languages. A curve consists of pieces. A raw value belongs to the last
+piece that begins at or below it, or else to the first piece. The physical value is a polynomial in the difference of the raw
+value and the start of the piece, by Horner's rule. The difference, each product and each sum are rounded to a double.
 """
 
 from __future__ import annotations
@@ -18,9 +18,8 @@ from typing import Any, NamedTuple
 
 from icdgen.icd import formula
 
+# Up to this width all raw values are tried, to see whether a curve is invertible. Wider fields with a curve are read-only.
 MOST_BITS = 16
-"""Up to this width all raw values are tried to see whether a curve leads back; wider fields are only read."""
-
 MOST_POINTS = 1024
 CLAMP, EXTRAPOLATE, REFUSE = "clamp", "extrapolate", "refuse"
 OUTSIDE = (CLAMP, EXTRAPOLATE, REFUSE)
@@ -29,33 +28,38 @@ Points = tuple[tuple[float, float], ...]
 
 
 class Piece(NamedTuple):
-    """From raw value ``start`` on: terms[0] + t*(terms[1] + t*(...)), where t = raw - start; without terms, no number."""
+    """Polynomial from raw value ``start`` on: terms[0] + t*(terms[1] + t*(...)), where t = raw - start.
+
+    Without terms, the physical value is NaN.
+    """
 
     start: float
     terms: tuple[float, ...]
 
 
 class Curve(NamedTuple):
-    """How raw values become physical ones. Of a table also its points, and what is so outside of them."""
+    """Conversion of raw values to physical values in doubles."""
 
     pieces: tuple[Piece, ...]
-    points: Points = ()
-    outside: str = ""
+    points: Points = ()  # of a lookup table: (raw, physical)
+    outside: str = (
+        ""  # of a lookup table: CLAMP, EXTRAPOLATE, REFUSE, or empty if no raw value is outside of the points
+    )
 
     @property
     def coefficients(self) -> tuple[float, ...]:
-        """Of a polynomial, the constant first; of a table none."""
+        """Coefficients of a polynomial, the constant first; empty for a lookup table."""
         return () if self.points else self.pieces[0].terms
 
     @property
     def plain(self) -> dict[str, Any]:
-        """What says all of it, for JSON: see `of_plain`."""
+        """All attributes as values for JSON; `of_plain` converts them back."""
         if self.points:
             return {"points": list(map(list, self.points))} | ({"outside": self.outside} if self.outside else {})
         return {"coefficients": list(self.coefficients)}
 
     def double(self, raw: int | float) -> float:
-        """The physical value of a raw one, of a float the number; NaN is always the same."""
+        """Return the physical value of a raw value, or of the number of a float field. All NaNs are `math.nan`."""
         x, pieces = float(raw), self.pieces
         start, terms = pieces[max(0, bisect_right(pieces, x, key=_START) - 1)] if len(pieces) > 1 else pieces[0]
         if x != x or not terms:
@@ -66,24 +70,24 @@ class Curve(NamedTuple):
         return value if value == value else math.nan
 
     def inverse(self, physical: float) -> float:
-        """The number of a float field, of a line."""
+        """Return the number of a float field for a physical value. The curve is a linear polynomial."""
         constant, slope = self.coefficients
         return (physical - constant) / slope
 
     def holds(self, low: int, high: int) -> bool:
-        """Whether no raw value from ``low`` to ``high`` lies outside of the points."""
+        """Return whether the points cover all raw values from ``low`` to ``high``."""
         return not self.points or (self.points[0][0] <= low and high <= self.points[-1][0])
 
     def ends(self, low: int, high: int) -> tuple[int, int]:
-        """Of the raw values from ``low`` to ``high`` the ends of those that a physical value may lead back to."""
+        """Return the smallest and largest raw value from ``low`` to ``high`` that a physical value can be converted to."""
         if self.outside not in (CLAMP, REFUSE):
             return low, high
         return max(low, math.ceil(self.points[0][0])), min(high, math.floor(self.points[-1][0]))
 
     def nearest(self, physical: float, low: int, high: int) -> int | None:
-        """The raw value from ``low`` to ``high`` whose physical one is nearest, of two the even one; None beyond both ends.
+        """Return the raw value from ``low`` to ``high`` whose physical value is nearest, ties to even; None beyond both ends.
 
-        The physical values rise or fall from each raw value to the next.
+        The curve must be strictly monotonic between them.
         """
         first, last = self.double(low), self.double(high)
         rises = first < last
@@ -104,22 +108,23 @@ _START = itemgetter(0)
 
 
 def polynomial(coefficients: Sequence[float]) -> Curve:
-    """The constant first."""
+    """Return the curve of a polynomial with these coefficients, the constant first."""
     return Curve((Piece(0.0, tuple(coefficients)),))
 
 
 def table(points: Sequence[tuple[float, float]], outside: str) -> Curve:
-    """Lines from point to point, which are (raw, physical). Where nothing is outside of them, ``outside`` is empty.
+    """Return the piecewise-linear curve through points (raw, physical).
 
-    The slope of a line is the exact one of its points, rounded once. Raises `icdgen.icd.formula.FormulaError`.
+    ``outside`` is empty if no raw value is outside of the points. The slope of a piece is the exact slope of its points,
+    rounded once to a double. Raises `icdgen.icd.formula.FormulaError`.
     """
     if len(points) < 2:
         raise formula.FormulaError("a table has at least two points")
     for (before, _), (raw, _) in pairwise(points):
         if not before < raw:
-            one, other = (repr(number).removesuffix(".0") for number in (raw, before))
-            what = f"raw value {one} occurs twice" if one == other else f"{one} follows {other}"
-            raise formula.FormulaError(f"{what}: list points in the order of their raw values, each once")
+            text, text_before = (repr(number).removesuffix(".0") for number in (raw, before))
+            problem = f"raw value {text} occurs twice" if text == text_before else f"{text} follows {text_before}"
+            raise formula.FormulaError(f"{problem}: list points in the order of their raw values, each once")
     lines = [Piece(x0, (y0, _slope(x0, y0, x1, y1))) for (x0, y0), (x1, y1) in pairwise(points)]
     (first, low), (last, high) = points[0], points[-1]
     before_first: dict[str, list[Piece]] = {CLAMP: [Piece(first, (low,))], REFUSE: [Piece(first, ())]}
@@ -131,25 +136,27 @@ def table(points: Sequence[tuple[float, float]], outside: str) -> Curve:
     return Curve((*before_first.get(outside, []), *lines, *end), tuple(points), outside)
 
 
-def of_plain(said: Mapping[str, Any]) -> Curve | None:
-    """The curve that `Curve.plain` says; None without one. Raises `icdgen.icd.formula.FormulaError`."""
-    if "points" in said:
-        return table(doubles(said["points"]), said.get("outside", ""))
-    return polynomial([float(one) for one in said["coefficients"]]) if "coefficients" in said else None
+def of_plain(plain: Mapping[str, Any]) -> Curve | None:
+    """Return the curve from the result of `Curve.plain`; None if it has no curve. Raises `icdgen.icd.formula.FormulaError`."""
+    if "points" in plain:
+        return table(doubles(plain["points"]), plain.get("outside", ""))
+    return polynomial(list(map(float, plain["coefficients"]))) if "coefficients" in plain else None
 
 
 def doubles(points: Iterable[Sequence[int | float | str]]) -> Points:
-    """Points as doubles. Raises `icdgen.icd.formula.FormulaError`."""
+    """Return points as doubles. Raises `icdgen.icd.formula.FormulaError` if a number is too large."""
     try:
-        found = tuple((float(raw) + 0.0, float(physical) + 0.0) for raw, physical in points)  # there is no -0
+        # Adding 0.0 converts -0.0 to 0.0.
+        converted = tuple((float(raw) + 0.0, float(physical) + 0.0) for raw, physical in points)
     except OverflowError:
-        found = ((math.inf, 0.0),)
-    if not all(math.isfinite(number) for point in found for number in point):
+        converted = ((math.inf, 0.0),)
+    if not all(math.isfinite(number) for point in converted for number in point):
         raise formula.FormulaError("a number is too large for a double")
-    return found
+    return converted
 
 
 def _slope(x0: float, y0: float, x1: float, y1: float) -> float:
+    """Return the slope of the line through two points, rounded once. Raises `icdgen.icd.formula.FormulaError`."""
     try:
         exact = (Fraction(y1) - Fraction(y0)) / (Fraction(x1) - Fraction(x0))
         return exact.numerator / exact.denominator
@@ -158,10 +165,10 @@ def _slope(x0: float, y0: float, x1: float, y1: float) -> float:
 
 
 def parse(text: str) -> Curve:
-    """The curve of a formula. Raises `icdgen.icd.formula.FormulaError`."""
+    """Return the polynomial of a formula, with coefficients rounded to doubles. Raises `icdgen.icd.formula.FormulaError`."""
     exact = formula.coefficients(text)
     try:
-        rounded = tuple(one.numerator / one.denominator for one in exact)
+        rounded = tuple(coefficient.numerator / coefficient.denominator for coefficient in exact)
     except OverflowError:
         rounded = (0.0,)
     if rounded[-1] == 0.0:
@@ -170,19 +177,23 @@ def parse(text: str) -> Curve:
 
 
 def is_finite(curve: Curve, low: int, high: int) -> bool:
-    """Whether no step leaves the doubles, for raw values from ``low`` to ``high``."""
-    return all(
-        sum(abs(Fraction(one)) * (most + abs(Fraction(start))) ** power for power, one in enumerate(terms)) < 1 << 1000
-        for most in (max(abs(low), abs(high)),)
-        for start, terms in curve.pieces
-    )
+    """Return whether no intermediate result overflows a double, for raw values from ``low`` to ``high``."""
+    largest = max(abs(low), abs(high))
+    for start, terms in curve.pieces:
+        difference = largest + abs(Fraction(start))
+        bound = sum(abs(Fraction(term)) * difference**power for power, term in enumerate(terms))
+        # The sum of the absolute values bounds each step. Rounding errors are far below 2^24, the margin to overflow.
+        if bound >= 1 << 1000:
+            return False
+    return True
 
 
 @lru_cache(maxsize=1024)
 def leads_back(curve: Curve, is_float: bool, low: int, high: int) -> bool:
-    """Whether the physical values rise, or fall, from each raw value to the next; False where these are too many to try.
+    """Return whether a curve is strictly monotonic for the raw values from ``low`` to ``high``, so that it has an inverse.
 
-    In floats a line does. Outside of the points of a table nothing leads back, unless it goes on there.
+    Returns False if there are more than 2^MOST_BITS raw values. Of floats only linear curves have an inverse. Raw values
+    outside of the points of a lookup table are not counted, unless the table extrapolates.
     """
     if is_float:
         return len(curve.coefficients) == 2
@@ -191,7 +202,8 @@ def leads_back(curve: Curve, is_float: bool, low: int, high: int) -> bool:
     low, high = curve.ends(low, high)
     if low >= high:
         return False
-    for step in (max(1, (high - low) // 64), 1):  # a look at few of them tells most
+    # A sample of 64 raw values is enough to reject most curves that are not monotonic.
+    for step in (max(1, (high - low) // 64), 1):
         values = [curve.double(raw) for raw in range(low, high + 1, step)]
         pairs = list(pairwise(values))
         if not (all(a < b for a, b in pairs) or all(a > b for a, b in pairs)):

@@ -1,7 +1,7 @@
-"""Values that are derived from several fields of a message: the text of a formula -> steps in doubles.
+"""Derived values: converts a formula over several fields of a message to steps in doubles.
 
-What each language computes is defined here to the last bit. Numbers that no field has part in are exact and rounded once, to
-a double; each step takes two doubles and rounds its result to one. A step behind another one may take what that gave.
+This module defines the result to the last bit for all languages. Subexpressions without fields are computed exactly and
+rounded once to a double. Each step takes two doubles, which can be results of earlier steps, and rounds its result to a double.
 """
 
 from __future__ import annotations
@@ -17,57 +17,72 @@ from icdgen.icd.expression import Arithmetic, FormulaError, Token, evaluate
 from icdgen.icd.formula import MAX_DEGREE, MAX_EXPONENT, power_of_number
 from icdgen.suggest import close_to
 
-_WORDS = re.compile(r"[^\W\d](?:[\w .\[\]]*[\w\]])?")  # what looks like a name
+# Text that looks like the name of a field, for an error message.
+_WORDS = re.compile(r"[^\W\d](?:[\w .\[\]]*[\w\]])?")
 
 
 class Operation(NamedTuple):
-    """``left operator right``; both are places in the row of values, to which it adds one."""
+    """Step ``left operator right``. Its result is appended to the row of values."""
 
     operator: str  # one of + - * / ^
-    left: int
+    left: int  # index in the row of values
     right: int
 
 
 class Derivation(NamedTuple):
-    """How a value is derived. The row of values begins with those of the fields and the numbers; its last one is the result."""
+    """Computation of a derived value.
 
-    fields: tuple[str, ...]  # names: of each its physical value, of one without a formula its raw one, as a double
+    It works on a row of values, which begins with the values of the fields and the numbers. Each step appends a value. The last
+    value is the result.
+    """
+
+    fields: tuple[str, ...]  # names of the operands: physical values, or raw values without a formula, as doubles
     numbers: tuple[float, ...]
     steps: tuple[Operation, ...]
 
     def double(self, values: Sequence[float]) -> float:
-        """The result for the values of `fields`; NaN is always the same."""
+        """Return the result for the values of `fields`. All NaNs are `math.nan`."""
         row = [*values, *self.numbers]
         for operator, left, right in self.steps:
             row.append(_OPERATORS[operator](row[left], row[right]))
         return row[-1] if row[-1] == row[-1] else math.nan
 
     def sense(self, names: Mapping[str, str]) -> str:
-        """The same for formulas whose terms or factors change places; ``names`` has those of fields that are called otherwise."""
+        """Return a canonical text, equal for formulas that differ only in the order of terms or factors.
+
+        ``names`` has new names of fields that were renamed.
+        """
         row = [f"`{names.get(name, name)}`" for name in self.fields] + list(map(repr, self.numbers))
         for operator, *places in self.steps:
             sides = [row[place] for place in places]
-            sides = sorted(sides) if operator in "+*" else sides  # they commute
+            # Sums and products of two doubles commute.
+            sides = sorted(sides) if operator in "+*" else sides
             row.append(f"({operator.join(sides)})")
         return row[-1]
 
 
-def quotient(one: float, other: float) -> float:
-    """As IEEE 754 divides: by zero, too."""
-    if other:
-        return one / other
-    return math.nan if not one or one != one else math.copysign(math.inf, one) * math.copysign(1.0, other)
+def quotient(dividend: float, divisor: float) -> float:
+    """Return a quotient as IEEE 754 defines it, also for a divisor of zero, for which Python raises."""
+    if divisor:
+        return dividend / divisor
+    if not dividend or dividend != dividend:
+        return math.nan
+    return math.copysign(math.inf, dividend) * math.copysign(1.0, divisor)
 
 
 def power(base: float, exponent: float) -> float:
-    """By squaring, from the lowest bit of a whole exponent on; of a negative one the reciprocal."""
-    left, found = abs(int(exponent)), 1.0
-    while left:
-        if left & 1:
-            found *= base
+    """Return a power with an integer exponent, by repeated squaring from the lowest bit of the exponent on.
+
+    Every language uses this algorithm, because the `pow` of C libraries is not correctly rounded. A negative exponent gives
+    the reciprocal of the power with the positive exponent.
+    """
+    bits, result = abs(int(exponent)), 1.0
+    while bits:
+        if bits & 1:
+            result *= base
         base *= base
-        left >>= 1
-    return quotient(1.0, found) if exponent < 0 else found
+        bits >>= 1
+    return quotient(1.0, result) if exponent < 0 else result
 
 
 _OPERATORS = {
@@ -83,7 +98,10 @@ _Tree: TypeAlias = "Fraction | str | tuple[str, _Tree, _Tree]"
 
 
 def parse(text: str, names: Collection[str]) -> Derivation:
-    """``Lon + Lon HP*1e-2``, ``W*10^W_SF``, over fields of these names. Raises `icdgen.icd.formula.FormulaError`."""
+    """Return the derivation of a formula over fields of these names. Raises `icdgen.icd.formula.FormulaError`.
+
+    Examples: ``Lon + Lon HP*1e-2``, ``W*10^W_SF``.
+    """
     return _parse_cached(text, frozenset(names))
 
 
@@ -96,18 +114,19 @@ def _parse_cached(text: str, names: frozenset[str]) -> Derivation:
 
 
 class _Trees(Arithmetic[_Tree]):
-    """Arithmetic that keeps the operations on fields for later and computes the others at once, exactly."""
+    """Arithmetic that builds a tree of the operations on fields, and computes operations on numbers exactly."""
 
     def __init__(self, names: frozenset[str]) -> None:
+        # The longest name first, because names can contain spaces and operators, and one can be the start of another.
         self.names = sorted(sorted(names), key=len, reverse=True)
 
     def name_at(self, text: str, at: int) -> str:
-        """Return the longest name of a field, whatever characters it has."""
+        """Return the longest name of a field that begins at an index of the text; empty if none does."""
         matches = (name for name in self.names if text.startswith(name, at))
         return next((name for name in matches if not _continues(text, at + len(name), name)), "")
 
     def unreadable(self, text: str, at: int) -> FormulaError:
-        """Return the error for a word that is no name of a field, or for a character that no formula has."""
+        """Return the error for an unknown name, or for a character that is not part of a formula."""
         words = _WORDS.match(text, at)
         if words is None:
             return FormulaError(f"`{text[at]}` is not part of a formula")
@@ -123,7 +142,7 @@ class _Trees(Arithmetic[_Tree]):
         return name
 
     def operation(self, operator: str, left: _Tree, right: _Tree) -> _Tree:
-        """Return the operation, or its result if no field has part in it."""
+        """Return the operation, or its result if both operands are numbers."""
         if operator == "/" and isinstance(right, Fraction) and not right:
             raise FormulaError("it divides by zero")
         if not isinstance(left, Fraction) or not isinstance(right, Fraction):
@@ -138,7 +157,7 @@ class _Trees(Arithmetic[_Tree]):
         return left / right
 
     def power(self, base: _Tree, exponent: Token, is_negative: bool) -> _Tree:
-        """Return a power; the exponent is a whole number or a field."""
+        """Return a power; the exponent is an integer or the name of a field."""
         if exponent.is_name:
             if is_negative:
                 raise FormulaError(f"`^-{exponent.text}` has a sign before a field; divide by the power instead")
@@ -151,7 +170,7 @@ class _Trees(Arithmetic[_Tree]):
 
 
 def _continues(text: str, end: int, name: str) -> bool:
-    """Return whether the word in which a name ends continues behind it."""
+    """Return whether the text continues the last word of a name, or indexes it: ``Volt`` in ``Voltage``, ``V`` in ``V[0]``."""
     return _is_of_word(name[-1]) and end < len(text) and (_is_of_word(text[end]) or text[end] == "[")
 
 
@@ -160,7 +179,7 @@ def _is_of_word(letter: str) -> bool:
 
 
 def _in_steps(tree: _Tree) -> Derivation:
-    """Return the steps that compute a tree; those of the left operand of an operator come first."""
+    """Return the steps that compute a tree. The steps of a left operand come before the steps of the right operand."""
     fields: dict[str, int] = {}
     numbers: dict[float, int] = {}
     steps: list[tuple[str, Any, Any]] = []
@@ -181,7 +200,7 @@ def _in_steps(tree: _Tree) -> Derivation:
 
 
 def _double(number: Fraction) -> float:
-    """Return the nearest double."""
+    """Return the nearest double. Raises `FormulaError` if the number overflows or underflows to 0."""
     try:
         double = number.numerator / number.denominator
     except OverflowError:

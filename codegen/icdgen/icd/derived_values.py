@@ -1,4 +1,4 @@
-"""Derived values of a layout: which of its nodes a formula may use."""
+"""Derived values of a layout: parses their formulas and checks the operands."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def derivation_of(text: str, nodes: Iterable[LayoutNode]) -> Derivation:
 
 
 def check_operands(derivation: Derivation, nodes: Iterable[LayoutNode]) -> None:
-    """Raise `icdgen.icd.formula.FormulaError` if a value cannot be derived from these nodes."""
+    """Raise `icdgen.icd.formula.FormulaError` if a node cannot be an operand or an exponent, or is declared later."""
     by_name = {node.name: node for node in nodes}
     for name in derivation.fields:
         if name not in by_name:

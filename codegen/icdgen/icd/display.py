@@ -1,4 +1,4 @@
-"""Display format of a field: how people see its value. It changes neither the value nor generated code."""
+"""Display format of a field in documents and tools. It changes neither the value nor generated code."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ OF_BITS = (HEX, BINARY)
 
 @dataclass(frozen=True, slots=True)
 class Display:
-    """Display format as the ICD states it."""
+    """Display format that the ICD declares for a field."""
 
     kind: str  # HEX | BINARY | DECIMALS | DIGITS
     places: int = 0  # decimals after the point, or significant digits
@@ -34,7 +34,7 @@ class Display:
 
 
 def display_of(value: Any) -> Display | None:
-    """Return the display format that a value of the key `display` states; None if there is none, or a wrong one."""
+    """Return the display format of a value of the key `display`; None if the value is absent or invalid."""
     if value in OF_BITS:
         return Display(value)
     items = value.items() if isinstance(value, dict) else ()

@@ -1,4 +1,4 @@
-"""Fields that the manual divides in words: each of their ``bitfields`` is a field of the frame."""
+"""Split fields: a field whose parts are listed under ``bitfields``; each part becomes a field of the message."""
 
 from __future__ import annotations
 
@@ -9,26 +9,26 @@ from icdgen.icd.located import Map
 from icdgen.icd.roles import SPLIT, reasons_against
 from icdgen.icd.trees import mappings
 
-OF_A_WHOLE = ("unit", "formula", "points", "outside", "const", "special", "min", "max", "above", "below", "display")
-"""Keys for the meaning of a value; the parts of a split field have them instead of the field."""
+# Keys for the meaning of a value. The parts of a split field have them instead of the field.
+VALUE_KEYS = ("unit", "formula", "points", "outside", "const", "special", "min", "max", "above", "below", "display")
 
 _WITHIN = "correct `at` or `bits`: `at` counts from the start of the split field"
 
 
 def parts_of(field: Map) -> list[Map]:
-    """The parts that can be read."""
+    """Return the parts of a split field, without entries that are not mappings."""
     return mappings(field.get("bitfields"))
 
 
 def obstacles(field: Map, byte_order: str, bit_order: str) -> Iterator[Fault]:
-    """What is wrong with the division; the parts are `parts_of` it."""
+    """Yield the faults of a split field: its own keys, and gaps and overlaps of its parts."""
     name, bits = f"`{field['name']}`", field["bits"]
     if reasons := reasons_against(field, SPLIT):
         help = "write a field for each element, or " if "count" in field else ""
         message = f"{name} cannot have `bitfields`: it {reasons[0]}"
         yield Fault.at(field, "bitfields", message, f"{help}make the parts fields of the message")
         return
-    for key in OF_A_WHOLE:
+    for key in VALUE_KEYS:
         if key in field:
             message = f"{name} is divided, so its value has no `{key}`: its parts have"
             yield Fault.at(field, key, message, "move it to the parts; an erratum removes what is printed")
@@ -39,7 +39,7 @@ def obstacles(field: Map, byte_order: str, bit_order: str) -> Iterator[Fault]:
     for part in parts_of(field):
         at, size, title = part.get("at"), part.get("bits"), f"`{part.get('name')}`"
         if not (isinstance(at, int) and isinstance(size, int) and at >= 0 and size > 0):
-            continue  # the schema's business
+            continue  # the schema check reports it
         if at + size > bits:
             message = f"{title} ends at bit {at + size} of {name}, which has {bits} bit{'s' * (bits != 1)}"
             yield Fault.at(part, "bits", message, _WITHIN)
@@ -50,29 +50,33 @@ def obstacles(field: Map, byte_order: str, bit_order: str) -> Iterator[Fault]:
         if clash:
             yield Fault.at(part, "at", f"{title} overlaps {clash}", _WITHIN)
         taken.update((bit, title) for bit in range(at, at + size))
-    left = [bit for bit in range(bits) if bit not in taken]
-    if left:
-        message = f"bit {left[0]} of {name} belongs to no part"
+    unassigned = [bit for bit in range(bits) if bit not in taken]
+    if unassigned:
+        message = f"bit {unassigned[0]} of {name} belongs to no part"
         yield Fault.at(field, "bitfields", message, "describe it as a part, or mark it as reserved")
 
 
 def place(field: Map, part: Map, byte_order: str, bit_order: str) -> int:
-    """The bit of the frame at which the part begins."""
-    return min(_wanted(field, part, byte_order, bit_order))
+    """Return the first bit of a part in the frame."""
+    return min(_bits_of_part(field, part, byte_order, bit_order))
 
 
 def lies_together(field: Map, part: Map, byte_order: str, bit_order: str) -> bool:
-    """Whether a field at that place has the part's bits, in their order."""
-    wanted = _wanted(field, part, byte_order, bit_order)
-    return bits_of(min(wanted), part["bits"], byte_order, bit_order) == wanted
+    """Return whether a field at the position of a part has the bits of the part, in the same order.
+
+    This fails if a part crosses a byte boundary and the byte order does not continue the bit order.
+    """
+    bits = _bits_of_part(field, part, byte_order, bit_order)
+    return bits_of(min(bits), part["bits"], byte_order, bit_order) == bits
 
 
-def _wanted(field: Map, part: Map, byte_order: str, bit_order: str) -> list[int]:
+def _bits_of_part(field: Map, part: Map, byte_order: str, bit_order: str) -> list[int]:
+    """Return the bits of a part in the frame, the least significant first."""
     return bits_of(field["at"], field["bits"], byte_order, bit_order)[part["at"] : part["at"] + part["bits"]]
 
 
 def bits_of(at: int, count: int, byte_order: str, bit_order: str) -> list[int]:
-    """Which bit of the frame each bit of a value is, the least significant first."""
+    """Return the bits of a value in the frame, the least significant first."""
     runs: dict[int, list[int]] = {}
     for bit in range(at, at + count):
         runs.setdefault(bit // 8, []).append(bit)
@@ -81,7 +85,7 @@ def bits_of(at: int, count: int, byte_order: str, bit_order: str) -> list[int]:
 
 
 def described(field: Map, part: Map) -> str:
-    """The summary of the part: where in the divided field it is, and its own words, or else the field's."""
+    """Return the summary of a part: its position in the split field, and its own summary or that of the field."""
     first, last = part["at"], part["at"] + part["bits"] - 1
     bits = f"Bit {first}" if first == last else f"Bits {first} to {last}"
     return f"{bits} of {field['name']}. {part.get('summary') or field.get('summary', '')}".rstrip()

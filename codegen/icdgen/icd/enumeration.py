@@ -1,4 +1,4 @@
-"""Enumerations: the names that values have."""
+"""Enumerations and their members."""
 
 from __future__ import annotations
 
@@ -11,40 +11,40 @@ from icdgen.icd.located import Map, unread
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """One value of an enumeration, or a range of values that have one name."""
+    """Named value of an enumeration, or named range of values."""
 
-    value: int  # of a range the first
+    value: int  # of a range: the first value
     name: str
-    identifier: str | None = None  # words to build identifiers from, if not the name's
+    identifier: str | None = None  # words of identifiers, if not those of the name
     summary: str = ""
-    to: int | None = None  # of a range the last value
-    aliases: tuple[str, ...] = ()  # other names by which people look for it
+    to: int | None = None  # last value of a range; None for a single value
+    aliases: tuple[str, ...] = ()  # other names that a search matches
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
 
     @property
     def last(self) -> int:
-        """Its last value; of one value that."""
+        """Last value of a range, or the single value."""
         return self.value if self.to is None else self.to
 
     @property
     def values(self) -> str:
-        """How people read it: ``3``, ``16 to 31``."""
+        """Value or range as text: ``3``, ``16 to 31``."""
         return str(self.value) if self.to is None else f"{self.value} to {self.to}"
 
     @property
     def ends(self) -> tuple[Member, ...]:
-        """What code has constants of: the member, or the first and the last value of a range."""
+        """Members that generated code has constants for: the member, or the first and the last value of a range."""
         if self.to is None:
             return (self,)
         words = self.identifier or self.name
-        both = ((self.value, "first"), (self.to, "last"))
-        return tuple(replace(self, value=value, to=None, identifier=f"{words} {end}") for value, end in both)
+        ends = ((self.value, "first"), (self.to, "last"))
+        return tuple(replace(self, value=value, to=None, identifier=f"{words} {end}") for value, end in ends)
 
 
 @dataclass(frozen=True, slots=True)
 class Enum:
-    """An enumeration; members in the order of the manual."""
+    """Enumeration, with members in the order of the manual."""
 
     name: str
     members: tuple[Member, ...]
@@ -52,41 +52,43 @@ class Enum:
     summary: str = ""
     table: int | None = None
     node: str = ""  # name of the node that declares it
-    aliases: tuple[str, ...] = ()  # other names by which people look for it
+    aliases: tuple[str, ...] = ()  # other names that a search matches
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
 
     @property
     def signed(self) -> bool:
-        """Whether every field of it is in two's complement: one of its values is negative."""
+        """Whether a value is negative, so that fields of the enumeration are two's complement numbers."""
         return any(member.value < 0 for member in self.members)
 
     def member_of(self, value: int | bytes) -> Member | None:
-        """The member that has the value, if one has."""
+        """Return the member of a value; None if the enumeration does not name the value."""
         if isinstance(value, bytes):
             return None
-        return next((one for one in self.members if one.value <= value <= one.last), None)
+        return next((member for member in self.members if member.value <= value <= member.last), None)
 
     def bits_for(self, value: int) -> int:
-        """How many bits a field of it needs to hold the value."""
+        """Return the number of bits that a field of the enumeration needs for a value."""
         return (~value if value < 0 else value).bit_length() + 1 if self.signed else value.bit_length()
 
     @property
     def widest(self) -> Member | None:
-        """The member that takes the most bits: the one of the largest value, or of the smallest."""
+        """Member whose value needs the most bits; None without members."""
         if not self.members:
             return None
-        top, bottom = max(self.members, key=lambda one: one.last), min(self.members, key=lambda one: one.value)
-        return bottom if self.bits_for(bottom.value) > self.bits_for(top.last) else top
+        largest = max(self.members, key=lambda member: member.last)
+        smallest = min(self.members, key=lambda member: member.value)
+        return smallest if self.bits_for(smallest.value) > self.bits_for(largest.last) else largest
 
     @property
     def bits(self) -> int:
-        """How many bits a field of it needs to hold all its values."""
-        ends = [end for one in self.members for end in (one.value, one.last)]
+        """Number of bits that a field of the enumeration needs for all values."""
+        ends = [end for member in self.members for end in (member.value, member.last)]
         return max(self.bits_for(min(ends)), self.bits_for(max(ends))) if ends else 1
 
     @property
     def unnamed(self) -> int | None:
-        """The smallest number from 0 on that is no member; None if 64 bits have no such number."""
-        after = sorted(end for end in (0, *(one.last + 1 for one in self.members)) if end >= 0)
-        return next((value for value in after if self.member_of(value) is None and value < 1 << 64), None)
+        """Smallest number from 0 on without a member; None if every 64-bit number has one."""
+        # The number is 0 or directly follows a member.
+        candidates = sorted(end for end in (0, *(member.last + 1 for member in self.members)) if end >= 0)
+        return next((value for value in candidates if self.member_of(value) is None and value < 1 << 64), None)

@@ -1,4 +1,4 @@
-"""A decision about a fault of a manual, as objects of the model carry it."""
+"""Erratum: a decision about a fault of a manual, attached to objects of the model."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from icdgen.icd.located import Map, unread
 
 @dataclass(frozen=True, slots=True)
 class Erratum:
-    """A decision about a fault of the manual; or a note, which holds and accepts nothing: ``why`` is what it says."""
+    """A decision about a fault of the manual, or a note. A note changes and accepts nothing; ``why`` is its text."""
 
     id: str
     title: str
     why: str
     evidence: str
-    confidence: str  # "certain" | "likely" | "open"; a note may do without: ""
+    confidence: str  # "certain" | "likely" | "open"; of a note also ""
     tables: tuple[int, ...] = ()
     printed: tuple[tuple[str, object], ...] = ()
     held: tuple[tuple[str, object], ...] = ()
@@ -26,10 +26,10 @@ class Erratum:
 
     @property
     def label(self) -> str:
-        """What it is called in comments and on pages."""
+        """Heading in comments and documents: ``Erratum`` or ``Note``."""
         return "Note" if self.is_note else "Erratum"
 
     @property
     def sureness(self) -> str:
-        """Its confidence in brackets behind a name, if it has one."""
+        """Confidence in parentheses with a leading space, to append to a name; empty without a confidence."""
         return f" ({self.confidence})" if self.confidence else ""

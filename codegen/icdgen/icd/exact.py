@@ -1,4 +1,4 @@
-"""The exact integer form of a scale, in which every language computes: physical = (raw*p + c) / q."""
+"""Integer form of a scale, with which every language computes exactly: physical = (raw*p + c) / q."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 from icdgen.icd.formula import Scale
 
-# What arithmetic of 256 bits holds with room to spare, for every raw value of 64 bits and twice every double's significand.
+# Limits for arithmetic of 256 bits: with them no product with a 64-bit raw value or a double's significand overflows.
 MAX_FACTOR = 1 << 180
 MAX_OFFSET = 1 << 240
 
-# The same of 128 bits, which is quicker and holds nearly every formula.
+# Limits for arithmetic of 128 bits, which is faster and sufficient for nearly every formula.
 USUAL_FACTOR = 1 << 32
 USUAL_OFFSET = 1 << 63
 
@@ -25,18 +25,18 @@ class Terms(NamedTuple):
 
     @property
     def are_usual(self) -> bool:
-        """Whether 128 bits are enough."""
+        """Whether arithmetic of 128 bits is sufficient."""
         return abs(self.p) <= USUAL_FACTOR and self.q <= USUAL_FACTOR and abs(self.c) <= USUAL_OFFSET
 
 
 def terms(scale: Scale) -> Terms:
-    """The terms of a scale over its common denominator."""
+    """Return the terms of a scale over the common denominator of factor and offset."""
     factor, offset = scale
     q = lcm(factor.denominator, offset.denominator)
     return Terms(factor.numerator * (q // factor.denominator), offset.numerator * (q // offset.denominator), q)
 
 
 def is_too_large(scale: Scale) -> bool:
-    """Whether the terms leave the range in which all languages compute exactly."""
+    """Return whether the terms exceed the range in which all languages compute exactly."""
     p, c, q = terms(scale)
     return abs(p) > MAX_FACTOR or q > MAX_FACTOR or abs(c) > MAX_OFFSET

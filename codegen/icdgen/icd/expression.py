@@ -1,8 +1,8 @@
-"""Arithmetic expressions in text: the grammar that formulas of fields and derived values share.
+"""Parser of arithmetic expressions, such as ``(raw - 32)*5/9`` or ``W*10^W_SF``, for formulas and derived values.
 
-In: a text such as ``(raw - 32)*5/9`` or ``W*10^W_SF``. `evaluate` splits it into tokens and reads them by recursive
-descent. An `Arithmetic` says which names there are and what operators mean: `icdgen.icd.formula` computes polynomials
-of fractions, `icdgen.icd.derived` the steps of a computation in doubles.
+`evaluate` splits a text into tokens and parses them by recursive descent. An `Arithmetic` defines the valid names and the
+meaning of the operators: `icdgen.icd.formula` computes polynomials of fractions, `icdgen.icd.derived` the steps of a
+computation in doubles.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Generic, NamedTuple, TypeVar
 
+# Limits on input that an ICD never needs, so that a hostile text cannot exhaust the stack or the memory.
 MAX_DEPTH = 50
 MAX_DIGITS = 40
 
@@ -23,7 +24,7 @@ Value = TypeVar("Value")
 
 
 class FormulaError(ValueError):
-    """The text is not a formula. The message says why, as the end of a sentence."""
+    """A text is not a valid formula. The message is the end of a sentence, such as "it divides by zero"."""
 
 
 class Token(NamedTuple):
@@ -34,11 +35,11 @@ class Token(NamedTuple):
 
     @property
     def is_number(self) -> bool:
-        """Whether it is a number; names can begin with a digit."""
+        """Whether the token is a number; names can begin with a digit."""
         return not self.is_name and self.text[0].isdigit()
 
     def is_operator(self, operators: str) -> bool:
-        """Return whether it is one of these operators; names can look like operators."""
+        """Return whether the token is one of these operators; names can look like operators."""
         return not self.is_name and self.text in operators
 
 
@@ -47,7 +48,7 @@ class Arithmetic(ABC, Generic[Value]):
 
     @abstractmethod
     def name_at(self, text: str, at: int) -> str:
-        """Return the longest name that begins at a character of the text; empty if none does."""
+        """Return the longest name that begins at an index of the text; empty if no name begins there."""
 
     @abstractmethod
     def unreadable(self, text: str, at: int) -> FormulaError:
@@ -67,20 +68,20 @@ class Arithmetic(ABC, Generic[Value]):
 
     @abstractmethod
     def power(self, base: Value, exponent: Token, is_negative: bool) -> Value:
-        """Return a power; `exponent` is the token behind `^` and its sign, whatever it is."""
+        """Return a power; `exponent` is the token after `^` and the sign, of any kind."""
 
 
 def evaluate(text: str, arithmetic: Arithmetic[Value]) -> Value:
     """Return the value of an expression. Raises `FormulaError`."""
     parser = _Parser(list(_tokens(text, arithmetic)), arithmetic)
     value = parser.sum()
-    if parser.rest:
-        raise FormulaError(f"`{parser.rest[0].text}` is not expected there")
+    if parser.tokens:
+        raise FormulaError(f"`{parser.tokens[0].text}` is not expected there")
     return value
 
 
 def _tokens(text: str, arithmetic: Arithmetic[Value]) -> Iterator[Token]:
-    """Yield numbers, operators and names. Where a name and a number begin, the longer one is meant."""
+    """Yield numbers, operators and names. If both a number and a name begin at a character, the longer one is used."""
     at = 0
     while at < len(text):
         if text[at].isspace():
@@ -99,39 +100,39 @@ def _tokens(text: str, arithmetic: Arithmetic[Value]) -> Iterator[Token]:
 
 
 class _Parser(Generic[Value]):
-    """Recursive descent. A minus sign binds less than `^` and more than `*`."""
+    """Recursive-descent parser. A minus sign has a lower precedence than `^` and a higher one than `*`."""
 
     def __init__(self, tokens: list[Token], arithmetic: Arithmetic[Value]) -> None:
-        self.rest = tokens
+        self.tokens = tokens  # not yet consumed
         self.arithmetic = arithmetic
-        self.depth = 0  # of parentheses and signs
+        self.depth = 0  # open parentheses and signs
 
     def take(self) -> Token:
-        """Return the next token."""
-        if not self.rest:
+        """Consume and return the next token."""
+        if not self.tokens:
             raise FormulaError("it ends too early")
-        return self.rest.pop(0)
+        return self.tokens.pop(0)
 
     def is_next(self, operators: str) -> bool:
         """Return whether the next token is one of these operators."""
-        return bool(self.rest) and self.rest[0].is_operator(operators)
+        return bool(self.tokens) and self.tokens[0].is_operator(operators)
 
     def sum(self) -> Value:
-        """Read terms with + and - between them."""
+        """Parse terms separated by + and -."""
         left = self.product()
         while self.is_next("+-"):
             left = self.arithmetic.operation(self.take().text, left, self.product())
         return left
 
     def product(self) -> Value:
-        """Read factors with * and / between them."""
+        """Parse factors separated by * and /."""
         left = self.signed()
         while self.is_next("*/"):
             left = self.arithmetic.operation(self.take().text, left, self.signed())
         return left
 
     def signed(self) -> Value:
-        """Read minus signs and a power."""
+        """Parse minus signs and a power."""
         self.depth += 1
         if self.depth > MAX_DEPTH:
             raise FormulaError(f"more than {MAX_DEPTH} parentheses or signs are open at once")
@@ -144,7 +145,7 @@ class _Parser(Generic[Value]):
         return value
 
     def power(self, base: Value) -> Value:
-        """Read what a base is raised to, if `^` follows it."""
+        """Parse the exponent of a base, if `^` follows."""
         if not self.is_next("^"):
             return base
         self.take()
@@ -157,7 +158,7 @@ class _Parser(Generic[Value]):
         return self.arithmetic.power(base, exponent, is_negative)
 
     def primary(self, token: Token) -> Value:
-        """Read a number, a name, or what parentheses enclose."""
+        """Parse a number, a name, or an expression in parentheses."""
         if token.is_name:
             return self.arithmetic.variable(token.text)
         if token.is_number:

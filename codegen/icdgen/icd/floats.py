@@ -1,4 +1,4 @@
-"""Floats of 32 and 64 bits as their IEEE 754 bits: from numbers, and back to the shortest text that says which one it is."""
+"""Conversion of 32-bit and 64-bit floats between IEEE 754 bits, numbers and their shortest decimal text."""
 
 from __future__ import annotations
 
@@ -15,25 +15,26 @@ _FORMATS = {32: ("<f", "<I"), 64: ("<d", "<Q")}
 
 
 def bits_of(value: float, bits: int) -> int:
-    """The bits of a number that a float of this width holds, or of what is no number."""
-    number, whole = _FORMATS[bits]
-    found: int = struct.unpack(whole, struct.pack(number, value))[0]
-    return found
+    """Return the bits of a number that a float of this width represents exactly, or of NaN or infinity."""
+    float_format, int_format = _FORMATS[bits]
+    raw: int = struct.unpack(int_format, struct.pack(float_format, value))[0]
+    return raw
 
 
 def value_of(raw: int, bits: int) -> float:
-    """The number that the bits stand for."""
-    number, whole = _FORMATS[bits]
-    value: float = struct.unpack(number, struct.pack(whole, raw))[0]
+    """Return the number that the bits represent."""
+    float_format, int_format = _FORMATS[bits]
+    value: float = struct.unpack(float_format, struct.pack(int_format, raw))[0]
     return value
 
 
 def nearest(value: Fraction, bits: int) -> int:
-    """Bits of the nearest float, ties to even, from the exact value: going through a double would round twice.
+    """Return the bits of the nearest float, ties to even. Raises `OverflowError`.
 
-    Raises `OverflowError`.
+    Computes them from the exact value, because a conversion by way of a double would round twice.
     """
     sign, value = value < 0, abs(value)
+    # Bits of the significand, and the exponents of its lowest bit in the smallest and in the largest float.
     precision, lowest, highest = (24, -149, 104) if bits == 32 else (53, -1074, 971)
     if not value:
         return 0
@@ -49,16 +50,23 @@ def nearest(value: Fraction, bits: int) -> int:
 
 
 def text_of(value: float, bits: int) -> str:
-    """The shortest decimal that is read back as the same float of that width."""
+    """Return the shortest decimal that converts back to the same float of this width."""
     if bits == 64 or not math.isfinite(value):
         return repr(value)
-    wanted = bits_of(value, 32)
-    return next(repr(float(text)) for d in range(1, 10) if _reads_as(text := f"{value:.{d}g}", wanted))
+    raw = bits_of(value, 32)
+    # Nine significant digits identify every 32-bit float.
+    for digits in range(1, 10):
+        text = f"{value:.{digits}g}"
+        if _reads_as(text, raw):
+            break
+    return repr(float(text))
 
 
-def _reads_as(text: str, wanted: int) -> bool:
+def _reads_as(text: str, raw: int) -> bool:
+    """Return whether the nearest 32-bit float of a decimal has these bits."""
     try:
-        found = nearest(Fraction(text), 32)
+        nearest_raw = nearest(Fraction(text), 32)
     except OverflowError:
         return False
-    return found | text.startswith("-") << 31 == wanted
+    # The Fraction of "-0" has no sign.
+    return nearest_raw | text.startswith("-") << 31 == raw

@@ -1,4 +1,4 @@
-"""Exact formulas: text -> rational coefficients; of a line, factor and offset. No float ever enters."""
+"""Exact formulas: convert text to rational coefficients, or to factor and offset if it is linear. Uses no floats."""
 
 from __future__ import annotations
 
@@ -27,26 +27,33 @@ class Scale(NamedTuple):
     offset: Fraction = Fraction(0)
 
     def __hash__(self) -> int:
-        return hash(self[0].as_integer_ratio())  # few differ by the offset alone; a fraction's own is a modular inverse
+        # Fraction.__hash__ computes a modular inverse, which is slow. Few scales differ in the offset alone.
+        return hash(self[0].as_integer_ratio())
 
     def physical(self, raw: int | Fraction) -> Fraction:
-        a, b = self.factor, self.offset  # put together in one step: it is done for each value of each vector
+        """Return the physical value of a raw value."""
+        # One division instead of a sum and a product of Fractions: this runs for each value of each vector.
+        a, b = self.factor, self.offset
         top = raw.numerator * a.numerator * b.denominator + b.numerator * a.denominator * raw.denominator
         return Fraction(top, raw.denominator * a.denominator * b.denominator)
 
     def raw(self, physical: Fraction) -> Fraction:
+        """Return the raw value of a physical value, without rounding."""
         return (physical - self.offset) / self.factor
 
 
-RAW = Scale(Fraction(1))  # the raw value is the physical one
+RAW = Scale(Fraction(1))  # the physical value is the raw value
 
 
 _Polynomial: TypeAlias = tuple[Fraction, ...]
-"""Coefficients, the constant first; the last one is not 0, except that of a constant."""
+"""Coefficients, the constant first. The last coefficient is not 0, except in a constant polynomial."""
 
 
 def parse(text: str) -> Scale:
-    """``raw*0.01``, ``raw*2^-19``, ``(raw - 32)*5/9`` or, solved for raw, ``raw = value*1000.0``. Raises `FormulaError`."""
+    """Return the scale of a linear formula. Raises `FormulaError`.
+
+    Examples: ``raw*0.01``, ``raw*2^-19``, ``(raw - 32)*5/9`` or, solved for raw, ``raw = value*1000.0``.
+    """
     polynomial = coefficients(text)
     if len(polynomial) > 2:
         raise FormulaError("it is not linear in `raw`")
@@ -54,7 +61,10 @@ def parse(text: str) -> Scale:
 
 
 def coefficients(text: str) -> tuple[Fraction, ...]:
-    """Return those of the physical value as a polynomial in ``raw``, the constant first; two or more. Raises `FormulaError`."""
+    """Return the coefficients of the physical value as a polynomial in ``raw``, the constant first.
+
+    There are two or more. Raises `FormulaError`.
+    """
     if len(text) > MAX_LENGTH:
         raise FormulaError(f"it is longer than {MAX_LENGTH} characters")
     if not text.strip():
@@ -73,7 +83,7 @@ def coefficients(text: str) -> tuple[Fraction, ...]:
 
 
 def is_inverse(text: str) -> bool:
-    """Return whether the formula gives the raw value from the physical one."""
+    """Return whether the formula computes the raw value from the physical value."""
     prefix = _SOLVED_FOR.match(text)
     return prefix is not None and prefix[1] == "raw"
 
@@ -85,12 +95,12 @@ class _Polynomials(Arithmetic[_Polynomial]):
         self.only_variable = variable
 
     def name_at(self, text: str, at: int) -> str:
-        """Return the letters that begin there, whether or not they are the variable."""
+        """Return the word at `at`; `variable` reports words other than the variable."""
         word = _WORD.match(text, at)
         return word.group() if word else ""
 
     def unreadable(self, text: str, at: int) -> FormulaError:
-        """Return the error for a character that no formula has."""
+        """Return the error for a character that is not part of a formula."""
         if text[at] == "=":
             return FormulaError("`=` may only follow a leading `raw` or `value`")
         return FormulaError(f"`{text[at]}` is not part of a formula")
@@ -130,7 +140,7 @@ class _Polynomials(Arithmetic[_Polynomial]):
         return _shortened(terms)
 
     def power(self, base: _Polynomial, exponent: Token, is_negative: bool) -> _Polynomial:
-        """Return a power with a whole exponent; a negative one only of a constant."""
+        """Return a power with an integer exponent; only a constant can have a negative exponent."""
         if not exponent.text.isdigit() or int(exponent.text) > MAX_EXPONENT:
             raise FormulaError(f"the exponent behind `^` is not a whole number up to {MAX_EXPONENT}")
         number = int(exponent.text)

@@ -1,4 +1,4 @@
-"""What the rules about names ask of a language: the names that it would declare for an ICD."""
+"""Names that the generated code of a language declares for an ICD, for the rules that compare them."""
 
 from __future__ import annotations
 
@@ -10,23 +10,22 @@ from icdgen.icd.located import Map
 from icdgen.icd.model import Icd
 
 
-@dataclass(
-    slots=True, eq=False, repr=False
-)  # frozen, or a tuple, it would take twice as long to make: there are very many
+# Not frozen: large ICDs have very many identifiers, and a frozen class or a tuple takes twice as long to construct.
+@dataclass(slots=True, eq=False, repr=False)
 class Identifier:
     """A name that generated code declares. Two equal names in one scope clash."""
 
     scope: str  # "members of struct demo_foo_t"
     text: str
-    owner: str  # what it was made from, in a user's words: "field `Foo` of `Bar`"
-    source: Map | None  # where that stands in the ICD
+    owner: str  # the line of the ICD in words: "field `Foo` of `Bar`"
+    source: Map | None  # the mapping of that line
 
 
 class Language(Protocol):
-    """A language that code is generated for."""
+    """A language of generated code."""
 
     name: str
-    reserved: frozenset[str]  # words that can't be identifiers
+    reserved: frozenset[str]  # words that cannot be identifiers
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
-        """Every name that the generated code declares."""
+        """Yield every name that the generated code declares."""

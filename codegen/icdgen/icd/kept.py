@@ -1,4 +1,4 @@
-"""Keeps what was found out about a node: recognizing frames and answering requests ask for it thousands of times."""
+"""Cache of facts about a node, for functions that run for each frame of a log or of the simulator."""
 
 from __future__ import annotations
 
@@ -8,21 +8,25 @@ from typing import TypeVar
 
 from icdgen.icd.model import Icd, Node
 
-Known = TypeVar("Known")
+Result = TypeVar("Result")
 
 
-def kept(find: Callable[[Icd, Node], Known]) -> Callable[[Icd, Node], Known]:
-    """``find``, which is called once for each node of the ICD that was asked about last. Objects count, not their values."""
+def kept(compute: Callable[[Icd, Node], Result]) -> Callable[[Icd, Node], Result]:
+    """Decorate a function of a node so that its results are cached for the nodes of the most recent ICD.
+
+    ICDs and nodes are compared by identity: comparing or hashing a whole model would take longer than the function.
+    """
     last: list[Icd] = []
-    known: dict[int, tuple[Node, Known]] = {}
+    # id() of a node -> the node and the result. The reference to the node prevents the reuse of its id().
+    results: dict[int, tuple[Node, Result]] = {}
 
-    @wraps(find)
-    def look_up(icd: Icd, node: Node) -> Known:
+    @wraps(compute)
+    def look_up(icd: Icd, node: Node) -> Result:
         if not last or last[0] is not icd:
             last[:] = [icd]
-            known.clear()
-        if id(node) not in known:
-            known[id(node)] = (node, find(icd, node))  # with the node: while it is kept, no other has its id
-        return known[id(node)][1]
+            results.clear()
+        if id(node) not in results:
+            results[id(node)] = (node, compute(icd, node))
+        return results[id(node)][1]
 
     return look_up

@@ -1,4 +1,4 @@
-"""Files -> checked model: reading, overlays, includes and rules in one call."""
+"""Load ICDs: read files with their includes and errata overlays, build the model, and check the rules."""
 
 from __future__ import annotations
 
@@ -25,9 +25,10 @@ INCLUDE = "ICD004"
 def load(
     paths: list[Path], check: bool = True, languages: Sequence[Language] = (), unsaved: Mapping[Path, bytes] | None = None
 ) -> Loaded:  # fmt: skip
-    """The ICDs of ``paths`` with all that they include; folders are searched with those below them. Never raises for bad input.
+    """Load the ICDs of ``paths`` and the files that they include. Folders are searched with their subfolders.
 
-    Names must do for the ``languages``. ``unsaved``: contents of files that are not written yet, or differ from what is.
+    Bad input gives findings, never an exception. The rules about names check the names of the ``languages``.
+    ``unsaved`` has the contents of files that are open in an editor and differ from the disk.
     """
     loader = _Loader({_resolved(path): data for path, data in (unsaved or {}).items()})
     for path in paths:
@@ -43,21 +44,29 @@ def load(
 
 
 def _with_sound_fixes(findings: list[Finding], texts: Mapping[str, str]) -> list[Finding]:
-    """The findings without corrections of values that span lines: the place of such a value is its first character."""
-    lines = {one.fix.place.file: Lines(texts[one.fix.place.file]) for one in findings if one.fix is not None}
-    return [
-        one if one.fix is None or _is_word(lines[one.fix.place.file], one.fix.place) else one._replace(fix=None)
-        for one in findings
-    ]
+    """Return the findings, without the fixes of values that span several lines.
+
+    The place of such a value is only its first character, so a fix would replace that and leave the other lines.
+    """
+    files = {finding.fix.place.file for finding in findings if finding.fix is not None}
+    lines = {file: Lines(texts[file]) for file in files}
+    sound: list[Finding] = []
+    for finding in findings:
+        if finding.fix is not None and not _is_word(lines[finding.fix.place.file], finding.fix.place):
+            finding = finding._replace(fix=None)
+        sound.append(finding)
+    return sound
 
 
 def _is_word(lines: Lines, place: Place) -> bool:
-    """Whether what stands at a place ends with it."""
-    behind = place._replace(column=place.column + place.length, length=1)
-    return place.length > 1 or lines.marked(behind) in ("", *" \t,:]}")
+    """Return whether a place covers a complete value of one line."""
+    after = place._replace(column=place.column + place.length, length=1)
+    return place.length > 1 or lines.marked(after) in ("", *" \t,:]}")
 
 
 class _Loader:
+    """Reads files and collects nodes, findings and fingerprints."""
+
     def __init__(self, unsaved: Mapping[Path, bytes]) -> None:
         self.unsaved = unsaved
         self.nodes: list[Node] = []
@@ -69,15 +78,16 @@ class _Loader:
         self.texts: dict[str, str] = {}
         self.applied: list[errata.Applied] = []
         self.broken: set[int] = set()
-        self.trees: list[Map] = []  # kept alive: ``broken`` and the overlays go by identity
+        # References to all trees, because ``broken`` and `Applied.of` have the id() of mappings, which could be reused.
+        self.trees: list[Map] = []
         self.unreadable = False
 
     def folder(self, path: Path) -> list[Path]:
-        """The ICDs of a folder and of those below it."""
+        """Return the ICDs of a folder and its subfolders."""
         result = folders.search(path)
-        others = [*result.overlays, *result.others]
-        for one in (*result.folders, *others):
-            self.inputs[one] = fingerprints.of_path(str(one))
+        other_files = [*result.overlays, *result.others]
+        for examined in (*result.folders, *other_files):
+            self.inputs[examined] = fingerprints.of_path(str(examined))
         if not result.is_complete:
             text = f"the folder has more than {folders.MOST_FOLDERS} folders below it"
             self.findings.append(Finding("ICD001", text, Place(str(path)), "name the folder of the ICDs"))
@@ -87,35 +97,42 @@ class _Loader:
                 "the folder has no ICD: no file *.yaml in it, or in a folder below",
                 "name another folder, or a file",
             )
-            if others:
-                text = f"the folder has no ICD: no file *.yaml has the key `icdgen`, `{others[0].name}` for instance"
+            if other_files:
+                name = other_files[0].name
+                text = f"the folder has no ICD: no file *.yaml has the key `icdgen`, `{name}` for instance"
                 help = "name another folder or the file of an ICD, which begins with `icdgen: 1`"
             self.findings.append(Finding("ICD001", text, Place(str(path)), help))
             self.unreadable = True
         return result.icds
 
     def node(self, path: Path, stack: tuple[Path, ...]) -> Node | None:
+        """Load a file and its includes; return its node, or None if it cannot be built.
+
+        ``stack`` has the files that include this one, the outermost first.
+        """
         key = _resolved(path)
         if key in self.by_path:
-            self.inputs[path] = self.inputs[self.first[key]]  # a link may lead elsewhere tomorrow
+            # Two paths can lead to one file. The cache checks both, because a link can change.
+            self.inputs[path] = self.inputs[self.first[key]]
             return self.by_path[key]
         self.by_path[key], self.first[key] = None, path
         tree = self.read(path, "icd")
         if tree is None:
             return None
         included = self.include(tree, path, (*stack, key))
-        beside = self.overlay_path(tree, path)
-        overlay = self.overlay(beside)
+        overlay_path = self.overlay_path(tree, path)
+        overlay = self.overlay(overlay_path)
         applied = errata.apply(tree, overlay, self.broken)
+        # Values of the overlay must conform to the schema, too.
         if any(entry.changes for entry in applied.entries):
-            self.check_structure(tree, "icd")  # what the overlay holds must fit the format too
+            self.check_structure(tree, "icd")
         self.findings += applied.findings
         self.applied.append(applied)
         digest = hashlib.sha256(self.contents[path])
-        digest.update(self.contents[beside] if beside is not None and overlay is not None else b"")
-        for one in included:
-            digest.update(one.digest.encode())
-        names = tuple(dict.fromkeys(n.name for n in included))
+        digest.update(self.contents[overlay_path] if overlay_path is not None and overlay is not None else b"")
+        for included_node in included:
+            digest.update(included_node.digest.encode())
+        names = tuple(dict.fromkeys(included_node.name for included_node in included))
         node = Builder(tree, applied, self.broken, Scope(closure(self.nodes, names))).node(names, digest.hexdigest())
         if node is not None:
             self.nodes.append(node)
@@ -123,7 +140,7 @@ class _Loader:
         return node
 
     def read(self, path: Path, document: str) -> Map | None:
-        """The tree of a file, its structure checked; None if it is not YAML at all."""
+        """Read a file and check its structure; return its tree, or None if it is not valid YAML."""
         name = str(path)
         self.inputs[path] = fingerprints.UNKNOWN
         try:
@@ -131,7 +148,7 @@ class _Loader:
             data = self.contents[path] = source.contents(path, name) if unsaved is None else unsaved
             self.inputs[path] = hashlib.sha256(data).hexdigest()
             self.texts[name] = data.decode("utf-8", "replace")
-            tree, treacherous = source.parse_on(data, name)
+            tree, ambiguous = source.parse_on(data, name)
         except Findings as error:
             self.findings += error.findings
             self.unreadable = True
@@ -142,36 +159,40 @@ class _Loader:
             self.findings.append(
                 Finding("ICD010", text, tree.place, "name the ICD; icdgen finds its errata file in the same folder")
             )
-            self.findings += treacherous
+            self.findings += ambiguous
             self.unreadable = True
             return None
-        self.check_structure(tree, document, treacherous)
+        self.check_structure(tree, document, ambiguous)
         return tree
 
     def check_structure(self, tree: Map, document: str, ambiguous: Sequence[Finding] = ()) -> None:
-        """Check the structure; the format decides whether an ``ambiguous`` word such as `yes` is a text or a truth value."""
+        """Check a tree against the schema.
+
+        The type that the schema requires decides the fix of an ``ambiguous`` scalar, such as `yes`: quotes, or `true`.
+        """
         from icdgen.icd import remedies, schema
 
         lines = Lines(self.texts.get(tree.place.file, ""))
         findings, broken = schema.check(tree, document, lines)
-        violations = {one.place: one for one in findings}
-        for one in ambiguous:
-            violation = violations.get(one.place)
-            text = remedies.of_type("string", lines.marked(one.place)) if violation is None else ""
-            fix = Fix(one.place, text) if text else violation.fix if violation else None
-            self.findings.append(one._replace(fix=fix))
-        places = {one.place for one in ambiguous}
-        self.findings += (one for one in findings if one.place not in places)
+        violations = {finding.place: finding for finding in findings}
+        for finding in ambiguous:
+            violation = violations.get(finding.place)
+            text = remedies.of_type("string", lines.marked(finding.place)) if violation is None else ""
+            fix = Fix(finding.place, text) if text else violation.fix if violation else None
+            self.findings.append(finding._replace(fix=fix))
+        places = {finding.place for finding in ambiguous}
+        self.findings += (finding for finding in findings if finding.place not in places)
         self.broken |= broken
 
     def overlay_path(self, tree: Map, path: Path) -> Path | None:
+        """Return the path of the errata overlay of a file, `errata/NODE.yaml`; None if the name of the node is invalid."""
         head = tree.get("node")
         if not isinstance(head, Map) or id(head) in self.broken:
             return None
         return path.parent / "errata" / f"{head['name']}.yaml"
 
     def overlay(self, overlay: Path | None) -> Map | None:
-        """The errata overlay at this place, if there is one."""
+        """Read an errata overlay; return None if there is no such file."""
         if overlay is None:
             return None
         if _is_absent(overlay):
@@ -180,6 +201,7 @@ class _Loader:
         return self.read(overlay, "errata")
 
     def include(self, tree: Map, path: Path, stack: tuple[Path, ...]) -> list[Node]:
+        """Load the files that a file includes; return their nodes."""
         nodes: list[Node] = []
         items = tree.get("include")
         for item, place in items.placed() if isinstance(items, Seq) else ():
@@ -196,12 +218,13 @@ class _Loader:
         return nodes
 
     def include_problem(self, item: str, path: Path, stack: tuple[Path, ...]) -> tuple[str, str] | None:
+        """Return message and help if an include is not possible, else None."""
         target = _resolved(path.parent / item)
         folder = _resolved(path.parent)
         if not target.is_relative_to(folder):
             return f"`{item}` is outside the folder of this file", "move it to the folder of this file or below"
         if target in stack:
-            names = " -> ".join(p.name for p in (*stack[stack.index(target) :], target))
+            names = " -> ".join(file.name for file in (*stack[stack.index(target) :], target))
             return f"files include each other in a circle: {names}", "remove one `include`"
         if target not in self.unsaved and not os.path.isfile(target):
             return f"there is no file `{item}` beside this one", "check the name"
@@ -209,12 +232,12 @@ class _Loader:
 
 
 def _resolved(path: Path) -> Path:
-    """Absolute and without links; unlike `Path.resolve` also for links that lead in a circle."""
+    """Return the absolute path without links. Unlike `Path.resolve`, it does not raise for a cycle of links."""
     return Path(os.path.realpath(path))
 
 
 def _is_absent(path: Path) -> bool:
-    """Whether there is surely nothing; what can't be looked at, or is a link to nothing, is not absent."""
+    """Return whether a path certainly does not exist. Broken links and unreadable folders count as existing."""
     try:
         os.lstat(path)
     except (FileNotFoundError, NotADirectoryError):

@@ -1,4 +1,4 @@
-"""The outcome of loading ICDs."""
+"""Result of loading ICDs."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ from icdgen.icd.model import Icd
 
 @dataclass(eq=False, repr=False)
 class Loaded:
-    """``icd`` holds what could be built; it is whole only if no finding is an error."""
+    """Result of loading ICDs. The model is complete only if no finding is an error."""
 
     icd: Icd
     findings: list[Finding]
-    inputs: dict[Path, str]  # each file and folder read, or looked for and absent -> its fingerprint when read
-    texts: dict[str, str] = field(default_factory=dict)  # file name as in findings -> its text, for excerpts
+    inputs: dict[Path, str]  # fingerprint of each file and folder that was read, or that was absent
+    texts: dict[str, str] = field(default_factory=dict)  # text of each file, by its name in findings, for excerpts
 
     @property
     def ok(self) -> bool:
+        """Whether no finding is an error."""
         return not any(f.severity == "error" for f in self.findings)

@@ -1,4 +1,4 @@
-"""What a YAML file is read into: plain values in mappings and sequences that remember where everything stood."""
+"""Mappings and sequences of a YAML file that store the places of their keys, values and items."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from icdgen.diagnostics import Place
 
 
 class Mark(Protocol):
-    """A point in the file ``name``, as the reader of YAML gives it; all count from 0."""
+    """Position in the file ``name``, from PyYAML; index, line and column count from 0."""
 
     name: str
     index: int
@@ -18,11 +18,11 @@ class Mark(Protocol):
 
 
 Spot = Place | tuple[Mark, Mark]
-"""Place of a node, or its begin and end marks, from which the place is computed on demand."""
+"""Place of a node, or its start and end marks. Converting marks to places only on demand makes loading faster."""
 
 
 def place_of(spot: Spot) -> Place:
-    """The place that a spot is."""
+    """Return the place of a spot."""
     if isinstance(spot, Place):
         return spot
     start, end = spot
@@ -31,7 +31,7 @@ def place_of(spot: Spot) -> Place:
 
 
 class Map(dict[str, Any]):
-    """A mapping; ``spots`` has where each key and its value stood, those that an erratum took away included."""
+    """A mapping. ``spots`` has the places of each key and its value, including keys that an erratum removed."""
 
     __slots__ = ("spot", "spots")
 
@@ -41,20 +41,20 @@ class Map(dict[str, Any]):
 
     @property
     def place(self) -> Place:
-        """Where the mapping starts."""
+        """Place of the start of the mapping."""
         return place_of(self.spot)
 
     def key_at(self, key: str) -> Place:
-        """Where ``key`` stands."""
+        """Return the place of a key. Raises `KeyError`."""
         return place_of(self.spots[key][0])
 
     def at(self, key: str) -> Place:
-        """Where the value of ``key`` stands; the mapping itself if it has no such key."""
+        """Return the place of the value of a key; the place of the mapping if it does not have the key."""
         return place_of(self.spots[key][1] if key in self.spots else self.spot)
 
 
 class Seq(list[Any]):
-    """A sequence; ``spots`` has where each item stood."""
+    """A sequence. ``spots`` has the place of each item."""
 
     __slots__ = ("spot", "spots")
 
@@ -64,15 +64,15 @@ class Seq(list[Any]):
 
     @property
     def place(self) -> Place:
-        """Where the sequence starts."""
+        """Place of the start of the sequence."""
         return place_of(self.spot)
 
     def item_at(self, index: int) -> Place:
-        """Where the item of this index stands."""
+        """Return the place of an item."""
         return place_of(self.spots[index])
 
     def placed(self) -> Iterator[tuple[Any, Place]]:
-        """Each item and where it stands."""
+        """Yield each item with its place."""
         return zip(self, map(place_of, self.spots), strict=True)
 
 
@@ -80,12 +80,12 @@ _UNREAD = Map(Place(""))
 
 
 def unread() -> Map:
-    """The source of what was not read from a file: an empty mapping that stands nowhere."""
+    """Return the source of objects that were not read from a file: a shared empty mapping without a place."""
     return _UNREAD
 
 
 def plain(value: Any) -> Any:
-    """A tree without positions, at any depth."""
+    """Return a copy of a tree as plain dicts and lists, without places."""
     if isinstance(value, dict):
         return {key: plain(item) for key, item in value.items()}
     return [plain(item) for item in value] if isinstance(value, list) else value

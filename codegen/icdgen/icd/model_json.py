@@ -1,7 +1,8 @@
-"""A model as JSON and back, for keeping: values, and objects of the model's own classes, nothing else.
+"""Conversion of a model to JSON and back, for the cache. Reading creates only objects of the classes of the model.
 
-An object is ``{"is": class, attribute: value ...}`` without what it has by default; one that was written before is
-``{"same": number}``. A sequence becomes a tuple, for the model has no lists outside of what stands as ``{"is": "raw", ...}``.
+An object is ``{"is": class, attribute: value ...}`` without attributes that have their default. An object that was written
+before is ``{"same": number}``. An array of JSON becomes a tuple, because the model has lists only in values that are written
+as ``{"is": "raw", ...}``.
 """
 
 from __future__ import annotations
@@ -29,26 +30,29 @@ _CLASSES: dict[str, type[Any]] = {
 
 
 def text(icd: model.Icd, inputs: dict[Path, str]) -> bytes:
-    """The model, and what it was read from with the fingerprint of each."""
-    tree = [_Writer().plain(icd), [[str(path), seen] for path, seen in inputs.items()]]
+    """Return the JSON of a model and of its input files with their fingerprints."""
+    tree = [_Writer().plain(icd), [[str(path), fingerprint] for path, fingerprint in inputs.items()]]
     return json.dumps(tree, separators=(",", ":"), check_circular=False).encode()
 
 
 def read(data: bytes) -> tuple[model.Icd, dict[Path, str]] | None:
-    """What `text` was given; None if this is not of its making."""
+    """Return the model and the fingerprints that `text` wrote; None if the data was not written by `text`."""
     try:
         icd, inputs = json.loads(data, object_hook=_Reader().object)
-        found = {Path(path): str(seen) for path, seen in inputs}
+        fingerprints = {Path(path): str(fingerprint) for path, fingerprint in inputs}
     except (ValueError, TypeError, LookupError, ArithmeticError, RecursionError):
         return None
-    return (icd, found) if isinstance(icd, model.Icd) else None
+    return (icd, fingerprints) if isinstance(icd, model.Icd) else None
 
 
 class _Writer:
+    """Converts objects of a model to values that `json` can write."""
+
     def __init__(self) -> None:
-        self.known: dict[int, int] = {}  # id of an object -> its number
+        self.numbers: dict[int, int] = {}  # id() of an object -> its number, in the order of writing
 
     def plain(self, value: Any) -> Any:
+        """Return a value of the model as a value for JSON."""
         kind: Any = type(value)
         if kind in _SCALARS:
             return value
@@ -58,53 +62,58 @@ class _Writer:
             return {"is": "/", "parts": [value.numerator, value.denominator]}
         if kind.__name__ not in _CLASSES:
             return {"is": "raw", "json": json.dumps(value)}
-        if id(value) in self.known:
-            return {"same": self.known[id(value)]}
-        made = {"is": kind.__name__}
-        for name, default in _defaults(kind):  # what is as it is by default is left out
+        if id(value) in self.numbers:
+            return {"same": self.numbers[id(value)]}
+        written = {"is": kind.__name__}
+        for name, default in _defaults(kind):
             item = getattr(value, name)
+            # Compare types too: True == 1, but they differ in JSON.
             if item is not default and (item != default or type(item) is not type(default)):
-                made[name] = item if type(item) in _SCALARS else self.plain(item)
-        self.known[id(value)] = len(self.known)
-        return made
+                written[name] = item if type(item) in _SCALARS else self.plain(item)
+        self.numbers[id(value)] = len(self.numbers)
+        return written
 
 
 @cache
 def _defaults(kind: Any) -> list[tuple[str, Any]]:
-    """The names of a class's attributes, but for positions, and what each is by default."""
+    """Return the attributes of a class with their defaults, without `source`, which does not take part in comparisons."""
     if issubclass(kind, tuple):
         return [(name, kind._field_defaults.get(name, MISSING)) for name in kind._fields]
     return [
-        (one.name, one.default if one.default_factory is MISSING else one.default_factory())
-        for one in fields(kind)
-        if one.compare
+        (field.name, field.default if field.default_factory is MISSING else field.default_factory())
+        for field in fields(kind)
+        if field.compare
     ]
 
 
 class _Reader:
-    def __init__(self) -> None:
-        self.known: list[Any] = []
+    """Converts JSON objects to objects of the model, as a hook of `json.loads`."""
 
-    def object(self, made: dict[str, Any]) -> Any:
-        if "same" in made:
-            return self.known[made["same"]]
-        name = made.pop("is")
+    def __init__(self) -> None:
+        self.objects: list[Any] = []  # by number, in the order of writing
+
+    def object(self, attributes: dict[str, Any]) -> Any:
+        """Return the object of the model that a JSON object stands for."""
+        if "same" in attributes:
+            return self.objects[attributes["same"]]
+        name = attributes.pop("is")
         if name == "/":
-            return Fraction(*made["parts"])
+            return Fraction(*attributes["parts"])
         if name == "raw":
-            value = json.loads(made["json"])
+            value = json.loads(attributes["json"])
             return _List(value) if type(value) is list else value
-        for key, value in made.items():
+        for key, value in attributes.items():
             if type(value) is list:
-                made[key] = _tuples(value)
+                attributes[key] = _tuples(value)
         kind = _CLASSES[name]
-        self.known.append(kind(**made))
-        return self.known[-1]
+        self.objects.append(kind(**attributes))
+        return self.objects[-1]
 
 
 class _List(list[Any]):
-    """A list that stays one."""
+    """List of a raw value, which `_tuples` does not convert."""
 
 
 def _tuples(value: list[Any]) -> tuple[Any, ...]:
+    """Return nested lists as nested tuples."""
     return tuple([_tuples(item) if type(item) is list else item for item in value])

@@ -1,4 +1,4 @@
-"""The ICDs with a prefix before the names of their nodes, for a language that has no packages."""
+"""Copy of ICDs with a prefix before the names of nodes, for languages without packages."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from icdgen.icd.enumeration import Enum
 from icdgen.icd.layout import Array, Layout, Overlay, Scalar, StructRef
 from icdgen.icd.model import Icd, Message, Node, Struct
 
-# Where the parts of the model that name a node, or lead to such parts, stand.
+# Attributes of each class of the model that contain objects with the name of a node.
 _PARTS: dict[type, tuple[str, ...]] = {
     Node: ("enums", "structs", "messages"),
     Message: ("layout",),
@@ -24,25 +24,26 @@ _PARTS: dict[type, tuple[str, ...]] = {
 
 
 def with_prefix(icd: Icd, prefix: str) -> Icd:
-    """Return the ICDs with ``prefix`` before the name of each node; the same object if it is empty."""
+    """Return ICDs with ``prefix`` before the name of each node; the same object if the prefix is empty."""
     if not prefix:
         return icd
-    known: dict[int, tuple[Any, Any]] = {}  # the original is kept, so that its id stays its own
+    # id() of an object -> the object and its copy. The reference to the object prevents the reuse of its id().
+    copies: dict[int, tuple[Any, Any]] = {}
 
     def renamed(part: Any) -> Any:
         if isinstance(part, tuple):
             return tuple(map(renamed, part))
         if type(part) not in _PARTS:
             return part
-        if id(part) not in known:
+        if id(part) not in copies:
             changes = {key: renamed(getattr(part, key)) for key in _PARTS[type(part)]}
             if isinstance(part, Node):
-                changes |= {"name": prefix + part.name, "includes": tuple(prefix + one for one in part.includes)}
+                changes |= {"name": prefix + part.name, "includes": tuple(prefix + name for name in part.includes)}
             elif isinstance(part, Message | Struct | Enum):
                 changes["node"] = prefix + part.node
             elif isinstance(part, Layout):
                 changes["owner"] = prefix + part.owner
-            known[id(part)] = part, replace(part, **changes)
-        return known[id(part)][1]
+            copies[id(part)] = part, replace(part, **changes)
+        return copies[id(part)][1]
 
     return Icd(renamed(icd.nodes))

@@ -1,6 +1,6 @@
-"""Roles that a field has for others: it counts elements, decides whether a field is present, enters a derived value ...
+"""Roles that a field has for other fields: counter of elements, condition, operand of a derived value, and others.
 
-The table says what a field must be for each role. `reasons_against` says why a field cannot have one.
+A `Role` has the requirements on a field. `reasons_against` returns the requirements that a field does not meet.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from icdgen.icd.layout import Array, LayoutNode, Overlay, scalar_of
 
+# Features of a field that a role can exclude, with the end of a sentence for messages.
 FEATURES = {
     "optional": "is optional",
     "struct": "is a struct",
@@ -20,8 +21,8 @@ FEATURES = {
     "constant": "is constant",
     "overlay": "is an overlay field",
 }
-"""What a field can be beside its type and width; each as the end of a sentence."""
 
+# Keys of a line in a file that give the field a feature.
 _KEYS = {
     "when": "optional",
     "struct": "struct",
@@ -32,36 +33,36 @@ _KEYS = {
     "points": "scaled",
     "const": "constant",
 }
-"""Keys of a field in a file that give it a feature."""
 
 
 class Role(NamedTuple):
-    """What a field must be to have a role."""
+    """Requirements on a field for a role."""
 
     types: tuple[str, ...]
     excluded: tuple[str, ...] = ()  # features
     least_bits: int = 1
-    most_bits: int = 0  # 0: any number
+    most_bits: int = 0  # 0: no limit
 
 
+# Types whose raw value is an integer.
 INTEGERS = ("uint", "int", "enum", "bool")
-"""Types whose raw value is a whole number."""
 
+# Counts the elements or bytes of a variable-length field.
 COUNTER = Role(("uint",), ("optional", "struct", "array", "variable", "split", "scaled", "constant", "overlay"))
-"""Counts the elements or bytes of a variable-length field."""
 
+# Decides whether an optional field is present.
 CONDITION = Role(INTEGERS, ("optional", "struct", "array", "variable", "split", "scaled", "overlay"))
-"""Decides whether an optional field is present."""
 
+# Operand of a derived value.
 OPERAND = Role(("uint", "int", "float"), ("optional", "struct", "array"))
-"""Enters a derived value."""
 
+# Exponent after `^` in the formula of a derived value.
 EXPONENT = Role(("uint", "int"), ("scaled",), most_bits=16)
-"""Stands behind `^` in the formula of a derived value."""
 
+# Field with `bitfields`.
 SPLIT = Role(("uint",), ("array",), most_bits=64)
-"""Has `bitfields`."""
 
+# Roles in procedures of the protocol section, by the key that names the field. Other keys allow any integer.
 _BYTES = Role(("bytes", "text"))
 PROTOCOL: dict[str, Role] = {
     "bytes": _BYTES,
@@ -78,7 +79,6 @@ PROTOCOL: dict[str, Role] = {
     "time": Role(INTEGERS, least_bits=32),
     "period": Role(INTEGERS, least_bits=8),
 }
-"""Roles in procedures of the protocol section, by the key that names the field. A field of another key is any integer."""
 
 
 class _Traits(NamedTuple):
@@ -92,7 +92,7 @@ class _Traits(NamedTuple):
 def reasons_against(field: LayoutNode | Mapping[str, Any], role: Role) -> list[str]:
     """Return why a field cannot have a role, each reason as the end of a sentence such as `is an array`.
 
-    The field is a node of a layout, or a line of a file, whose `type` and `bits` may be wrong.
+    The field is a node of a layout, or a line of a file, in which `type` and `bits` can be invalid.
     """
     traits = _traits_of_node(field) if isinstance(field, LayoutNode) else _traits_of_line(field)
     reasons = [FEATURES[feature] for feature in role.excluded if feature in traits.features]
@@ -115,7 +115,7 @@ def _traits_of_line(line: Mapping[str, Any]) -> _Traits:
 
 
 def _traits_of_node(node: LayoutNode) -> _Traits:
-    """Return the traits of a node; of an array, type and width are those of an element."""
+    """Return the traits of a node; for an array, the type and width of its elements."""
     scalar = scalar_of(node)
     has_feature = {
         "optional": bool(node.present_if),

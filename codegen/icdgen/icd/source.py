@@ -1,7 +1,7 @@
-"""YAML text -> tree of plain values that remembers where each one stood.
+"""Reader of YAML files that records the place of every value.
 
-Mappings become `Map` (a dict), sequences `Seq` (a list); both keep the place of every key and value. Scalars are str,
-int, bool, float or None. Only spellings that every YAML reader takes alike are accepted; the rest is a finding (ICD003).
+Mappings become `Map` (a dict), sequences `Seq` (a list); both store the place of each key and value. Scalars are str,
+int, bool, float or None. Spellings that YAML 1.1 and 1.2 readers interpret differently are findings (ICD003).
 """
 
 from __future__ import annotations
@@ -14,7 +14,9 @@ from typing import Any, Protocol, cast
 from icdgen.diagnostics import Finding, Findings, Fix, Lines, Place
 from icdgen.icd.located import Map, Mark, Seq, Spot, place_of
 
-TREACHEROUS = "ICD003"
+AMBIGUOUS = "ICD003"
+
+# Limits far above any ICD, so that a hostile file cannot exhaust the memory or the stack.
 MAX_BYTES = 4_000_000
 MAX_DEPTH = 40
 MAX_SCALAR = 20_000
@@ -22,14 +24,17 @@ MAX_SCALAR = 20_000
 _NUMBER = re.compile(
     r"(?:(?P<whole>-?(?:0|[1-9][0-9]*))|(?P<hex>0x[0-9A-Fa-f]+)|(?P<decimal>-?(?:0|[1-9][0-9]*)\.[0-9]+(?:[eE][-+][0-9]{1,2})?))\Z"
 )
-_DEEPER_THAN_LIBYAML = "exceeded maximum nesting depth"  # which looks ahead, and so finds it first on a line
-_LONGEST_WORD = len("false")  # of those that mean something else to some reader of YAML
+# Error of libyaml, which has its own limit and looks ahead, so it can report the depth before `Builder` does.
+_DEEPER_THAN_LIBYAML = "exceeded maximum nesting depth"
+
+# Length of the longest word that a reader of YAML can interpret as something other than text.
+_LONGEST_WORD = len("false")
 _WORDS = {"true": True, "false": False, "null": None, "~": None, "": None}
-_UNPRINTABLE = (
-    "[^\t\n\r -~\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"  # takes long to compile, and is seldom needed
-)
-# What YAML 1.1 or 1.2 reads as something other than the text it looks like.
-_TREACHEROUS = re.compile(
+# Characters that YAML 1.2, section 5.1, does not allow. Not compiled here: that is slow, and it is seldom needed.
+_UNPRINTABLE = "[^\t\n\r -~\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"
+
+# Unquoted scalars that some readers of YAML 1.1 or 1.2 interpret as a number, a truth value, null or a date.
+_AMBIGUOUS = re.compile(
     r"""(?: [-+.][-+0-9_.:eExXobA-Fa-f]*
           | 0[bBoOxX][0-9A-Fa-f_]+
           | [0-9][0-9_]* (?: : [0-9_]+ )* (?: \. [0-9_.]* )? (?: e [-+]? [0-9]+ )?
@@ -42,13 +47,14 @@ _TREACHEROUS = re.compile(
 
 
 def read(path: Path, name: str | None = None) -> Map:
-    """The file's tree. ``name`` is how findings call the file. Raises `Findings`."""
+    """Return the tree of a file. ``name`` is the file name in findings. Raises `Findings`."""
     name = name or str(path)
     return parse(contents(path, name), name)
 
 
 def contents(path: Path, name: str) -> bytes:
-    """The file's bytes, at most `MAX_BYTES`, whatever kind of file it is. Raises `Findings`."""
+    """Return the bytes of a file. Raises `Findings` if it cannot be read or has more than `MAX_BYTES`."""
+    # Read with a limit instead of checking the size first: the path can be a pipe or a device.
     try:
         with open(path, "rb") as file:
             data = file.read(MAX_BYTES + 1)
@@ -65,7 +71,7 @@ def contents(path: Path, name: str) -> bytes:
 
 
 def parse(data: bytes, name: str) -> Map:
-    """The tree of ``data``. Raises `Findings` with everything wrong at the level of YAML."""
+    """Return the tree of ``data``. Raises `Findings` with all errors of the YAML text."""
     tree, findings = parse_on(data, name)
     if findings:
         raise Findings(findings)
@@ -73,9 +79,9 @@ def parse(data: bytes, name: str) -> Map:
 
 
 def parse_on(data: bytes, name: str) -> tuple[Map, list[Finding]]:
-    """The tree of ``data``, and the values in it that YAML readers read differently, each held as the text that it is.
+    """Return the tree of ``data`` and the findings of ambiguous scalars (ICD003), which are text in the tree.
 
-    Raises `Findings` where anything else is wrong at the level of YAML.
+    Raises `Findings` if the YAML text has any other error.
     """
     try:
         text = data.decode("utf-8-sig")
@@ -89,13 +95,13 @@ def parse_on(data: bytes, name: str) -> tuple[Map, list[Finding]]:
     elif not findings and not isinstance(tree, Map):
         findings = [Finding("ICD001", "the file is not a mapping of keys to values", Place(name),
                             "an ICD begins with `icdgen: 1`, an overlay with `errata: 1`")]  # fmt: skip
-    if not isinstance(tree, Map) or any(one.code != TREACHEROUS for one in findings):
+    if not isinstance(tree, Map) or any(finding.code != AMBIGUOUS for finding in findings):
         raise Findings(findings)
     return tree, findings
 
 
 class Event(Protocol):
-    """A YAML event: where it stands, and what scalars and openings of containers have beside it."""
+    """Attributes of the events of PyYAML; each kind of event has some of them."""
 
     start_mark: Mark
     end_mark: Mark
@@ -107,20 +113,21 @@ class Event(Protocol):
 
 
 class EventParser(Protocol):
-    """What gives the events of a text one by one."""
+    """Parser of PyYAML, in Python or in C."""
 
-    def get_event(self) -> Any: ...  # an `Event`; of which class tells what it is
+    def get_event(self) -> Any: ...  # an object of a class in `yaml.events`, with the attributes of `Event`
 
 
 class Builder:
-    """Builds the tree from parser events with a stack of its own, so that depth is ours to limit."""
+    """Builds the tree from parser events. It has its own stack instead of recursion, to limit the depth."""
 
     def __init__(self, text: str, name: str) -> None:
         self.text, self.name = text, name
         self.findings: list[Finding] = []
-        self.scalars: dict[str, object] = {}
+        self.scalars: dict[str, object] = {}  # values of unquoted scalars, by their text
 
     def build(self) -> tuple[object, list[Finding]]:
+        """Return the root of the tree and the findings. After a syntax error, the root is None."""
         import yaml
         from yaml import events
 
@@ -128,23 +135,24 @@ class Builder:
             place = _after(self.name, self.text[: self.text.index("\0")])
             return None, [Finding("ICD001", "the file contains a NUL character", place, "remove it")]
         roots = Seq(Place(self.name))
-        container: Any = roots  # what is being filled
-        key: str | None = None  # of a mapping, whose value comes next
+        container: Any = roots  # the innermost open mapping or sequence
+        key: str | None = None  # of a mapping, if its value comes next
         key_spot: Spot = roots.spot
-        stack: list[tuple[Any, str | None, Spot]] = []  # those around it
-        known = self.scalars  # stands for 'not seen yet', too
+        stack: list[tuple[Any, str | None, Spot]] = []  # the containers around it
+        cache = self.scalars  # also the marker for 'not in the cache'
         next_event = event_parser(self.text, self.name).get_event
         scalar, mapping, sequence = events.ScalarEvent, events.MappingStartEvent, events.SequenceStartEvent
         try:
-            while True:  # once an event, by the ten thousand: nothing is called that can be said here
+            # This loop runs once per event, tens of thousands of times. Inline code is faster than calls here.
+            while True:
                 event = next_event()
                 kind = type(event)
                 spot = event.start_mark, event.end_mark
                 value: Any
                 if kind is scalar:
                     plain = not event.style and event.anchor is None and event.tag is None
-                    value = known.get(event.value, known) if plain else known
-                    if value is known:
+                    value = cache.get(event.value, cache) if plain else cache
+                    if value is cache:
                         value = self.scalar(event)
                 elif kind is events.MappingEndEvent or kind is events.SequenceEndEvent:
                     container, key, key_spot = stack.pop()
@@ -171,7 +179,7 @@ class Builder:
                     key, key_spot = value if type(value) is str else self.key(value, event), spot
                 else:
                     if key in container:
-                        self.refuse_twin(key, place_of(key_spot), container.key_at(key))
+                        self.add_duplicate_key(key, place_of(key_spot), container.key_at(key))
                     container[key] = value
                     container.spots[key] = key_spot, spot
                     key = None
@@ -201,9 +209,9 @@ class Builder:
         return (roots[0] if roots else None), self.findings
 
     def with_quotes(self, place: Place, line: str, offset: int) -> Fix | None:
-        """Put the value around a place in quotes; None if the file can still not be read up to the next line.
+        """Return a fix that puts the value at a place in quotes; None if the line would still have a syntax error.
 
-        The line begins at the ``offset`` in the text.
+        ``offset`` is the index of the line in the text.
         """
         import yaml
 
@@ -222,16 +230,18 @@ class Builder:
         return Fix(Place(self.name, place.line, start + 1, end - start), quoted)
 
     def key(self, value: object, event: Event) -> str:
-        """A key that is not written as a word."""
+        """Return a key that is not a string as text; adds a finding if it is a mapping or a list."""
         if isinstance(value, (Map, Seq)):
             self.add("ICD001", "a key must be a word, not a mapping or a list", event, "give the key a name")
         return str(value)
 
-    def refuse_twin(self, key: str, place: Place, first: Place) -> None:
+    def add_duplicate_key(self, key: str, place: Place, first: Place) -> None:
+        """Add the finding for a key that occurs twice in a mapping."""
         message = f"the key `{key}` is twice in this mapping, first in line {first.line}"
         self.findings.append(Finding("ICD002", message, place, "remove one of them"))
 
     def scalar(self, event: Event) -> object:
+        """Return the value of a scalar, and add findings for unsupported syntax."""
         text = event.value
         if event.anchor is not None:
             self.refuse_alias(event)
@@ -246,7 +256,7 @@ class Builder:
         return text
 
     def plain(self, text: str, event: Event) -> object:
-        """The value of an unquoted scalar; the text itself, with a finding, if YAML readers disagree about it."""
+        """Return the value of an unquoted scalar. If it is ambiguous, adds a finding and returns the text."""
         if len(text) > _LONGEST_WORD and text[0].isalpha():
             value: object = text
         elif text in _WORDS:
@@ -258,10 +268,10 @@ class Builder:
                 if len(text) >= 40
                 else int(text, 16) if kind == "hex" else int(text) if kind == "whole" else _number(text)
             )
-        elif _TREACHEROUS.match(text) and text not in (".", "-"):
+        elif _AMBIGUOUS.match(text) and text not in (".", "-"):
             from icdgen.icd import remedies
 
-            self.add(TREACHEROUS, f"YAML readers disagree about what `{text}` is", event, remedies.of_ambiguous(text))
+            self.add(AMBIGUOUS, f"YAML readers disagree about what `{text}` is", event, remedies.of_ambiguous(text))
             return text
         else:
             value = text
@@ -269,18 +279,21 @@ class Builder:
         return value
 
     def check_tag(self, event: Event) -> None:
+        """Add a finding if an event has a tag; the tag `!` only forces text."""
         if event.tag is not None and event.tag != "!":
-            self.add(TREACHEROUS, f"the tag `{event.tag}` is not part of the format", event, "remove the tag")
+            self.add(AMBIGUOUS, f"the tag `{event.tag}` is not part of the format", event, "remove the tag")
 
     def refuse_alias(self, event: Event) -> None:
+        """Add the finding for an anchor or an alias: nested aliases can expand to any amount of data."""
         self.add("ICD001", "anchors and aliases are not part of the format", event, "write the value out")
 
     def unprintable(self) -> Place:
-        """Where the first character stands that YAML does not allow; the beginning if there is none."""
-        found = re.search(_UNPRINTABLE, self.text)
-        return _after(self.name, self.text[: found.start()]) if found else Place(self.name)
+        """Return the place of the first character that YAML does not allow, by default the start of the file."""
+        match = re.search(_UNPRINTABLE, self.text)
+        return _after(self.name, self.text[: match.start()]) if match else Place(self.name)
 
     def add(self, code: str, message: str, event: Event, help: str) -> None:
+        """Add a finding at the place of an event."""
         self.findings.append(Finding(code, message, place_of((event.start_mark, event.end_mark)), help))
 
 
@@ -289,18 +302,21 @@ def _too_deep(place: Place) -> Finding:
 
 
 def _number(text: str) -> int | float:
-    """A decimal; ``4.0`` is 4, as it is a whole number by JSON Schema, too."""
-    whole, _, rest = text.partition(".")
-    return float(text) if rest.strip("0") else int(whole)
+    """Return a decimal number; ``4.0`` is the integer 4, as in JSON Schema."""
+    integer, _, fraction = text.partition(".")
+    return float(text) if fraction.strip("0") else int(integer)
 
 
 def _after(name: str, before: str) -> Place:
-    """The place that follows the text ``before``."""
+    """Return the place directly after the text ``before``."""
     return Place(name, before.count("\n") + 1, len(before) - before.rfind("\n"))
 
 
 def event_parser(text: str, name: str) -> EventParser:
-    """libyaml's event parser (ten times faster) where PyYAML was built with it; marks tell the ``name`` of the file."""
+    """Return a parser of the events of a text. ``name`` is the file name in its marks.
+
+    Uses libyaml if PyYAML was built with it, which is ten times as fast as PyYAML's own parser.
+    """
     file = StringIO(text)
     file.name = name
     try:
@@ -310,6 +326,7 @@ def event_parser(text: str, name: str) -> EventParser:
         from yaml.reader import Reader
         from yaml.scanner import Scanner
 
+        # `yaml.Loader` without its composer, constructor and resolver, which this module replaces.
         class PythonParser(Reader, Scanner, Parser):
             def __init__(self, stream: StringIO) -> None:
                 Reader.__init__(self, stream)

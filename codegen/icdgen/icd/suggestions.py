@@ -1,4 +1,4 @@
-"""Similar names: what a misspelt name probably means, and how it is written in YAML."""
+"""Suggestions of similar names for misspelt names."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from icdgen.icd.remedies import Remedy
 from icdgen.suggest import close_to
 
 
-def suggestion(name: str, known: Iterable[str], otherwise: str) -> Remedy:
-    """Ask whether a similar known name is meant; return the help ``otherwise`` if none is similar."""
-    close = close_to(name, known)
+def suggestion(name: str, names: Iterable[str], otherwise: str) -> Remedy:
+    """Return the help "did you mean ...?" with a similar name as fix, or the help ``otherwise`` if no name is similar."""
+    close = close_to(name, names)
     return Remedy(f"did you mean `{close}`?", yaml_text(close)) if close else Remedy(otherwise)
 
 
 def yaml_text(text: str) -> str:
-    """Write a text in YAML, in quotes if it needs them between braces."""
+    """Return a text as YAML, in quotes if it needs them in flow style (between braces)."""
     return quoted_if_needed(text, True)

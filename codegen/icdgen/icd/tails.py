@@ -1,6 +1,6 @@
-"""Variable-length parts of a message, behind all other fields: a field counts the elements of each in a frame.
+"""Variable-length fields of a message as a file declares them, and their faults.
 
-In the model they have all their elements; `Message.tail` and `Message.inner` say how many of them a frame may leave out.
+They follow the fixed part, one directly after another. Another field, or the end of the frame, gives the number of elements.
 """
 
 from __future__ import annotations
@@ -23,38 +23,38 @@ Lengths = Mapping[str, int]  # bytes of the structs that a message may name
 
 
 class Counting(NamedTuple):
-    """How the elements of a part are counted: the name of a field, or `REST`, and what is added to the field's value."""
+    """Source of the number of elements of a variable-length field."""
 
-    name: str
-    plus: int = 0
+    name: str  # of the counter, or REST if the end of the frame gives the number
+    plus: int = 0  # number of elements minus value of the counter
 
 
 def is_open(item: Map) -> bool:
-    """Whether a field has a variable length: up to the end of the frame, or counted by another field."""
-    said = item.get(key_of(item))
-    if isinstance(said, dict):
-        return isinstance(said.get("field"), str) and type(said.get("plus")) is int
-    return isinstance(said, str)
+    """Return whether a field has a variable length: up to the end of the frame, or counted by another field."""
+    count = item.get(key_of(item))
+    if isinstance(count, dict):
+        return isinstance(count.get("field"), str) and type(count.get("plus")) is int
+    return isinstance(count, str)
 
 
 def key_of(item: Map) -> str:
-    """The key that says how many elements there are."""
+    """Return the key for the number of elements: `size` for bytes and text, else `count`."""
     return "size" if "size" in item else "count"
 
 
 def counting(item: Map) -> Counting:
-    """How the elements of a variable-length part are counted."""
-    said = item[key_of(item)]
-    return Counting(said["field"], said["plus"]) if isinstance(said, dict) else Counting(said)
+    """Return the source of the number of elements of a variable-length field."""
+    count = item[key_of(item)]
+    return Counting(count["field"], count["plus"]) if isinstance(count, dict) else Counting(count)
 
 
 def open_parts(message: Map) -> list[Map]:
-    """The variable-length fields of a message, in the order of the file."""
+    """Return the variable-length fields of a message, in the order of the file."""
     return [item for item in _fields(message, is_open) if type(item.get("up_to", 0)) is int]
 
 
 def fixed_behind(message: Map) -> list[Map]:
-    """The fields of fixed size that are placed behind the beginning of the first variable-length field."""
+    """Return the fields of fixed size that are placed at or after the start of the first variable-length field."""
     first = next(iter(open_parts(message)), None)
     if first is None or _is_unknown(message, first):
         return []
@@ -63,7 +63,7 @@ def fixed_behind(message: Map) -> list[Map]:
 
 
 def unit(item: Map, structs: Lengths) -> int:
-    """Bits of an element of a variable-length part: 8 for bytes and text, 0 for an unknown struct."""
+    """Return the bits of an element of a variable-length field: 8 for bytes and text, 0 for an unknown struct."""
     if "struct" in item:
         return 8 * structs.get(item["struct"], 0)
     bits: int = 8 if "size" in item else item["bits"]
@@ -71,14 +71,16 @@ def unit(item: Map, structs: Lengths) -> int:
 
 
 def counter_of(message: Map, item: Map) -> Map | None:
-    """The field that says how many elements there are; None where the end of the frame does, or there is none."""
+    """Return the field that counts the elements; None if it is unknown, or if the end of the frame gives their number."""
     name = counting(item).name
-    found = None if name == REST else next((one for one in _fields(message) if one.get("name") == name), None)
-    return None if found is None or "struct" in found else found
+    if name == REST:
+        return None
+    counter = next((field for field in _fields(message) if field.get("name") == name), None)
+    return None if counter is None or "struct" in counter else counter
 
 
 def _fields(message: Map, wanted: Callable[[Map], bool] | None = None) -> list[Map]:
-    """Those, or the wanted ones, whose place can be read: what is wrong with the others is the schema's business."""
+    """Return the fields of a message with a valid position and width. The schema check reports the other fields."""
     return [
         item
         for item in filter(wanted, mappings(message.get("fields")))
@@ -89,19 +91,19 @@ def _fields(message: Map, wanted: Callable[[Map], bool] | None = None) -> list[M
 
 
 def _is_sized(item: Map) -> bool:
-    """Whether something else than `bits` says how many there are."""
+    """Return whether `size` or a struct gives the width, so that the field has no `bits`."""
     return "size" in item or isinstance(item.get("struct"), str)
 
 
 def faults_of_count(message: Map, item: Map) -> Iterator[Fault]:
-    """What is wrong with how many elements there are said to be."""
+    """Yield the faults of the number of elements of a variable-length field: its counter, `plus` and `up_to`."""
     name = f"`{item['name']}`"
-    key, (said, plus) = key_of(item), counting(item)
+    key, (counter_name, plus) = key_of(item), counting(item)
     if _is_unknown(message, item):
-        text = f"`{message['name']}` has no field `{said}` that could count {name}"
+        text = f"`{message['name']}` has no field `{counter_name}` that could count {name}"
         numbers = "a number, " if key == "count" else ""
-        counters = [*(one["name"] for one in _fields(message) if _can_count(one, message)), REST]
-        help, fix = suggestion(said, counters, f"`{key}` is {numbers}the name of an earlier field, or `{REST}`")
+        counters = [*(field["name"] for field in _fields(message) if _can_count(field, message)), REST]
+        help, fix = suggestion(counter_name, counters, f"`{key}` is {numbers}the name of an earlier field, or `{REST}`")
         yield Fault.at(item, key, text, help, "" if isinstance(item[key], dict) else fix)
         return
     if "up_to" not in item and key == "count":
@@ -112,14 +114,14 @@ def faults_of_count(message: Map, item: Map) -> Iterator[Fault]:
     if item["up_to"] > MOST_ELEMENTS and key == "count":
         text = f"{name} has up to {item['up_to']:,} elements: an array has at most {MOST_ELEMENTS:,}"
         yield Fault.at(item, "up_to", text, "use `type: bytes` with `size: rest` for longer data")
-    if said == REST:
+    if counter_name == REST:
         return
     counter = counter_of(message, item)
     assert counter is not None
-    others = takewhile(lambda one: one is not item, open_parts(message))
-    same = next((one for one in others if counting(one).name == said), None)
-    if same is not None:
-        text = f"`{said}` counts both `{same['name']}` and {name}"
+    earlier_parts = takewhile(lambda part: part is not item, open_parts(message))
+    earlier = next((part for part in earlier_parts if counting(part).name == counter_name), None)
+    if earlier is not None:
+        text = f"`{counter_name}` counts both `{earlier['name']}` and {name}"
         yield Fault.at(item, key, text, "name another counter: each variable-length field needs its own")
     reason = _reason_against(counter, message)
     if reason:
@@ -142,7 +144,7 @@ def faults_of_count(message: Map, item: Map) -> Iterator[Fault]:
 
 
 def _is_unknown(message: Map, item: Map) -> bool:
-    """Whether the counter of a part is not a field of the message."""
+    """Return whether the message does not have the field that counts a variable-length field."""
     return counting(item).name != REST and counter_of(message, item) is None
 
 
@@ -161,14 +163,15 @@ def _reason_against(counter: Map, message: Map) -> str:
 
 
 def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Fault]:
-    """Faults of the place and the type of a variable-length part."""
+    """Yield the faults of the position and the type of a variable-length field."""
     name, fixed = f"`{item['name']}`", 8 * message["length"]
+    # `faults_of_count` reports an unknown counter. The field may be meant as a fixed array, so its position is not checked.
     if _is_unknown(message, item):
-        return  # perhaps it is not meant to be open
+        return
     parts = open_parts(message)
-    before = next((one for one, other in pairwise(parts) if other is item), None)
-    written = [one["name"] for one in parts]
-    if item.get("after") in written[written.index(item["name"]) + 1 :]:
+    before = next((part for part, following in pairwise(parts) if following is item), None)
+    names = [part["name"] for part in parts]
+    if item.get("after") in names[names.index(item["name"]) + 1 :]:
         text = f"{name} follows `{item['after']}`, which is listed later in the file"
         help = "list variable-length fields in the order of the frame; `after` names the one directly in front"
         yield Fault.at(item, "after", text, help)
@@ -215,7 +218,7 @@ def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Fault
         if item.get(key):
             text = f"{name} has a variable length, so it cannot have `{key}`"
             yield Fault.at(item, key, text, f"remove `{key}`")
-    longest = message["length"] + sum(one.get("up_to", 0) * unit(one, structs) // 8 for one in parts)
+    longest = message["length"] + sum(part.get("up_to", 0) * unit(part, structs) // 8 for part in parts)
     if longest > MOST_BYTES and item is parts[-1]:
         text = (
             f"`{message['name']}` can have {longest:,} bytes with all of {name}, more than the limit of {MOST_BYTES:,}"
@@ -224,6 +227,6 @@ def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Fault
 
 
 def obstacles(message: Map, item: Map, structs: Lengths) -> Iterator[Fault]:
-    """All faults of a variable-length part."""
+    """Yield all faults of a variable-length field."""
     yield from faults_of_count(message, item)
     yield from faults_of_place(message, item, structs)

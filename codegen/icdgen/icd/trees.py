@@ -1,4 +1,4 @@
-"""What is looked up in trees as they were read, whatever may be wrong with them."""
+"""Access to trees of files that may violate the schema."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ T = TypeVar("T")
 
 
 def mappings(items: object) -> list[Map]:
-    """The mappings of a list: nothing where it is no list."""
+    """Return the mappings in a list; an empty list if the value is not a list."""
     return [item for item in items if isinstance(item, Map)] if isinstance(items, list) else []
 
 
 def at_path(tree: Any, path: Iterable[str]) -> Any:
-    """What stands at a path of keys; None if nothing, or if there are no mappings on the way."""
+    """Return the value at a path of keys; None if a key is absent or a value on the path is not a mapping."""
     for key in path:
         tree = tree.get(key) if isinstance(tree, dict) else None
     return tree
 
 
-def named(known: Mapping[str, T], name: object) -> T | None:
-    """What is known by a name; None if it is no name, for anything may stand where one should."""
-    return known.get(name) if isinstance(name, str) else None
+def named(objects: Mapping[str, T], name: object) -> T | None:
+    """Return the object of a name; None if the name is unknown or not a string."""
+    return objects.get(name) if isinstance(name, str) else None

@@ -1,4 +1,4 @@
-"""Units that every ICD may use without declaring them. Device-specific ones are declared in the ICD (`units:`)."""
+"""Units that every ICD can use without declaring them. An ICD declares further units with the key `units`."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from icdgen.suggest import close_to
 
 
 class Unit(NamedTuple):
-    """``identifier`` is what generated names end in: ``roll_deg``."""
+    """Unit of a physical value."""
 
     symbol: str
-    identifier: str
+    identifier: str  # last part of names in generated code: ``roll_deg``
     quantity: str
     summary: str = ""
 
@@ -91,13 +91,13 @@ bit/s       bit_per_s       data rate
 _ROWS = (line.split(None, 2) for line in _TABLE.strip().splitlines())
 STANDARD = {symbol: Unit(symbol, identifier, quantity) for symbol, identifier, quantity in _ROWS}
 
-# Signs for one of the above that mean nothing else: an import writes the unit itself.
+# Other symbols of units in STANDARD that are unambiguous: an importer replaces them.
 SIGNS = {
     "°C": "C", "° C": "C", "degC": "C", "deg C": "C", "\u2103": "C", "\u03a9": "ohm", "\u2126": "ohm", "Ohm": "ohm",
     **{micro + unit[1:]: unit for unit in STANDARD if unit.startswith("u") for micro in ("\u00b5", "\u03bc")},
 }  # fmt: skip
 
-# Spellings that mean one of the above; used only to say what the writer probably meant.
+# Other spellings of units in STANDARD, to suggest the correct symbol.
 SPELLINGS = SIGNS | {
     "°": "deg", "degree": "deg", "degrees": "deg", "deg/sec": "deg/s", "RPM": "rpm", "meter": "m", "metre": "m",
     "meters": "m", "seconds": "s", "sec": "s", "milliseconds": "ms", "msec": "ms", "percentage": "%", "percent": "%",
@@ -107,42 +107,48 @@ SPELLINGS = SIGNS | {
 }  # fmt: skip
 
 NOT_STATED = "not stated"
-# What signs are in identifiers.
-_SAID = str.maketrans({"\u03a9": "ohm", "\u2126": "ohm", "\u00b5": "u", "\u03bc": "u", "°": "deg"})
+# Replacements of non-ASCII signs in identifiers.
+_SIGN_NAMES = str.maketrans({"\u03a9": "ohm", "\u2126": "ohm", "\u00b5": "u", "\u03bc": "u", "°": "deg"})
 _PREFIXES = frozenset("fpnu\u00b5\u03bcmcdhkMGT")
 
 
-def meant(symbol: str, known: Iterable[str]) -> str:
-    """The unit, of those known, that was probably meant. Empty if there is none, as for ``kV``, which is no misspelt ``V``."""
-    symbols = {*STANDARD, *known}
+def meant(symbol: str, declared: Iterable[str]) -> str:
+    """Return the standard or declared unit that an unknown symbol probably means.
+
+    Returns an empty string for a symbol without a similar unit, and for ``kV``, which is not a misspelt ``V``.
+    """
+    symbols = {*STANDARD, *declared}
     if symbol in SPELLINGS:
         return SPELLINGS[symbol]
-    return "" if any(_differ_in_size(symbol, one, symbols) for one in symbols) else close_to(symbol, sorted(symbols))
+    if any(_differ_in_prefix(symbol, other, symbols) for other in symbols):
+        return ""
+    return close_to(symbol, sorted(symbols))
 
 
-def _differ_in_size(one: str, other: str, known: set[str]) -> bool:
-    """Whether two symbols are those of one unit with different prefixes, in one or more of their parts."""
-    parts, others = (re.findall(r"\w+|\W", symbol) for symbol in (one, other))
-    if len(parts) != len(others):
+def _differ_in_prefix(first: str, second: str, symbols: set[str]) -> bool:
+    """Return whether two symbols differ only in prefixes of their parts, such as ``mm/s`` and ``km/s``."""
+    first_parts, second_parts = (re.findall(r"\w+|\W", symbol) for symbol in (first, second))
+    if len(first_parts) != len(second_parts):
         return False
-    return all(a == b or _bases(a, known) & _bases(b, known) for a, b in zip(parts, others, strict=True))
+    pairs = zip(first_parts, second_parts, strict=True)
+    return all(a == b or _bases(a, symbols) & _bases(b, symbols) for a, b in pairs)
 
 
-def _bases(part: str, known: set[str]) -> set[str]:
-    """The known units that a part of a symbol may be, with a prefix or without."""
-    return {part, part[1:] if part[0] in _PREFIXES else part} & known
+def _bases(part: str, symbols: set[str]) -> set[str]:
+    """Return the units that a part of a symbol can mean, with and without a prefix."""
+    return {part, part[1:] if part[0] in _PREFIXES else part} & symbols
 
 
 def declared(symbols: Iterable[str]) -> list[dict[str, str]]:
-    """What `units:` says of units that are not built in: each symbol once, with an identifier of its own."""
-    made: dict[str, dict[str, str]] = {}
+    """Return the list `units` of an ICD for symbols that are not standard: each once, with a unique identifier."""
+    units: dict[str, dict[str, str]] = {}
     taken = {unit.identifier for unit in STANDARD.values()}
     for symbol in symbols:
-        if symbol in STANDARD or symbol in made:
+        if symbol in STANDARD or symbol in units:
             continue
-        name = "_".join(re.findall("[a-z0-9]+", symbol.translate(_SAID).casefold())) or "unit"
+        name = "_".join(re.findall("[a-z0-9]+", symbol.translate(_SIGN_NAMES).casefold())) or "unit"
         while name in taken:
             name += "_"
         taken.add(name)
-        made[symbol] = {"symbol": symbol, "identifier": name, "quantity": NOT_STATED}
-    return list(made.values())
+        units[symbol] = {"symbol": symbol, "identifier": name, "quantity": NOT_STATED}
+    return list(units.values())

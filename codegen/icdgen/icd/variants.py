@@ -1,7 +1,8 @@
-"""Messages of one direction that share an id: what tells a frame of one from those of the others.
+"""Multiplexed messages: messages of one direction that share an id, and the constants that distinguish them.
 
-They have no length in common, or differ in constants at the same place; or one has the constants of the other and more, and
-the other, the general one, is what is left: it takes the frames that are none of the narrower ones.
+Two messages are distinguishable if they have no common length, or different constants at the same position. They are also
+distinguishable if one has all constants of the other and more. That one is the narrower message: a frame that has its
+constants belongs to it, and other frames belong to the more general message.
 """
 
 from __future__ import annotations
@@ -13,73 +14,75 @@ from icdgen.icd.division import bits_of
 from icdgen.icd.frames import FrameField, frame_fields
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Icd, Message, Node
 
-Spoken = tuple[Message, Node]  # and the node that declares it
-Place = tuple[int, ...]  # of each bit of a value the bit of the frame, counted from the least significant of each byte
+DeclaredMessage = tuple[Message, Node]  # a message and the node that declares it
+Place = tuple[int, ...]  # bit of the frame for each bit of a value; bit w (0: least significant) of byte b is 8 * b + w
 
 
 class Variant(NamedTuple):
-    """One of the messages that have an id, and the constants that a frame of it has and not every other of that id."""
+    """A message of an id, with the constants that distinguish it from the other messages of the id."""
 
     message: Message
-    node: Node  # that declares it
-    constants: tuple[FrameField, ...] = ()
+    node: Node  # the node that declares the message
+    constants: tuple[FrameField, ...] = ()  # without constants that all messages of the id have in common
 
 
 class Ids(NamedTuple):
-    """The messages that a node speaks, by their ids in each direction."""
+    """Messages of a node by id, for each direction."""
 
     telecommand: dict[int, tuple[Variant, ...]]
     telemetry: dict[int, tuple[Variant, ...]]
 
 
 def ids_of(icd: Icd, node: Node) -> Ids:
-    """What the node speaks: of each id the messages, in the order in which a frame is tried with them."""
-    spoken = [(message, icd.node(message.node)) for message in icd.messages_of(node)]
-    return Ids(_grouped(spoken, TELECOMMAND), _grouped(spoken, TELEMETRY))
+    """Return the messages of a node by id, in the order in which a receiver compares a frame with them."""
+    messages = [(message, icd.node(message.node)) for message in icd.messages_of(node)]
+    return Ids(_grouped(messages, TELECOMMAND), _grouped(messages, TELEMETRY))
 
 
-def _grouped(spoken: Iterable[Spoken], direction: str) -> dict[int, tuple[Variant, ...]]:
-    found: dict[int, list[Spoken]] = {}
-    for one in spoken:
-        id = getattr(one[0], f"{direction}_id")
+def _grouped(messages: Iterable[DeclaredMessage], direction: str) -> dict[int, tuple[Variant, ...]]:
+    """Return the messages with an id in a direction, by id."""
+    groups: dict[int, list[DeclaredMessage]] = {}
+    for message, node in messages:
+        id = getattr(message, f"{direction}_id")
         if id is not None:
-            found.setdefault(id, []).append(one)
-    return {id: variants(those) for id, those in found.items()}
+            groups.setdefault(id, []).append((message, node))
+    return {id: variants(group) for id, group in groups.items()}
 
 
-def variants(spoken: Sequence[Spoken]) -> tuple[Variant, ...]:
-    """The messages of one id, the narrower ones before those that are more general."""
-    if len(spoken) == 1:
-        return (Variant(*spoken[0]),)
-    known = [_constants(*one) for one in spoken]
-    alike = set(known[0].items()).intersection(*(one.items() for one in known[1:]))
-    made = []
-    for (message, node), mine in zip(spoken, known, strict=True):
-        telling = {place for place, value in mine.items() if (place, value) not in alike}
-        fields = (field for field in constants(message, node) if _place(field) in telling)
-        made.append((len(mine), Variant(message, node, tuple(fields))))
-    return tuple(variant for _, variant in sorted(made, key=lambda one: -one[0]))
+def variants(messages: Sequence[DeclaredMessage]) -> tuple[Variant, ...]:
+    """Return the messages of an id, narrower messages before more general ones."""
+    if len(messages) == 1:
+        return (Variant(*messages[0]),)
+    values = [_constants(message, node) for message, node in messages]
+    common = set(values[0].items()).intersection(*(own.items() for own in values[1:]))
+    ranked = []
+    for (message, node), own in zip(messages, values, strict=True):
+        distinctive = {place for place, value in own.items() if (place, value) not in common}
+        fields = (field for field in constants(message, node) if _place(field) in distinctive)
+        ranked.append((len(own), Variant(message, node, tuple(fields))))
+    # A narrower message has more constants. The sort is stable, so other messages stay in the order of the ICD.
+    return tuple(variant for _, variant in sorted(ranked, key=lambda entry: -entry[0]))
 
 
-def are_told_apart(one: Spoken, other: Spoken) -> bool:
-    """Whether every frame is of one of the two at most, or one of them is narrower than the other."""
-    if not _meet(one, other):
+def are_distinguishable(first: DeclaredMessage, second: DeclaredMessage) -> bool:
+    """Return whether no frame matches both messages, or one of them is narrower than the other."""
+    if not _have_common_length(first, second):
         return True
-    mine, its = _constants(*one), _constants(*other)
-    if any(its.get(place, value) != value for place, value in mine.items()):
+    first_values, second_values = _constants(*first), _constants(*second)
+    if any(second_values.get(place, value) != value for place, value in first_values.items()):
         return True
-    return is_narrower(one, other) or is_narrower(other, one)
+    return is_narrower(first, second) or is_narrower(second, first)
 
 
-def is_narrower(one: Spoken, other: Spoken) -> bool:
-    """Whether the first has lengths and all constants of the second, and more: a frame that holds these is of the first."""
-    return _meet(one, other) and _constants(*one).items() > _constants(*other).items()
+def is_narrower(first: DeclaredMessage, second: DeclaredMessage) -> bool:
+    """Return whether both messages can have a common length, and the first has all constants of the second and more."""
+    return _have_common_length(first, second) and _constants(*first).items() > _constants(*second).items()
 
 
 def constants(message: Message, node: Node) -> tuple[FrameField, ...]:
-    """Return the fields that have the same value in every frame: no optional ones, and none of variable-length nodes.
+    """Return the constants that every frame has: not optional fields, and not fields of variable-length nodes.
 
-    Zeros that a frame leaves out at its end count as part of it. `node` is the ICD node that declares the message.
+    Trailing zeros that a frame omits count as part of it. `node` is the ICD node that declares the message.
     """
     end = 8 * message.layout.length
     fields = (field for field in frame_fields(message.layout, node.orders) if field.has_bits and field.at < end)
@@ -87,20 +90,23 @@ def constants(message: Message, node: Node) -> tuple[FrameField, ...]:
 
 
 def common_length(group: Sequence[Variant]) -> int | None:
-    """The length that all of them have: a frame of any other has the wrong length. None if they have several."""
-    lengths = {length for one in group for length in (one.message.layout.shortest, one.message.layout.longest)}
+    """Return the fixed length that all messages of a group have in common; None if lengths differ."""
+    layouts = [variant.message.layout for variant in group]
+    lengths = {length for layout in layouts for length in (layout.shortest, layout.longest)}
     return lengths.pop() if len(lengths) == 1 else None
 
 
-def _meet(one: Spoken, other: Spoken) -> bool:
-    """Whether frames of the two can have the same length."""
-    return not set(one[0].layout.lengths).isdisjoint(other[0].layout.lengths)
+def _have_common_length(first: DeclaredMessage, second: DeclaredMessage) -> bool:
+    """Return whether frames of two messages can have the same length."""
+    return not set(first[0].layout.lengths).isdisjoint(second[0].layout.lengths)
 
 
 def _constants(message: Message, node: Node) -> dict[Place, int]:
+    """Return the values of the constants of a message, by position."""
     return {_place(field): field.const or 0 for field in constants(message, node)}
 
 
 def _place(field: FrameField) -> Place:
+    """Return the position of a field, equal for fields of different orders that have the same bits."""
     bits = bits_of(field.at, field.bits, field.byte_order, field.bit_order)
     return tuple(bits if field.bit_order == "lsb0" else (bit // 8 * 8 + 7 - bit % 8 for bit in bits))

@@ -122,7 +122,7 @@ def _are_told_apart(one: Use, other: Use) -> bool:
     """Whether a frame shows which of the two it is. What is said to be missing has nothing to show."""
     if one.message is None or other.message is None:
         return False
-    return variants.are_told_apart((one.message, one.node), (other.message, other.node))
+    return variants.are_distinguishable((one.message, one.node), (other.message, other.node))
 
 
 def _same_id(ctx: Context, node: Node, first: Use, use: Use, is_linked: bool) -> Fault:
