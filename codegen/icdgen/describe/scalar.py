@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from icdgen import layout
 from icdgen.describe import steps
+from icdgen.describe.arithmetic import Arithmetic, arithmetic_of
 from icdgen.describe.bounds import Bound, bounds
 from icdgen.describe.comments import takes_text, words
 from icdgen.describe.enums import EnumDescription
-from icdgen.describe.integer_scale import IntegerScale, part_of_unit
+from icdgen.describe.integer_scale import IntegerScale, integer_scale, part_of_unit
 from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, storage_of
 from icdgen.icd.curve import Curve
@@ -47,6 +48,16 @@ class ScalarDescription(Named[NodePlace]):
         self.declared = self.name
         unit = "text" if self.is_text else place.unit.identifier if place.unit else "physical"
         self.physical_name = f"{self.declared}_{unit}"
+
+    @property
+    def arithmetic(self) -> Arithmetic | None:
+        """How its scale is computed; None if it has none."""
+        return None if self.steps is None else arithmetic_of(self.steps, self.storage)
+
+    @property
+    def integer_scale(self) -> IntegerScale | None:
+        """Its physical value in whole thousandths or millionths of the unit; None if these are not exact."""
+        return None if self.steps is None else integer_scale(self.steps)
 
     @property
     def is_narrow(self) -> bool:

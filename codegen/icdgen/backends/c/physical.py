@@ -8,7 +8,9 @@ from itertools import accumulate
 from typing import NamedTuple
 
 from icdgen.backends.c.types import cast
-from icdgen.describe import FieldDescription, integer_scale
+from icdgen.describe import FieldDescription
+from icdgen.describe.arithmetic import Arithmetic, IntegerAccess
+from icdgen.describe.integer_scale import IntegerScale
 from icdgen.describe.steps import Steps, wide_parts
 from icdgen.describe.storage import Storage
 from icdgen.icd.curve import Curve
@@ -20,7 +22,7 @@ INT32, INT64 = (1 << 31) - 1, (1 << 63) - 1
 class IntegerAccessors(NamedTuple):
     """Integer accessors: ``getter`` over ``{raw}``; ``setter``, the raw value of a ``value`` unless a test of ``refused`` holds."""
 
-    scale: integer_scale.IntegerScale
+    scale: IntegerScale
     type: str  # "int32_t" | "int64_t"
     getter: str
     refused: tuple[str, ...]
@@ -40,14 +42,16 @@ def scaled(field: FieldDescription) -> Scaled:
     """The accessors of a field with a scale, or with a curve."""
     if field.curve is not None:
         return _on_curve(field, field.curve)
-    assert field.steps is not None
-    return _scaled(field.steps, field.storage)
+    assert field.arithmetic is not None
+    return _scaled(field.arithmetic)
 
 
 @lru_cache(maxsize=2048)
-def _scaled(steps: Steps, storage: Storage) -> Scaled:
+def _scaled(arithmetic: Arithmetic) -> Scaled:
+    steps, integers = arithmetic.steps, arithmetic.integers
     declared = tuple(_wide_scale(steps)) if steps.is_wide else ()
-    return Scaled(_double_getter(steps, storage), _double_setter(steps, storage), declared, _integers(steps, storage))
+    whole = None if integers is None else _integers(integers, arithmetic.storage)
+    return Scaled(_double_getter(arithmetic), _double_setter(arithmetic), declared, whole)
 
 
 def _on_curve(field: FieldDescription, curve: Curve) -> Scaled:
@@ -98,28 +102,27 @@ def _plus(value: str, offset: int, bits: int) -> str:
     return f"{value} {'+' if offset > 0 else '-'} INT{bits}_C({abs(offset)})"
 
 
-def _double_getter(steps: Steps, storage: Storage) -> str:
-    factor, offset, divisor = steps.terms
+def _double_getter(arithmetic: Arithmetic) -> str:
+    steps, storage = arithmetic
     kind = _kind(storage, 64)
     if steps.is_wide:
         return f"icdgen_wide_physical_{kind}({RAW}, &scale)"
-    if steps.exact_in_doubles and integer_scale.computable(storage, factor, offset, 64):
-        return f"icdgen_quotient({_integer_getter(factor, offset, 64, storage)}, {int64(divisor)})"
-    if offset > INT64:  # has no literal, but its negative has
-        return f"0.0 - icdgen_physical_{kind}({RAW}, {int64(-factor)}, {int64(-offset)}, {int64(divisor)})"
-    return f"icdgen_physical_{kind}({RAW}, {int64(factor)}, {int64(offset)}, {int64(divisor)})"
+    if arithmetic.is_exact_in_int64:
+        p, c, q = steps.terms
+        return f"icdgen_quotient({_integer_getter(p, c, 64, storage)}, {int64(q)})"
+    *terms, is_negated = arithmetic.int64_terms
+    value = f"icdgen_physical_{kind}({', '.join((RAW, *map(int64, terms)))})"
+    return f"0.0 - {value}" if is_negated else value
 
 
-def _double_setter(steps: Steps, storage: Storage) -> tuple[str, ...]:
-    factor, offset, divisor = steps.terms
+def _double_setter(arithmetic: Arithmetic) -> tuple[str, ...]:
+    steps, storage = arithmetic
     ends = (steps.raw_min, steps.raw_max) if storage.signed else (steps.raw_max,)
     limits = (_limit(end, storage) for end in ends)
     if steps.is_wide:
         return f"icdgen_wide_set_{_kind(storage)}", "value", "&scale", *limits
-    value = "value"
-    if offset > INT64:
-        value, factor, offset = "-value", -factor, -offset
-    return f"icdgen_set_{_kind(storage)}", value, int64(factor), int64(offset), int64(divisor), *limits
+    *terms, is_negated = arithmetic.int64_terms
+    return f"icdgen_set_{_kind(storage)}", "-value" if is_negated else "value", *map(int64, terms), *limits
 
 
 def _wide_scale(steps: Steps) -> list[str]:
@@ -138,20 +141,13 @@ def _limit(value: int, storage: Storage) -> str:
     return f"UINT64_C({value})" if value >= 1 << 32 else f"{value}u"
 
 
-def _integers(steps: Steps, storage: Storage) -> IntegerAccessors | None:
-    """None where there are no whole numbers, or some step would overflow."""
-    found = integer_scale.integer_scale(steps)
-    bits = integer_scale.integer_bits(found, storage) if found is not None else None
-    if found is None or bits is None:
-        return None
-    factor, offset = found.factor, found.offset
-    most_of_type = INT32 if bits == 32 else INT64
-    least, most = max(found.least, -most_of_type - 1), min(found.most, most_of_type)
-    wide = 32 if bits == 32 and integer_scale.within(32, least - offset, most - offset) else 64
-    refused = [f"value < {int64(least)}"] if least > -most_of_type - 1 else []
-    refused += [f"value > {int64(most)}"] if most < most_of_type else []
-    getter, setter = _integer_getter(factor, offset, bits, storage), _integer_setter(factor, offset, wide, storage)
-    return IntegerAccessors(found, f"int{bits}_t", getter, tuple(refused), setter)
+def _integers(access: IntegerAccess, storage: Storage) -> IntegerAccessors:
+    scale = access.scale
+    refused = [] if access.least is None else [f"value < {int64(access.least)}"]
+    refused += [] if access.most is None else [f"value > {int64(access.most)}"]
+    getter = _integer_getter(scale.factor, scale.offset, access.bits, storage)
+    setter = _integer_setter(scale.factor, scale.offset, access.setter_bits, storage)
+    return IntegerAccessors(scale, f"int{access.bits}_t", getter, tuple(refused), setter)
 
 
 def _integer_getter(factor: int, offset: int, bits: int, storage: Storage) -> str:

@@ -92,7 +92,7 @@ def _functions() -> dict[str, object]:
 
     found = (
         fields.annotation, fields.declaration, fields.exact, fields.getter, fields.inner, fields.open_part, fields.physical,
-        fields.scaled, fields.text, fields.view_info, fields.integers, names.class_name, nodes.listing, nodes.literals,
+        fields.scaled, fields.text, fields.view_info, names.class_name, nodes.listing, nodes.literals,
         nodes.mapping, physical_comment, text.docstring, text.documented, text.literal, text.prose, text_comment,
     )  # fmt: skip
     return {function.__name__: function for function in found}

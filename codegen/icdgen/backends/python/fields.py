@@ -8,7 +8,7 @@ from fractions import Fraction
 from icdgen.backends.lines import STEP, exploded
 from icdgen.backends.python.names import class_name
 from icdgen.backends.python.text import literal
-from icdgen.describe import FieldDescription, MessageDescription, integer_scale
+from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.constants import Constant
 from icdgen.describe.derived import derived
 from icdgen.describe.description import TailDescription
@@ -191,11 +191,6 @@ def text(field: FieldDescription) -> str:
     """``version_text: str = _base.text(...)``: a field of characters as what it says."""
     first = _repeated(field, '""') if field.count else '""'
     return _statement(field.physical_name, "tuple[str, ...]" if field.count else "str", "text", [f"default={first}"])
-
-
-def integers(field: FieldDescription) -> IntegerScale | None:
-    """The same in whole thousandths or millionths of the unit, where these are exact."""
-    return None if field.steps is None else integer_scale.integer_scale(field.steps)
 
 
 def exact(field: FieldDescription, found: IntegerScale) -> str:

@@ -10,7 +10,6 @@ from zlib import crc32
 from icdgen.backends import Identifier
 from icdgen.describe import Description, EnumDescription
 from icdgen.describe.description import Composite
-from icdgen.describe.integer_scale import integer_scale
 from icdgen.naming import DEVICES, camel
 
 RESERVED = frozenset(keyword.kwlist)
@@ -80,8 +79,7 @@ def _fields(one: Composite[Any], scope: str) -> Iterator[Identifier]:
     for field in one.all_members:
         if field.model.is_count:
             continue
-        exact = None if field.steps is None else integer_scale(field.steps)
-        physical = [field.physical_name] if field.has_physical else []
+        exact, physical = field.integer_scale, [field.physical_name] if field.has_physical else []
         physical += [field.integer_name(exact.per)] if exact is not None else []
         for name in (field.name, *physical, *(constant.name.upper() for constant in field.constants)):
             yield field.identifier(scope, name)

@@ -9,8 +9,9 @@ from icdgen.backends.rust.names import field_name, struct_path
 from icdgen.backends.rust.physical import curve_name, curve_value, physical, raw_value, single
 from icdgen.backends.rust.text import WIDTH, assigned, double, integer, string
 from icdgen.describe import FieldDescription
+from icdgen.describe.arithmetic import IntegerAccess
 from icdgen.describe.comments import physical_comment, physical_name
-from icdgen.describe.integer_scale import IntegerScale, integer_bits, integer_scale
+from icdgen.describe.integer_scale import IntegerScale
 
 
 class Accessor(NamedTuple):
@@ -42,7 +43,7 @@ def accessors(field: FieldDescription) -> list[Accessor]:
     ]
     known = integers_of(field)
     if known is not None:
-        exact, bits = known
+        exact, bits = known.scale, known.bits
         value = "value" if bits == 64 else "value.into()"
         raw = f"{scale}.whole({value}, {integer(exact.factor)}, {integer(exact.offset)})"
         name, about, what = field.integer_name(exact.per), field.integer_comment(exact), field.integer_title(exact.per)
@@ -56,11 +57,10 @@ def single_name(field: FieldDescription) -> str:
     return f"{field.physical_name}_f32"
 
 
-def integers_of(field: FieldDescription) -> tuple[IntegerScale, int] | None:
-    """The whole parts of the unit, and the bits of the integer that holds them."""
-    exact = integer_scale(field.steps) if field.steps is not None and not field.steps.is_wide else None
-    bits = None if exact is None else integer_bits(exact, field.storage)
-    return None if exact is None or bits is None else (exact, bits)
+def integers_of(field: FieldDescription) -> IntegerAccess | None:
+    """The accessors in whole parts of the unit. `Wide` of the support module, for formulas of many digits, has none."""
+    arithmetic = field.arithmetic
+    return None if arithmetic is None or arithmetic.steps.is_wide else arithmetic.integers
 
 
 def _integer_value(field: FieldDescription, exact: IntegerScale, bits: int) -> str:

@@ -9,7 +9,7 @@ from icdgen.backends.rust.names import RESERVED, field_name
 from icdgen.backends.rust.text import assigned, double, mask, whole_double
 from icdgen.describe import FieldDescription
 from icdgen.describe.derived import derived
-from icdgen.describe.steps import EXACT_SINGLE, Steps, wide_parts
+from icdgen.describe.steps import Steps, wide_parts
 
 _TAKEN = RESERVED | {"power", "quiet", "whole"}
 
@@ -21,20 +21,10 @@ def big_parts(value: int) -> list[str]:
 
 def has_constant(field: FieldDescription) -> bool:
     """Whether code needs the constant of its scale: to set it, to see whether it fits, or to compute its physical value."""
+    arithmetic = field.arithmetic
     if not field.model.view:
-        return field.steps is not None or field.is_narrow
-    return field.steps is not None and not (_in_doubles(field) and _in_singles(field))
-
-
-def _in_doubles(field: FieldDescription) -> bool:
-    """Whether every step of the physical value is exact in doubles."""
-    assert field.steps is not None
-    return field.storage.bits <= 32 and not field.steps.is_wide and field.steps.exact_in_doubles
-
-
-def _in_singles(field: FieldDescription) -> bool:
-    assert field.steps is not None
-    return field.storage.bits <= 16 and not field.steps.is_wide and field.steps.exact_up_to(EXACT_SINGLE)
+        return arithmetic is not None or field.is_narrow
+    return arithmetic is not None and not (arithmetic.is_exact_in_doubles and arithmetic.is_exact_in_singles)
 
 
 def raw_value(field: FieldDescription) -> str:
@@ -60,18 +50,18 @@ def physical(field: FieldDescription) -> str:
 
     In doubles where every step is exact in them, else through 128-bit integers of the support module.
     """
-    assert field.steps is not None
-    if not _in_doubles(field):
+    assert field.arithmetic is not None
+    if not field.arithmetic.is_exact_in_doubles:
         return f"{field.declared.upper()}.physical({raw_value(field)})"
-    return _quotient(field.steps, f"f64::from({raw_value(field)})")
+    return _quotient(field.arithmetic.steps, f"f64::from({raw_value(field)})")
 
 
 def single(field: FieldDescription) -> str:
     """The same in single precision."""
-    assert field.steps is not None
-    if not _in_singles(field):
+    assert field.arithmetic is not None
+    if not field.arithmetic.is_exact_in_singles:
         return f"{field.declared.upper()}.single({raw_value(field)})"
-    return _quotient(field.steps, f"f32::from({raw_value(field)})")
+    return _quotient(field.arithmetic.steps, f"f32::from({raw_value(field)})")
 
 
 def _quotient(steps: Steps, raw: str) -> str:
