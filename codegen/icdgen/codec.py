@@ -233,10 +233,8 @@ def initial_values(node: Node, message: Message) -> dict[str, Raw]:
 
 
 def initial_value(message: Message, field: FrameField) -> Raw:
-    """Return the raw value of a field of a new message: the constant, else the smallest valid value; for bytes zeros."""
-    if field.is_bytes:
-        return bytes(field.bits // 8)
-    return field.const or message.layout.smallest_raw(field.name)
+    """Return the raw value of a field of a new message: see `Scalar.initial_value`."""
+    return field.scalar.initial_value(field.bits, message.layout.smallest_raw(field.name))
 
 
 def new(node: Node, message: Message) -> dict[str, Raw]:

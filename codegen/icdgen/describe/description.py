@@ -101,6 +101,33 @@ class FieldDescription(ScalarDescription):
         return bool(sequence) and self.member_of_message.model.node is sequence[-1]
 
     @property
+    def initial_count(self) -> int:
+        """Elements of an array in a new message, or bytes of variable length: the last variable part has its fewest."""
+        if self.is_open:
+            assert self.message.tail is not None
+            return self.message.tail.model.fewest
+        return self.count
+
+    @property
+    def is_initially_present(self) -> bool:
+        """Whether a new message has the field: the initial values of other fields meet its conditions."""
+        return all(need.field.initial_raw in need.values for need in self.needs)
+
+    @property
+    def has_initial_value(self) -> bool:
+        """Whether some scalar of it has an initial value other than 0."""
+        return any(one.initial_raw for one in (self.struct.fields if self.struct is not None else (self,)))
+
+    @property
+    def is_initially_zero(self) -> bool:
+        """Whether all of it is 0 or absent in a new message. A struct has the initial values of its own members."""
+        if self.model.when:
+            return not self.is_initially_present
+        if self.struct is not None and not self.is_open:
+            return True
+        return not self.has_initial_value or (self.struct is None and self.is_open and not self.initial_count)
+
+    @property
     def is_inner(self) -> bool:
         """Whether it is open with something else behind it, or stands in such a part."""
         return any(self.member_of_message.model.node is node for node in self.message.model.layout.sequence[:-1])
@@ -263,11 +290,6 @@ class Composite(Named[Fielded]):
     def tail(self) -> TailDescription | None:
         """The open end of a message, where frames differ in length."""
         return None
-
-    @property
-    def fewest(self) -> int:
-        """Elements of the open end that every frame has."""
-        return self.tail.model.fewest if self.tail is not None else 0
 
     @property
     def frame_members(self) -> tuple[FieldDescription, ...]:

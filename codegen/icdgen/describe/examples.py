@@ -66,7 +66,7 @@ def example(message: MessageDescription) -> Example:
     shown = _shown(field) if field else None
     owners = raw_fields_in(message.model.layout)
     raw: dict[str, int | bytes] = {
-        place.name: place.fresh for place in owners if place.const is not None or place.smallest_raw
+        place.name: place.initial_value for place in owners if place.const is not None or place.smallest_raw
     }
     if shown is not None:
         raw[shown.field.model.name] = shown.raw

@@ -70,9 +70,17 @@ class ScalarDescription(Named[NodePlace]):
         return takes_text(self.model, self.is_narrow)
 
     @property
-    def fresh(self) -> int:
-        """The raw value in a new message, as a number."""
-        return self.model.const or self.model.smallest_raw
+    def initial_raw(self) -> int:
+        """The raw value in a new message as a number; 0 of bytes and of a struct."""
+        value = self.model.initial_value
+        return 0 if isinstance(value, bytes) else value
+
+    @property
+    def initial_physical(self) -> float:
+        """The physical value in a new message; 0 without a scale."""
+        if self.curve is not None:
+            return self.curve.double(self.initial_raw)
+        return self.steps.double(self.initial_raw) if self.steps is not None else 0.0
 
     @property
     def orders(self) -> Orders:

@@ -152,6 +152,13 @@ class Scalar(LayoutNode):
         """Return the largest raw value. Not for floats."""
         return (1 << (self.bits - self.is_signed)) - 1
 
+    def initial_value(self, bits: int, smallest_raw: int) -> int | bytes:
+        """Return the raw value in a new message: the constant, else the smallest valid value; of a float its bits.
+
+        `bits` are those in the frame. `smallest_raw` comes from `Layout.smallest_raw`.
+        """
+        return bytes(bits // 8) if self.is_bytes else self.const or smallest_raw
+
     @property
     def has_formula(self) -> bool:
         """Return whether the physical value is computed from the raw value."""

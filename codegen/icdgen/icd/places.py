@@ -130,9 +130,9 @@ class NodePlace(OfScalar):
         return "count" if self.is_count else "field"
 
     @property
-    def fresh(self) -> int | bytes:
-        """Raw value in a new message: the constant, or else the smallest valid value; of a float its bits."""
-        return bytes(self.bits // 8) if self.is_bytes else self.const or self.smallest_raw
+    def initial_value(self) -> int | bytes:
+        """Raw value in a new message: see `Scalar.initial_value`."""
+        return self.scalar.initial_value(self.bits, self.smallest_raw)
 
     def orders_in_effect(self, outer: Orders) -> Orders:
         """Return the orders in effect. `outer` are the defaults of the ICD node."""

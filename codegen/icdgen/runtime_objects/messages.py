@@ -23,8 +23,7 @@ class ModelMessage(Message):
 
     def __init__(self) -> None:
         for one in self.description.fields:
-            field = one.model
-            setattr(self, one.name, _value(field, bytes(field.bits // 8) if field.is_bytes else one.fresh))
+            setattr(self, one.name, _value(one.model, one.model.initial_value))
 
     @classmethod
     def from_bytes(cls, data: Buffer) -> ModelMessage:

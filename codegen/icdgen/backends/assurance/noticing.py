@@ -103,7 +103,7 @@ class MessageWatch:
         return [self.lines.head, self.lines.lengths, *self.lines.rows]
 
     def _line_notices(self, old: NodePlace, now: NodePlace) -> bool:
-        if self._is_fresh(old) and _shown(old, old.fresh) != _shown(now, now.fresh):
+        if self._is_fresh(old) and _shown(old, old.initial_value) != _shown(now, now.initial_value):
             return True
         if [special.value for special in old.special] != [
             special.value for special in now.special

@@ -44,11 +44,10 @@ def _statements(
 def initial(message: Composite[Any]) -> list[str]:
     """Statements that give fields with only one valid value that value, and what counts an open end its smallest."""
     counters = [field for field in message.members if field.model.smallest_raw]
-    found = [f"message->{field.member} = {field.fresh}u;" for field in counters]
+    found = [f"message->{field.member} = {field.initial_raw}u;" for field in counters]
     for field in message.flat_members:
-        count = message.fewest if field.is_open else field.count
-        if count or not field.count:
-            found += _statements(field, _valid, f"{count}u")
+        if field.initial_count or not field.count:
+            found += _statements(field, _valid, f"{field.initial_count}u")
     return found
 
 

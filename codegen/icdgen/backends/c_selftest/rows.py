@@ -193,7 +193,7 @@ def _plain(message: MessageDescription, vectors: MessageVectors) -> MessageVecto
         return replace(vectors, rows=tuple(replace(row, frame=row.encoded) for row in vectors.rows))
     if not message.conditional:
         return vectors
-    absent: Raw = {field.model.name: field.model.fresh for field in message.conditional}
+    absent: Raw = {field.model.name: field.model.initial_value for field in message.conditional}
     scaled = [one.model for one in message.all_fields if one.model.has_formula]
     rows = []
     for row in vectors.rows:
@@ -201,7 +201,7 @@ def _plain(message: MessageDescription, vectors: MessageVectors) -> MessageVecto
         doubles = {one.name: bits_of(codec.physical_double(one, _number(raw[one.name])) or 0.0) for one in scaled}
         rows.append(replace(row, frame=row.encoded, raw=raw, doubles=doubles))
     always = {name: given for name, given in vectors.unfit.items() if name not in absent}
-    fresh = {field.name: field.fresh for field in raw_fields_in(message.model.layout)}
+    fresh = {field.name: field.initial_value for field in raw_fields_in(message.model.layout)}
     return replace(vectors, rows=tuple(rows), default=vectors.default | fresh, unfit=always)
 
 

@@ -44,18 +44,17 @@ def default(field: FieldDescription) -> str:
     if field.count:
         return _repeated(field, _default(field))
     if field.is_open:
-        return f"bytes({field.message.fewest})" if field.message.fewest else 'b""'
+        return f"bytes({field.initial_count})" if field.initial_count else 'b""'
     return _default(field)
 
 
 def _repeated(field: FieldDescription, value: str) -> str:
     """The values of an array in a new message."""
-    many = field.message.fewest if field.is_open else field.count
-    return f"({value},) * {many}" if many else "()"
+    return f"({value},) * {field.initial_count}" if field.initial_count else "()"
 
 
 def _default(field: FieldDescription) -> str:
-    kind, value = field.model.type, field.fresh
+    kind, value = field.model.type, field.initial_raw
     if field.model.is_bytes:
         return f"bytes({field.model.bits // 8})"
     if field.enum is None:
@@ -71,7 +70,7 @@ def _told(field: FieldDescription) -> list[str]:
         items.append(f"elements={field.count}")
     if field.is_open:
         items.append("is_open=True")
-        items += [f"fewest={few}"] if (few := field.message.fewest) else []
+        items += [f"fewest={field.initial_count}"] if field.initial_count else []
     if field.is_open and field.enum is not None:
         items.append(f"enum={class_name(field.enum)}")
     if field.needs:
@@ -165,8 +164,7 @@ def physical(field: FieldDescription) -> str:
 
 def scaled(field: FieldDescription) -> str:
     """``estimated_roll_angle_deg: float = _base.scaled(...)``: the steps of the physical value, and the first one."""
-    curve, steps = field.curve, field.steps
-    first = _double(curve.double(field.fresh) if curve is not None else steps.double(field.fresh) if steps else 0.0)
+    curve, steps, first = field.curve, field.steps, _double(field.initial_physical)
     first, note = (_repeated(field, first), "tuple[float, ...]") if field.count else (first, _perhaps(field, "float"))
     if curve is not None:
         items = [*_pieces(curve), f"default={first}"]

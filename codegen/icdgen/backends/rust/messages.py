@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from icdgen import codec
 from icdgen.backends.rust import arrays, bits, conditional, elements, parts
 from icdgen.backends.rust.names import field_name, integer_type, struct_path
 from icdgen.backends.rust.physical import has_constant
@@ -89,7 +88,7 @@ def of_composite(one: Composite[Any]) -> dict[str, object]:
         "fits": [line for field in narrow if not field.model.when for line in bits.fitting(field)],
         "scales": [field for field in one.all_members if has_constant(field)],
         "curves": [field for field in one.all_members if field.curve is not None],
-        "default": None if has_default else elements.literal(fields, [_fresh(field) for field in fields]),
+        "default": None if has_default else elements.literal(fields, [_initial(field) for field in fields]),
         "derives": ", ".join(traits + ([] if one.has_floats else ["Eq", "Hash"])),
         "uses_enums": any(enum.node is one.node for enum in one.enums),
     }
@@ -135,29 +134,19 @@ def _is_default(field: FieldDescription) -> bool:
     """Whether a new message has of it what a `Default` that is derived gives."""
     if field.count > DERIVES_DEFAULT or (field.model.is_bytes and field.size > DERIVES_DEFAULT):
         return False
-    if field.model.when:
-        return not _is_there(field)
-    if field.is_open and field.struct is not None:
-        return not any(one.fresh for one in field.struct.fields)
-    return field.fresh == 0 or (field.is_open and not field.message.fewest)
+    return field.is_initially_zero
 
 
-def _is_there(field: FieldDescription) -> bool:
-    """Whether a new message has a field that is not always there."""
-    return field.model.name in codec.initial_values(field.message.node, field.message.model)
-
-
-def _fresh(field: FieldDescription) -> str:
-    fresh = _valued(field, field.fresh)
+def _initial(field: FieldDescription) -> str:
+    value = _valued(field, field.initial_raw)
     if field.is_open and field.count:
         length = field.struct.model.length if field.struct is not None else 0
         absent = f"Self::{arrays.reader(field.name)}(&[0; {length}])" if length else _valued(field, 0)
-        few, fields = field.message.fewest, field.struct.fields if field.struct is not None else (field,)
-        is_told = few > 0 and any(one.fresh for one in fields)
-        return f"first({few}, {fresh}, {absent})" if is_told else f"[{absent}; {field.count}]"
+        few = field.initial_count if field.has_initial_value else 0
+        return f"first({few}, {value}, {absent})" if few else f"[{absent}; {field.count}]"
     if field.model.when:
-        return f"Some({fresh})" if _is_there(field) else "None"
-    return f"[{fresh}; {field.count}]" if field.count else fresh
+        return f"Some({value})" if field.is_initially_present else "None"
+    return f"[{value}; {field.count}]" if field.count else value
 
 
 def _valued(field: FieldDescription, raw: int) -> str:
