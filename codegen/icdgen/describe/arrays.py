@@ -61,7 +61,7 @@ def arrays_named(
 
 
 class ElementRounds(NamedTuple):
-    """``repetitions`` rounds of ``in_round`` elements; what is left of the array is none."""
+    """``repetitions`` rounds of ``in_round`` elements, as many as are whole bytes; elements behind the last round are not in it."""
 
     in_round: int
     repetitions: int
@@ -89,10 +89,23 @@ class ElementRounds(NamedTuple):
 
 
 def rounds_of(first: FieldDescription, count: int) -> ElementRounds | None:
-    """Those of an array of ``count`` elements, which begins with ``first``; None of few, and of what begins within a byte."""
+    """Those of an array of ``count`` elements, which begins with ``first``; None of few, and of what begins within a byte.
+
+    Words that lie in memory as in the frame need no rounds: they are copied.
+    """
     at, bits = first.model.at, first.model.bits
-    if at % 8 or first.model.is_bytes or first.model.when:
+    if at % 8 or first.is_copied or first.model.when:
         return None
     in_round = 8 // gcd(8, bits)
     rounds = ElementRounds(in_round, count // in_round, at // 8, in_round * bits // 8)
     return rounds if rounds.repetitions > 1 and rounds.elements >= MANY_ENOUGH else None
+
+
+def loop_of(field: FieldDescription) -> ElementRounds | None:
+    """The loop that reads or writes all elements of an array; None if they are copied, or read and written one by one."""
+    if field.element is not None:
+        return ElementRounds(1, field.count, field.model.at // 8, field.element.model.length)
+    if not field.count or field.struct is not None:
+        return None
+    rounds = rounds_of(field, field.count)
+    return rounds if rounds is not None and rounds.elements == field.count else None

@@ -109,6 +109,11 @@ class ScalarDescription(Named[NodePlace]):
         return self.is_word and self.model.bits == self.storage.bits
 
     @property
+    def is_copied(self) -> bool:
+        """Whether its bytes, or those of each element, lie in the frame as in memory, but for the order of bytes in a word."""
+        return self.model.is_bytes or self.is_plain_word
+
+    @property
     def pieces(self) -> tuple[layout.Piece, ...]:
         """The runs of bits of the frame that make up a number."""
         if self.model.derived:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from icdgen.backends import Identifier
 from icdgen.backends.c import accessors, bits, conditional, constants, decoding, encoding, members, names, parts, types
 from icdgen.backends.c.declared_names import declared_names
-from icdgen.backends.c.member_groups import Groups, Structs, in_groups
+from icdgen.backends.c.decoding import THRESHOLDS, Groups, Structs
 from icdgen.backends.c.runtime import whole
 from icdgen.backends.c.short_names import with_short_names
 from icdgen.backends.c.statement import call, head, like
@@ -20,6 +20,7 @@ from icdgen.describe import MessageDescription, NodeDescription, describe
 from icdgen.describe.arrays import Repeated, all_repeated, repeated_in
 from icdgen.describe.comments import sentence, text_comment, words
 from icdgen.describe.description import Composite, TailDescription
+from icdgen.describe.groups import groups
 from icdgen.describe.numbers import byte_count, length_text
 from icdgen.icd.model import Icd
 from icdgen.icd.prefixed import with_prefix
@@ -108,13 +109,14 @@ def _composite(one: Composite[Any], more: Iterable[str] = ()) -> dict[str, objec
 
 
 def _message(message: MessageDescription) -> dict[str, object]:
-    groups = in_groups(message.unconditional_fields) + _arrays(
-        message, (one for one in repeated_in(message) if not one.part.is_open)
-    )
+    fields = [
+        *groups(message.unconditional_fields, THRESHOLDS),
+        *_arrays(message, (one for one in repeated_in(message) if not one.part.is_open)),
+    ]
     return {
         **_composite(message, parts.headers(message)),
         "empty": decoding.EMPTY,
-        "decode": decoding.statements(message, groups),
+        "decode": decoding.statements(message, fields),
         "repeated": [_repeated(message, one) for one in all_repeated(message)],
         "element": None,
         "inner": [],
@@ -123,7 +125,7 @@ def _message(message: MessageDescription) -> dict[str, object]:
         "misfits_of_end": members.misfits(message, is_open=True),
         "excess": members.excess(message),
         "excess_type": bits.excess_type(message),
-        "encode": encoding.statements(message, groups),
+        "encode": encoding.statements(message, fields),
         "conditional": conditional.conditional(message),
         **(_tail(message, message.tail) if message.tail else {}),
         "views": [accessors.view(field) for field in message.overlays],
@@ -131,20 +133,23 @@ def _message(message: MessageDescription) -> dict[str, object]:
     }
 
 
-def _arrays(message: MessageDescription, found: Iterable[Repeated]) -> Groups:
-    return [Structs(one, names.reading(message, one.name), names.writing(message, one.name)) for one in found]
+def _arrays(message: MessageDescription, arrays: Iterable[Repeated]) -> Groups:
+    return [Structs(one, names.reading(message, one.name), names.writing(message, one.name)) for one in arrays]
 
 
 def _repeated(message: MessageDescription, one: Repeated) -> dict[str, object]:
     """The functions that read and write an element of an array of structs."""
-    groups = in_groups(one.element.frame_fields) + _arrays(message, repeated_in(one.element, f"{one.name}_"))
+    fields = [
+        *groups(one.element.frame_fields, THRESHOLDS),
+        *_arrays(message, repeated_in(one.element, f"{one.name}_")),
+    ]
     return {
         "part": one.part,
         "type": f"{names.stem(one.element)}_t",
         "reading": names.reading(message, one.name),
         "writing": names.writing(message, one.name),
-        "read": decoding.statements(one.element, groups),
-        "write": encoding.statements(one.element, groups),
+        "read": decoding.statements(one.element, fields),
+        "write": encoding.statements(one.element, fields),
     }
 
 

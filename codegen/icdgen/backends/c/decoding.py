@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, NamedTuple
 
 from icdgen.backends.c import bits
-from icdgen.backends.c.member_groups import Array, Flags, Groups, Row, Structs
 from icdgen.backends.c.names import stem
 from icdgen.backends.c.statement import call, either, loop
 from icdgen.backends.c.text import WIDTH
@@ -15,9 +14,42 @@ from icdgen.backends.lines import STEP
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.arrays import ElementRounds, Repeated
 from icdgen.describe.description import Composite, TailDescription
+from icdgen.describe.groups import Flags, Group, Rounds, Row, Thresholds
+
+THRESHOLDS = Thresholds(flags=(8, 4), row=8)
+"""Groups for which the support header has macros."""
 
 EMPTY = "empty"
 """Member of the struct of a message without fields: C has no empty structs."""
+
+
+class Structs(NamedTuple):
+    """An array of structs, which a loop reads and writes."""
+
+    array: Repeated
+    reading: str  # the function for an element
+    writing: str
+
+    @property
+    def length(self) -> int:
+        """Bytes of the frame."""
+        return self.array.part.count * self.array.step
+
+
+Groups = list[Group | Structs]
+
+
+def members_of_round(group: Rounds) -> tuple[FieldDescription, ...]:
+    """The elements of a round; ``element`` is the first of them in the array."""
+    name = group.array.member
+    return group.rounds.members(group.first, lambda element: f"{name}[element{f' + {element}u' if element else ''}]")
+
+
+def macro_of(group: Flags | Row) -> str:
+    """How the name of the macro for a group ends."""
+    if isinstance(group, Row):
+        return f"ROW_{group.fields[0].order.upper()}"
+    return f"{len(group.fields)}_FLAGS{'_FALLING' if group.is_falling else ''}"
 
 
 def statements(message: Composite[Any], groups: Groups) -> list[str]:
@@ -137,19 +169,19 @@ def in_rounds(rounds: ElementRounds, const: str, lines: Iterable[str]) -> str:
     return f"{loop('element', f'{rounds.elements}u', rounds.in_round)}\n{body}{STEP}}}"
 
 
-def _group(group: Flags | Row | Array | Structs, message: Composite[Any]) -> str:
-    if isinstance(group, Array):
-        lines = (number(one, f"message->{one.member}", "part") for one in group.members)
+def _group(group: Flags | Row | Rounds | Structs, message: Composite[Any]) -> str:
+    if isinstance(group, Rounds):
+        lines = (number(one, f"message->{one.member}", "part") for one in members_of_round(group))
         return in_rounds(group.rounds, "const ", lines)
     if isinstance(group, Structs):
         return of_array(group.array, group.reading)
-    members = [field.member for field in group.members]
+    members = [field.member for field in group.fields]
     target = f"{stem(message)}_t", "message"
     if isinstance(group, Flags):
         value = f"buffer[{group.byte}]" + (f" >> {group.shift}" if group.shift else "")
-        return call(f"ICDGEN_READ_{group.macro}", (*target, value, *members))
+        return call(f"ICDGEN_READ_{macro_of(group)}", (*target, value, *members))
     value = f"&buffer[{group.byte}]"
-    return call(f"ICDGEN_READ_{group.macro}", (*target, value, f"{len(members)}u", members[0], members[-1]))
+    return call(f"ICDGEN_READ_{macro_of(group)}", (*target, value, f"{len(members)}u", members[0], members[-1]))
 
 
 def _one(field: FieldDescription) -> str:

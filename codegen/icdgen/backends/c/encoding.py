@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from icdgen.backends.c import bits
-from icdgen.backends.c.decoding import elements, in_rounds, of_array
-from icdgen.backends.c.member_groups import Array, Flags, Groups, Row, Structs
+from icdgen.backends.c.decoding import Groups, Structs, elements, in_rounds, macro_of, members_of_round, of_array
 from icdgen.backends.c.names import stem
 from icdgen.backends.c.statement import assigned_byte, call
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.description import Composite, TailDescription
+from icdgen.describe.groups import Flags, FrameBytes, Rounds, Row
 
 
 def size(message: MessageDescription) -> list[str]:
@@ -53,12 +53,10 @@ def statements(message: Composite[Any], groups: Groups) -> list[str]:
 
 
 class _Frame:
-    """What goes where: whole bytes by a statement, others as terms that are or-ed together."""
+    """Statements for the bytes of a frame, and what has to stand before them."""
 
     def __init__(self, message: Composite[Any], groups: Groups, length: int, frame: str = "buffer") -> None:
-        self.message, self.length, self.frame = message, length, frame
-        self.whole: dict[int, tuple[int, str]] = {}  # first byte -> number of bytes, statement
-        self.parts: dict[int, list[tuple[int, str]]] = {}  # byte -> (shift, term)
+        self.message, self.frame, self.bytes = message, frame, FrameBytes(length)
         self.joined: dict[int, list[str]] = {}  # byte -> statements that its terms need
         for one in groups:
             if isinstance(one, FieldDescription):
@@ -66,60 +64,51 @@ class _Frame:
             else:
                 self._group(one)
 
-    def _add(self, byte: int, shift: int, term: str) -> None:
-        self.parts.setdefault(byte, []).append((shift, term))
-
     def _one(self, field: FieldDescription) -> None:
         one = field.model
         first, size = one.at // 8, one.width // 8
         if one.is_bytes:
-            self.whole[first] = size, f"(void)memcpy(&buffer[{first}], message->{field.member}, {size}u);"
+            self.bytes.add_whole(first, size, f"(void)memcpy(&buffer[{first}], message->{field.member}, {size}u);")
         elif field.is_word:
-            self.whole[first] = size, bits.store(field, self.frame)
+            self.bytes.add_whole(first, size, bits.store(field, self.frame))
         else:
             for piece in field.pieces:
-                self._add(piece.byte, piece.shift, bits.put(field, piece))
+                self.bytes.add_part(piece.byte, piece.shift, bits.put(field, piece))
 
-    def _group(self, group: Flags | Row | Array | Structs) -> None:
-        if isinstance(group, Array):
+    def _group(self, group: Flags | Row | Rounds | Structs) -> None:
+        if isinstance(group, Rounds):
             rounds = group.rounds
-            lines = _Frame(self.message, list(group.members), rounds.step, "part").in_order()
-            self.whole[rounds.begin] = rounds.length, in_rounds(rounds, "", lines)
+            lines = _Frame(self.message, list(members_of_round(group)), rounds.step, "part").in_order()
+            self.bytes.add_whole(rounds.begin, rounds.length, in_rounds(rounds, "", lines))
             return
         if isinstance(group, Structs):
-            self.whole[group.array.begin] = group.length, of_array(group.array, group.writing)
+            self.bytes.add_whole(group.array.begin, group.length, of_array(group.array, group.writing))
             return
-        names = [field.member for field in group.members]
+        names = [field.member for field in group.fields]
         byte, source = group.byte, (f"{stem(self.message)}_t", "message")
         if isinstance(group, Row):
             arguments = (*source, f"&buffer[{byte}]", f"{len(names)}u", names[0], names[-1])
-            self.whole[byte] = group.length, call(f"ICDGEN_WRITE_{group.macro}", arguments)
+            self.bytes.add_whole(byte, group.length, call(f"ICDGEN_WRITE_{macro_of(group)}", arguments))
             return
-        macro = f"ICDGEN_JOIN_{group.macro}"
+        macro = f"ICDGEN_JOIN_{macro_of(group)}"
         if len(names) == 8:
-            self.whole[byte] = 1, call(f"buffer[{byte}] = {macro}", (*source, *names))
+            self.bytes.add_whole(byte, 1, call(f"buffer[{byte}] = {macro}", (*source, *names)))
             return
         name = f"flags_{byte}" if group.shift == 0 else f"flags_{byte}_{group.shift}"
         self.joined.setdefault(byte, []).append(call(f"const int {name} = {macro}", (*source, *names)))
-        self._add(byte, group.shift, f"{name} << {group.shift}" if group.shift else name)
+        self.bytes.add_part(byte, group.shift, f"{name} << {group.shift}" if group.shift else name)
 
     def in_order(self) -> list[str]:
         """The statements, byte by byte; bytes without a field become 0."""
         found = []
-        byte, length = 0, self.length
-        while byte < length:
-            if byte in self.whole:
-                size, statement = self.whole[byte]
-                found.append(statement)
-                byte += size
-            elif byte in self.parts:
+        for byte, length, whole, parts in self.bytes.segments():
+            if whole is not None:
+                found.append(whole)
+            elif parts:
                 found += self.joined.get(byte, ())
-                found.append(assigned_byte(f"{self.frame}[{byte}]", [term for _, term in sorted(self.parts[byte])]))
-                byte += 1
+                found.append(assigned_byte(f"{self.frame}[{byte}]", parts))
             else:
-                end = next((n for n in range(byte, length) if n in self.whole or n in self.parts), length)
-                found.append(_zero(byte, end - byte))
-                byte = end
+                found.append(_zero(byte, length))
         return found
 
 

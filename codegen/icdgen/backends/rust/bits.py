@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from icdgen.backends.lines import STEP, bracketed
-from icdgen.backends.rust.arrays import helper_of, is_run, reader, writer
+from icdgen.backends.rust.arrays import helper_of, reader, writer
 from icdgen.backends.rust.names import field_name, integer_type, own_name, struct_path
 from icdgen.backends.rust.text import WIDTH, mask
 from icdgen.describe import FieldDescription, StructDescription
-from icdgen.describe.description import Composite
 from icdgen.describe.storage import holding
 from icdgen.layout import Piece
 
@@ -31,7 +28,7 @@ def reading(field: FieldDescription, tables: set[int], depth: int = 3, within: s
     if field.model.is_count:
         return "0"
     if field.count:
-        return _array(field, depth) if is_run(field) else _listed(field, tables, depth)
+        return _array(field, depth) if field.is_copied else _listed(field, tables, depth)
     one, row = field.model, field.pieces
     if one.is_bytes:
         return f"array(bytes, {one.at // 8})"
@@ -179,7 +176,7 @@ def writing(field: FieldDescription, owner: str = "self", within: str = "") -> l
         arguments = ("&mut bytes", str(field.model.at // 8), values, function)
         return [bracketed(f"put_{helper}(", arguments, ");", WIDTH, STEP * 2)]
     if field.count:
-        if is_run(field):
+        if field.is_copied:
             return _put_run(field, f"{owner}.{field_name(field)}")
         return [line for one in field.elements for line in writing(one, owner)]
     one, row, source = field.model, field.pieces, _source(field, owner)
@@ -247,12 +244,3 @@ def _put(piece: Piece, part: str) -> str:
     if piece.shift:
         part = f"{_parenthesised(part)} << {piece.shift}"
     return f"bytes[{piece.byte}] |= {part};"
-
-
-def flag_tables(message: Composite[Any]) -> set[int]:
-    """The bytes that hold so many flags that a table is worth its load."""
-    steady = [
-        one for one in message.flat_members if one.model.type == "bool" and not one.model.when and not helper_of(one)
-    ]
-    flags = [field.pieces[0].byte for one in steady for field in one.elements or (one,)]
-    return {byte for byte in flags if flags.count(byte) >= FLAGS_FROM}

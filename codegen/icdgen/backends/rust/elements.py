@@ -9,8 +9,9 @@ from icdgen.backends.lines import STEP
 from icdgen.backends.rust import arrays, bits
 from icdgen.backends.rust.names import one_type, own_name, struct_path
 from icdgen.describe import FieldDescription, StructDescription
-from icdgen.describe.arrays import ElementRounds
+from icdgen.describe.arrays import ElementRounds, loop_of
 from icdgen.describe.description import Composite
+from icdgen.describe.groups import bytes_of_flags
 
 DEPTH = 2  # steps of the body of a function
 
@@ -19,15 +20,15 @@ def functions(one: Composite[Any]) -> Iterator[dict[str, object]]:
     """All of a message: what reads an element of an array, or as many as are whole bytes, and what writes it."""
     for field, name in arrays.named(one):
         known = {"reader": arrays.reader(name), "writer": arrays.writer(name), "of": field.model.name}
-        rounds = arrays.rounds_in(field)
+        loop = loop_of(field)
         if field.element is not None:
             yield {**known, **_of_struct(field.element, f"{name}_")}
-        elif rounds is not None:
-            yield {**known, **_of_numbers(field, rounds)}
+        elif loop is not None:
+            yield {**known, **_of_numbers(field, loop)}
 
 
 def _of_struct(struct: StructDescription, within: str) -> dict[str, object]:
-    tables, type = bits.flag_tables(struct), struct_path(struct, struct.seen_from)
+    tables, type = bytes_of_flags(struct, bits.FLAGS_FROM), struct_path(struct, struct.seen_from)
     value = literal(struct.members, [bits.reading(one, tables, within=within) for one in struct.members], type)
     writings = [line for one in struct.flat_members for line in bits.writing(one, "part", within)]
     step = struct.model.length

@@ -12,6 +12,7 @@ from icdgen.backends.rust.text import double, integer
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.constants import Constant
 from icdgen.describe.description import Composite, TailDescription
+from icdgen.describe.groups import bytes_of_flags
 
 _SUPPORT = frozenset("""
     array arrays beginning counted each element_of elements first flags longest message number power present put put_array
@@ -25,7 +26,7 @@ DERIVES_DEFAULT = 32  # elements of an array; longer ones do not
 
 def values(message: MessageDescription) -> dict[str, object]:
     """What is read, written, derived and imported."""
-    fields, tables, tail = message.members, bits.flag_tables(message), message.tail
+    fields, tables, tail = message.members, bytes_of_flags(message, bits.FLAGS_FROM), message.tail
     readings = ["None" if field.model.when else bits.reading(field, tables) for field in fields]
     views = [(field, bits.reading(field, set(), depth=2)) for field in message.overlays]
     conditions = conditional.conditional(message)

@@ -1,0 +1,178 @@
+"""Members that are read and written together: flags that share a byte, rows of words, and elements of arrays.
+
+A language says from how many members on a group is worth it; which members make a group does not depend on the language.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple
+
+from icdgen.describe.arrays import ElementRounds, loop_of, rounds_of
+from icdgen.describe.description import Composite, FieldDescription
+
+Fields = tuple[FieldDescription, ...]
+
+
+class Thresholds(NamedTuple):
+    """The sizes of groups for which a language has code."""
+
+    flags: tuple[int, ...]  # flags of one byte, the largest group first
+    row: int  # words of members that are no array; two elements of an array are a row
+
+
+class Flags(NamedTuple):
+    """Flags that are bits of ``byte``, from bit ``shift`` up; if they are falling, down to it."""
+
+    fields: Fields
+    byte: int
+    shift: int
+    is_falling: bool
+
+
+class Row(NamedTuple):
+    """Words of one size and byte order, one after the other in the frame and in memory."""
+
+    fields: Fields
+
+    @property
+    def byte(self) -> int:
+        """The first byte of the frame."""
+        return self.fields[0].model.at // 8
+
+    @property
+    def length(self) -> int:
+        """Bytes of the frame."""
+        return len(self.fields) * self.fields[0].model.bits // 8
+
+
+class Rounds(NamedTuple):
+    """Elements of an array of numbers that are no words, which a loop reads and writes. ``first`` is the first of them."""
+
+    array: FieldDescription
+    first: FieldDescription
+    rounds: ElementRounds
+
+
+Group = Flags | Row | Rounds | FieldDescription
+
+
+def groups(fields: Fields, thresholds: Thresholds) -> list[Group]:
+    """The scalars of a message in their order, those of a group as one; an array of bytes is one field."""
+    positions = [_position(field) for field in fields]
+    found: list[Group] = []
+    index = 0
+    while index < len(fields):
+        array = fields[index].array
+        if array is not None and array.model.is_bytes:
+            found.append(array)
+            index += array.count
+            continue
+        rounds = _rounds(fields[index])
+        if rounds is not None:
+            found.append(rounds)
+            index += rounds.rounds.elements
+            continue
+        group = _flags(fields, positions, index, thresholds.flags) or _row(fields, index, thresholds.row)
+        found.append(group or fields[index])
+        index += len(group.fields) if group else 1
+    return found
+
+
+def _rounds(first: FieldDescription) -> Rounds | None:
+    array = first.array if first.index == 0 else None
+    rounds = rounds_of(first, array.count) if array is not None else None
+    return None if array is None or rounds is None else Rounds(array, first, rounds)
+
+
+def _position(field: FieldDescription) -> tuple[int, int] | None:
+    """Byte and bit of a flag; None of any other field."""
+    if field.model.type != "bool":
+        return None
+    (piece,) = field.pieces
+    return piece.byte, piece.shift
+
+
+def _flags(
+    fields: Fields, positions: Sequence[tuple[int, int] | None], first: int, sizes: tuple[int, ...]
+) -> Flags | None:
+    start = positions[first]
+    if start is None:
+        return None
+    byte, shift = start
+    for count in sizes:
+        for step in (1, -1):
+            last = shift + step * (count - 1)
+            wanted = [(byte, shift + step * i) for i in range(count)]
+            if 0 <= last <= 7 and list(positions[first : first + count]) == wanted:
+                return Flags(fields[first : first + count], byte, min(shift, last), step < 0)
+    return None
+
+
+def _row(fields: Fields, begin: int, long_enough: int) -> Row | None:
+    first, end = fields[begin], begin + 1
+    bits, at = first.model.bits, first.model.at
+    if not first.is_plain_word:
+        return None
+    for field in fields[end:]:
+        at += bits
+        is_next = field.model.bits == bits and field.model.at == at
+        is_next = is_next and field.holder == first.holder  # a struct may end with padding
+        if not (is_next and field.is_plain_word and field.byte_order == first.byte_order):
+            break
+        end += 1
+    row = fields[begin:end]
+    is_array = len(row) > 1 and all(field.index is not None for field in row)
+    return Row(row) if len(row) >= long_enough or is_array else None
+
+
+def bytes_of_flags(composite: Composite[Any], at_least: int) -> set[int]:
+    """The bytes of a frame that have so many flags or more, without optional flags and those that a loop reads."""
+    members = (one for one in composite.flat_members if one.model.type == "bool" and not one.model.when)
+    flags = (flag for one in members if loop_of(one) is None for flag in one.elements or (one,))
+    counts = Counter(flag.pieces[0].byte for flag in flags)
+    return {byte for byte, count in counts.items() if count >= at_least}
+
+
+class Segment(NamedTuple):
+    """Bytes of a frame that one statement writes: ``whole`` is what it writes; without it, ``parts`` are or-ed together.
+
+    Without either no field has bits in the bytes.
+    """
+
+    byte: int
+    length: int
+    whole: str | None
+    parts: tuple[str, ...] = ()
+
+
+class FrameBytes:
+    """A frame, put together from whole bytes and from parts of bytes, which may be added in any order."""
+
+    def __init__(self, length: int) -> None:
+        self._length = length
+        self._whole: dict[int, tuple[int, str]] = {}  # first byte -> number of bytes, statement
+        self._parts: dict[int, list[tuple[int, str]]] = {}  # byte -> bit of it, term
+
+    def add_whole(self, byte: int, length: int, statement: str) -> None:
+        """Add a statement that writes so many bytes."""
+        self._whole[byte] = length, statement
+
+    def add_part(self, byte: int, shift: int, term: str) -> None:
+        """Add a term for some bits of a byte, from bit ``shift`` up."""
+        self._parts.setdefault(byte, []).append((shift, term))
+
+    def segments(self) -> Iterator[Segment]:
+        """All bytes of the frame, each once, in order."""
+        byte = 0
+        while byte < self._length:
+            if byte in self._whole:
+                segment = Segment(byte, *self._whole[byte])
+            elif byte in self._parts:
+                segment = Segment(byte, 1, None, tuple(term for _, term in sorted(self._parts[byte])))
+            else:
+                others = (n for n in range(byte, self._length) if n in self._whole or n in self._parts)
+                segment = Segment(byte, next(others, self._length) - byte, None)
+            yield segment
+            byte += segment.length
