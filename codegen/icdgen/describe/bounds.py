@@ -44,6 +44,11 @@ class Bound(NamedTuple):
     def key(self) -> str:
         return self.kind.key
 
+    @property
+    def double(self) -> float:
+        """The double nearest to the limit."""
+        return self.value.numerator / self.value.denominator
+
     def holds(self, value: Fraction | float) -> bool:
         """Whether the value keeps the limit; NaN keeps none."""
         return self.kind.holds(value, self.value)

@@ -24,6 +24,11 @@ class Constant(NamedTuple):
     comment: str
     number: str = ""  # of a special value of a float, whose bits ``value`` are: `nan`, `inf`, `-inf`, or a decimal
 
+    @property
+    def double(self) -> float:
+        """The double nearest to a physical value."""
+        return self.value.numerator / self.value.denominator
+
 
 def constants(field: NodePlace, name: str, physical_name: str, vocabulary: tuple[str, ...]) -> Iterator[Constant]:
     """The constants of a field, whose own names are given."""

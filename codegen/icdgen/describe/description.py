@@ -128,6 +128,11 @@ class FieldDescription(ScalarDescription):
         return not self.has_initial_value or (self.struct is None and self.is_open and not self.initial_count)
 
     @property
+    def needs_range_check(self) -> bool:
+        """Whether its type holds raw values that the field does not; of a struct, whether that of a member does."""
+        return self.is_narrow if self.struct is None else self.struct.is_narrow
+
+    @property
     def is_inner(self) -> bool:
         """Whether it is open with something else behind it, or stands in such a part."""
         return any(self.member_of_message.model.node is node for node in self.message.model.layout.sequence[:-1])
@@ -333,7 +338,17 @@ class Composite(Named[Fielded]):
     @property
     def is_narrow(self) -> bool:
         """Whether a field of it may be given a raw value that does not fit."""
-        return any((member.struct or member).is_narrow for member in self.members)
+        return any(member.needs_range_check for member in self.members)
+
+    @property
+    def range_check_bits(self) -> int:
+        """Bits of the widest integer that holds raw values which its field does not; 0 if there is none."""
+        widths = (
+            member.struct.range_check_bits if member.struct else member.storage.bits
+            for member in self.members
+            if member.needs_range_check
+        )
+        return max(widths, default=0)
 
     @property
     def has_floats(self) -> bool:

@@ -310,6 +310,11 @@ class VariablePart(NamedTuple):
         """Offset of its end in bytes if it has the fewest elements and all parts before it have the most."""
         return self.begin + self.fewest * self.step
 
+    @property
+    def lengths(self) -> range:
+        """Offsets that its end can have in bytes if all parts before it have the most elements."""
+        return range(self.shortest, self.begin + self.most * self.step + 1, self.step)
+
 
 def size_of(node: VariableNode) -> Counted | Rest:
     """Return the size of a node of `Layout.sequence`."""

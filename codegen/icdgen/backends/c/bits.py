@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from icdgen.backends.c.names import has
 from icdgen.backends.c.statement import grouped, joined
 from icdgen.backends.c.types import cast, mask
 from icdgen.describe import FieldDescription, MessageDescription
-from icdgen.describe.description import Composite
 from icdgen.layout import Piece
 
 BITS = "{bits}"  # stands for the bits of the field in the expressions made here
@@ -119,12 +118,4 @@ def excess(field: FieldDescription, member: str) -> str:
 
 def excess_type(message: MessageDescription) -> str:
     """The type that holds what does not fit of any field."""
-    return "uint64_t" if _is_wide(message) else "uint32_t"
-
-
-def _is_wide(composite: Composite[Any]) -> bool:
-    """Return whether a member that does not fill its type has a type of 64 bits."""
-    return any(
-        _is_wide(member.struct) if member.struct else member.is_narrow and member.storage.bits == 64
-        for member in composite.members
-    )
+    return "uint64_t" if message.range_check_bits == 64 else "uint32_t"

@@ -100,6 +100,5 @@ def table(one: Composite[Any]) -> Fields:
         place = f"{model.at}u, {model.bits}u, {field.count or 1}u"
         found.rows.append(f"{{{literal(model.name)}, {unit}, {place}, {limits}, {len(bounds)}u, {inside}}}")
         for bound in bounds:
-            value = repr(bound.value.numerator / bound.value.denominator)
-            found.limits.append(f"{{ICD_LIMIT_{bound.key.upper()}, {value}}}")
+            found.limits.append(f"{{ICD_LIMIT_{bound.key.upper()}, {bound.double!r}}}")
     return found

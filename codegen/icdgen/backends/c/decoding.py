@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from icdgen.backends.c import bits
 from icdgen.backends.c.names import stem
-from icdgen.backends.c.statement import call, either, loop
+from icdgen.backends.c.statement import call, either, failed_length_test, loop
 from icdgen.backends.c.text import WIDTH
 from icdgen.backends.c.types import cast, type_of
 from icdgen.backends.lines import STEP
@@ -15,6 +15,7 @@ from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.arrays import ElementRounds, Repeated
 from icdgen.describe.description import Composite, TailDescription
 from icdgen.describe.groups import Flags, Group, Rounds, Row, Thresholds
+from icdgen.describe.lengths import length_tests
 
 THRESHOLDS = Thresholds(flags=(8, 4), row=8)
 """Groups for which the support header has macros."""
@@ -73,12 +74,7 @@ def _count(tail: TailDescription) -> str:
 
 def misfit_length(tail: TailDescription, longest: str, known: int = 0) -> str:
     """What holds of a ``length`` of ``known`` bytes or more that no frame has; ``longest`` is the macro of the longest."""
-    tests = [f"length < {tail.model.shortest}u"] if tail.model.shortest > known else []
-    tests.append(f"length > {longest}")
-    if tail.model.step > 1:
-        rest = f"(length - {tail.model.shortest}u)" if tail.model.shortest else "length"
-        tests.append(f"({rest} % {tail.model.step}u) != 0u")
-    return either(tests)
+    return either([failed_length_test(test, longest) for test in length_tests(tail.model.lengths, known)])
 
 
 def miscounted(tail: TailDescription) -> tuple[str, str, str] | None:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from icdgen.backends.c.names import constant
 from icdgen.backends.c.text import WIDTH
 from icdgen.backends.lines import STEP, bracketed
+from icdgen.describe.lengths import LengthTest, length_tests_of_frame
 from icdgen.describe.nodes import MessageOfId
 
 _COMPOUND = re.compile(r" (?:<<|>>|&) \w+\Z")
@@ -57,7 +58,8 @@ def like(candidate: MessageOfId, depth: int = 3) -> str:
     ``depth`` is that of the lines after the first.
     """
     message = candidate.message
-    terms = _lengths(message.model.layout.lengths, constant(message, "length"))
+    tests = length_tests_of_frame(message.model.layout.lengths)
+    terms = [length_test(test, constant(message, "length")) for test in tests]
     for sign in candidate.signs:
         byte = f"buffer[{sign.byte}]"
         if sign.byte >= message.model.layout.shortest:
@@ -67,17 +69,29 @@ def like(candidate: MessageOfId, depth: int = 3) -> str:
     return either(terms, f" &&\n{STEP * depth}")
 
 
-def _lengths(lengths: range, longest: str) -> list[str]:
-    """What holds of the ``length`` of a frame; ``longest`` is the macro of the longest."""
-    least, step = lengths[0], lengths.step
-    if len(lengths) == 1:
-        return [f"length == {longest}"]
-    tests = [f"length >= {least}u"] if least else []
-    tests.append(f"length <= {longest}")
-    if step > 1:
-        rest = f"(length - {least}u)" if least else "length"
-        tests.append(f"({rest} % {step}u) == 0u")
-    return tests
+def length_test(test: LengthTest, longest: str) -> str:
+    """What holds of a ``length`` that passes; ``longest`` is the macro of the longest."""
+    if test.kind == "multiple":
+        return f"{_remainder(test)} == 0u"
+    operators = {"equal": "==", "at least": ">=", "at most": "<="}
+    return f"length {operators[test.kind]} {_bytes(test, longest)}"
+
+
+def failed_length_test(test: LengthTest, longest: str) -> str:
+    """What holds of a ``length`` that does not pass."""
+    if test.kind == "multiple":
+        return f"{_remainder(test)} != 0u"
+    operators = {"equal": "!=", "at least": "<", "at most": ">"}
+    return f"length {operators[test.kind]} {_bytes(test, longest)}"
+
+
+def _bytes(test: LengthTest, longest: str) -> str:
+    return f"{test.value}u" if test.kind == "at least" else longest
+
+
+def _remainder(test: LengthTest) -> str:
+    counted = f"(length - {test.without}u)" if test.without else "length"
+    return f"({counted} % {test.value}u)"
 
 
 def head(returned: str, name: str, *parameters: str) -> str:

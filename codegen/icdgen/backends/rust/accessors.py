@@ -110,9 +110,7 @@ def field_row(field: FieldDescription) -> str:
     if one.unit is not None:
         chain.append(f".unit({string(one.unit.symbol)})")
     if field.bounds:
-        limits = [
-            f'("{bound.key}", {double(bound.value.numerator / bound.value.denominator)})' for bound in field.bounds
-        ]
+        limits = [f'("{bound.key}", {double(bound.double)})' for bound in field.bounds]
         chain.append(f".limits(&[{', '.join(limits)}])")
     if field.steps is not None:
         chain.append(f".{'wide_scale' if field.steps.is_wide else 'scale'}(&{field.name.upper()})")

@@ -83,7 +83,7 @@ def of_composite(one: Composite[Any]) -> dict[str, object]:
     fields = one.members
     has_default = all(map(_is_default, fields))
     traits = ["Clone", "Copy", "Debug", *(["Default"] if has_default else []), "PartialEq"]
-    narrow = [field for field in fields if (field.struct or field).is_narrow]
+    narrow = [field for field in fields if field.needs_range_check]
     return {
         "constants": _constants(one),
         "fits": [line for field in narrow if not field.model.when for line in bits.fitting(field)],
@@ -109,7 +109,7 @@ def _constant(field: FieldDescription, one: Constant) -> tuple[str, str]:
         return "bool", "true" if one.value else "false"
     if isinstance(one.value, int):
         return integer_type(field), integer(one.value)
-    return "f64", double(one.value.numerator / one.value.denominator)
+    return "f64", double(one.double)
 
 
 def _length(before: int, step: int) -> str:

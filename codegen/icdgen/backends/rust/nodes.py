@@ -6,6 +6,7 @@ from icdgen.backends.lines import STEP
 from icdgen.backends.rust.text import WIDTH, code, doc, integer, mask, prose
 from icdgen.describe import NodeDescription
 from icdgen.describe.comments import sentence
+from icdgen.describe.lengths import length_tests_of_frame
 from icdgen.describe.nodes import MessageOfId
 from icdgen.describe.storage import holding
 from icdgen.icd.model import Node
@@ -54,10 +55,12 @@ def guarded(candidate: MessageOfId, path: str) -> str:
 
 def _lengths(lengths: range, longest: str) -> list[str]:
     """What holds of the length of a frame; ``longest`` is the constant of the longest."""
-    least, step = lengths[0], lengths.step
-    if len(lengths) == 1:
+    tests = {test.kind: test for test in length_tests_of_frame(lengths)}
+    if "equal" in tests:
         return [f"bytes.len() == {longest}"]
-    tests = [f"({least}..={longest}).contains(&bytes.len())" if least else f"bytes.len() <= {longest}"]
-    if step > 1:
-        tests.append(f"{f'(bytes.len() - {least})' if least else 'bytes.len()'} % {step} == 0")
-    return tests
+    least, multiple = tests.get("at least"), tests.get("multiple")
+    terms = [f"({least.value}..={longest}).contains(&bytes.len())" if least else f"bytes.len() <= {longest}"]
+    if multiple:
+        counted = f"(bytes.len() - {multiple.without})" if multiple.without else "bytes.len()"
+        terms.append(f"{counted} % {multiple.value} == 0")
+    return terms

@@ -1,0 +1,50 @@
+"""Tests of the length of a frame, as decoders make them."""
+
+from __future__ import annotations
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from icdgen.describe import describe
+from icdgen.describe.lengths import LengthTest, length_tests, length_tests_of_frame
+from tests.conformance.icds import read
+from tests.conftest import ROOT
+
+
+def passes(test: LengthTest, length: int) -> bool:
+    match test.kind:
+        case "equal":
+            return length == test.value
+        case "at least":
+            return length >= test.value
+        case "at most":
+            return length <= test.value
+    return (length - test.without) % test.value == 0
+
+
+@given(st.integers(0, 20), st.integers(0, 20), st.integers(1, 9))
+def test_a_decoder_accepts_exactly_the_lengths_of_a_message(least, more, step):
+    lengths = range(least, least + more * step + 1, step)
+    tests = length_tests_of_frame(lengths)
+    for length in range(least + more * step + 20):
+        assert all(passes(test, length) for test in tests) == (length in lengths)
+
+
+@given(st.integers(0, 20), st.integers(0, 20), st.integers(1, 9))
+def test_a_test_is_left_out_only_if_what_is_known_implies_it(known, more, step):
+    lengths = range(known, known + more * step + 1, step)
+    tests = length_tests(lengths, known)
+    assert "at least" not in {test.kind for test in tests}
+    for length in range(known, known + more * step + 20):
+        assert all(passes(test, length) for test in tests) == (length in lengths)
+
+
+def test_messages_with_parts_of_variable_length_accept_the_lengths_of_their_last_part():
+    icd = read(ROOT / "tests/conformance/odd_icds")
+    messages = [message.model for node in describe(icd).nodes for message in node.messages]
+    single = [message.layout for message in messages if len(message.layout.parts) == 1]
+    assert single
+    for layout in single:
+        tests = length_tests_of_frame(layout.lengths)
+        accepted = [length for length in range(layout.longest + 9) if all(passes(test, length) for test in tests)]
+        assert accepted == list(layout.parts[0].lengths) == list(layout.lengths)
