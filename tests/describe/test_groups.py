@@ -8,7 +8,17 @@ from hypothesis import strategies as st
 
 from icdgen.describe import FieldDescription, MessageDescription, describe
 from icdgen.describe.arrays import loop_of
-from icdgen.describe.groups import Flags, FrameBytes, Group, Rounds, Row, Thresholds, bytes_of_flags, groups
+from icdgen.describe.groups import (
+    Flags,
+    FrameBytes,
+    Group,
+    Rounds,
+    Row,
+    Thresholds,
+    bytes_of_flags,
+    grouped_fields,
+    groups,
+)
 from tests.conformance.icds import read
 from tests.conftest import ROOT
 from tests.icd.files import loaded, status
@@ -34,23 +44,22 @@ def scalars_of(group: Group) -> list[FieldDescription]:
             return list(group.fields)
         case Rounds(array, _, rounds):
             return list(array.elements[: rounds.elements])
-    return list(group.elements) or [group]
+    return list(group.elements)
 
 
 @pytest.mark.parametrize("thresholds", [SMALL, LARGE], ids=["small", "large"])
 @pytest.mark.parametrize("path", SETS)
 def test_every_field_is_in_one_group_and_groups_keep_the_order_of_fields(path, thresholds):
     for one in messages(path):
-        fields = one.unconditional_fields
-        grouped = [field.model.name for group in groups(fields, thresholds) for field in scalars_of(group)]
-        assert grouped == [field.model.name for field in fields], one.name
+        grouped = [field.model.name for group in groups(one, thresholds) for field in scalars_of(group)]
+        assert grouped == [field.model.name for field in grouped_fields(one)], one.name
 
 
 @pytest.mark.parametrize("thresholds", [SMALL, LARGE], ids=["small", "large"])
 @pytest.mark.parametrize("path", SETS)
 def test_flags_of_a_group_are_neighbouring_bits_of_a_byte_and_words_of_a_row_follow_each_other(path, thresholds):
     for one in messages(path):
-        for group in groups(one.unconditional_fields, thresholds):
+        for group in groups(one, thresholds):
             if isinstance(group, Flags):
                 bits = range(group.shift, group.shift + len(group.fields))
                 wanted = [(group.byte, bit) for bit in (reversed(bits) if group.is_falling else bits)]
@@ -67,9 +76,9 @@ def test_members_are_a_row_from_the_threshold_on_and_elements_of_an_array_always
     fields = [f"name: W{n}, at: {16 * n}, bits: 16, type: uint" for n in range(3)]
     fields.append("name: Levels, at: 48, bits: 8, type: uint, count: 2")
     one = message(tmp_path, *fields, length=8)
-    kinds = [type(group) for group in groups(one.fields, SMALL)]
+    kinds = [type(group) for group in groups(one, SMALL)]
     assert kinds == [Row, Row]
-    assert [type(group) for group in groups(one.fields, LARGE)] == [FieldDescription] * 3 + [Row]
+    assert [type(group) for group in groups(one, LARGE)] == [FieldDescription] * 3 + [Row]
 
 
 def test_a_loop_reads_all_elements_of_an_array_or_none(tmp_path):

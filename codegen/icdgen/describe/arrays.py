@@ -10,7 +10,7 @@ from dataclasses import replace
 from math import gcd
 from typing import Any, NamedTuple
 
-from icdgen.describe.description import Composite, FieldDescription, StructDescription
+from icdgen.describe.description import Composite, FieldDescription, Into, StructDescription
 
 MANY_ENOUGH = 4
 """From this many elements on there are rounds; of fewer, each is read and written by itself."""
@@ -37,7 +37,7 @@ class Repeated(NamedTuple):
 def repeated_in(one: Composite[Any], within: str = "") -> tuple[Repeated, ...]:
     """Those of a message or struct itself, its open end among them; ``within`` is where their names begin."""
     return tuple(
-        Repeated(part, part.element, within + part.name) for part in one.flat_members if part.element is not None
+        Repeated(part, part.element, within + part.name) for part in one.walk(Into.STRUCTS) if part.element is not None
     )
 
 
@@ -52,7 +52,7 @@ def arrays_named(
     one: Composite[Any], wanted: Callable[[FieldDescription], bool], within: str = ""
 ) -> Iterator[tuple[FieldDescription, str]]:
     """The arrays of a message that are wanted, arrays of structs among them, and their names; those in others come first."""
-    for part in one.flat_members:
+    for part in one.walk(Into.STRUCTS):
         if wanted(part):
             name = within + part.name
             if part.element is not None:

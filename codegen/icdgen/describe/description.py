@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import enum
 from collections.abc import Iterator
 from copy import copy
 from typing import Any, NamedTuple, TypeVar
@@ -17,8 +18,16 @@ from icdgen.icd.model import Enum, Icd, Message, Node, Struct
 from icdgen.icd.places import NodePlace, places_of
 from icdgen.once import cached_property
 
-_OF_PLACE = ("needs", "places", "elements", "leaf_members", "members_by_instance", "flat_members", "element", "comment")
+_OF_PLACE = ("needs", "elements", "instances", "element", "comment")
 """Attributes that are worked out for one place of a field."""
+
+
+class Into(enum.Enum):
+    """How far `walk` goes; what it does not go into stands as one field."""
+
+    STRUCTS = 1  # into single structs
+    ARRAYS_OF_STRUCTS = 2  # into each element of these, too
+    ALL_ARRAYS = 3  # into each element of any array: all scalars
 
 
 class Need(NamedTuple):
@@ -144,45 +153,32 @@ class FieldDescription(ScalarDescription):
         return tuple(Need(known[one.field], tuple(sorted(one.values))) for one in self.model.when if one.field in known)
 
     @cached_property
-    def places(self) -> tuple[FieldDescription, ...]:
-        """The elements of an array, structs whole; of anything else the field itself."""
+    def elements(self) -> tuple[FieldDescription, ...]:
+        """The elements of an array; of anything else the field itself."""
         return tuple(map(self._element, self.model.elements()))
 
     @cached_property
-    def elements(self) -> tuple[FieldDescription, ...]:
-        """All fields of an array, or of a struct, that stands as one; else none."""
-        if not self.count and self.struct is None:
+    def instances(self) -> tuple[tuple[FieldDescription, ...], ...]:
+        """The members of a struct where it stands: once, or for each element of an array; empty without a struct."""
+        if self.struct is None:
             return ()
-        return tuple(self.scalars)
+        return tuple(tuple(map(element._inner, element.model.inner())) for element in self.elements)
+
+    def walk(self, into: Into) -> Iterator[FieldDescription]:
+        """The fields that it is made of, in the order of the ICD."""
+        if self.struct is None:
+            yield from self.elements if into is Into.ALL_ARRAYS else (self,)
+        elif self.count and into is Into.STRUCTS:
+            yield self
+        else:
+            for members in self.instances:
+                for member in members:
+                    yield from member.walk(into)
 
     @property
     def scalars(self) -> Iterator[FieldDescription]:
         """All scalars that it is made of: itself, each element of an array, each field of a struct."""
-        if self.struct is None:
-            yield from self.places
-        else:
-            yield from (scalar for row in self.members_by_instance for one in row for scalar in one.scalars)
-
-    @cached_property
-    def leaf_members(self) -> tuple[FieldDescription, ...]:
-        """What is read and written as one: itself, or of a struct what stands in it, arrays as one."""
-        if self.struct is None:
-            return (self,)
-        return tuple(leaf for row in self.members_by_instance for one in row for leaf in one.leaf_members)
-
-    @cached_property
-    def members_by_instance(self) -> tuple[tuple[FieldDescription, ...], ...]:
-        """The members of a struct wherever it stands: once, or as often as there are elements; else none."""
-        if self.struct is None:
-            return ()
-        return tuple(tuple(map(place._inner, place.model.inner())) for place in self.places)
-
-    @cached_property
-    def flat_members(self) -> tuple[FieldDescription, ...]:
-        """The same as `leaf_members`, but an array of structs is one, too."""
-        if self.struct is None or self.count:
-            return (self,)
-        return tuple(block for one in self.members_by_instance[0] for block in one.flat_members)
+        return self.walk(Into.ALL_ARRAYS)
 
     @cached_property
     def element(self) -> StructDescription | None:
@@ -245,11 +241,6 @@ class Composite(Named[Fielded]):
         raise NotImplementedError
 
     @cached_property
-    def all_fields(self) -> tuple[FieldDescription, ...]:
-        """Fields and views, in the order of the ICD; each element of an array, each field of a struct."""
-        return tuple(scalar for member in self.all_members for scalar in member.scalars)
-
-    @cached_property
     def all_members(self) -> tuple[FieldDescription, ...]:
         """Members and views, in the order of the ICD: what is declared in code."""
         return tuple(map(self._member, places_of(self.model.layout, self.outer_orders)))
@@ -289,33 +280,17 @@ class Composite(Named[Fielded]):
     @cached_property
     def fields(self) -> tuple[FieldDescription, ...]:
         """What has bits of its own, in the order of the ICD, each element of an array, each field of a struct."""
-        return tuple(scalar for member in self.members for scalar in member.scalars)
+        return tuple(self.walk(Into.ALL_ARRAYS))
 
     @property
     def tail(self) -> TailDescription | None:
         """The open end of a message, where frames differ in length."""
         return None
 
-    @property
-    def frame_members(self) -> tuple[FieldDescription, ...]:
-        """Members that have bits in the frame: without the count that only the length of the frame tells."""
-        return self.members if self.tail is None else tuple(one for one in self.members if not one.model.is_count)
-
-    @cached_property
-    def frame_fields(self) -> tuple[FieldDescription, ...]:
-        """The fields that have bits in the frame, each element of an array, but those in arrays of structs."""
-        blocks = (block for block in self.flat_members if not block.model.is_count and block.element is None)
-        return tuple(scalar for block in blocks for scalar in block.scalars)
-
-    @cached_property
-    def leaf_members(self) -> tuple[FieldDescription, ...]:
-        """The same, but arrays as one."""
-        return tuple(leaf for one in self.members for leaf in one.leaf_members)
-
-    @cached_property
-    def flat_members(self) -> tuple[FieldDescription, ...]:
-        """The same as `leaf_members`, but an array of structs is one, too."""
-        return tuple(block for one in self.members for block in one.flat_members)
+    def walk(self, into: Into) -> Iterator[FieldDescription]:
+        """The fields that it is made of, in the order of the ICD, without overlay fields and derived values."""
+        for member in self.members:
+            yield from member.walk(into)
 
     def element(self, part: FieldDescription, struct: StructDescription) -> StructDescription:
         """What an array of structs in it has as an element."""

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 from icdgen.describe.arrays import ElementRounds, loop_of, rounds_of
-from icdgen.describe.description import Composite, FieldDescription
+from icdgen.describe.description import Composite, FieldDescription, Into
 
 Fields = tuple[FieldDescription, ...]
 
@@ -58,8 +58,16 @@ class Rounds(NamedTuple):
 Group = Flags | Row | Rounds | FieldDescription
 
 
-def groups(fields: Fields, thresholds: Thresholds) -> list[Group]:
-    """The scalars of a message in their order, those of a group as one; an array of bytes is one field."""
+def grouped_fields(composite: Composite[Any]) -> Iterator[FieldDescription]:
+    """The scalars that have bits in every frame, without those in arrays of structs."""
+    for member in composite.walk(Into.STRUCTS):
+        if member.element is None and not member.model.is_count and not member.model.when:
+            yield from member.scalars
+
+
+def groups(composite: Composite[Any], thresholds: Thresholds) -> list[Group]:
+    """The `grouped_fields` in their order, those of a group as one; an array of bytes is one field."""
+    fields = tuple(grouped_fields(composite))
     positions = [_position(field) for field in fields]
     found: list[Group] = []
     index = 0
@@ -129,8 +137,8 @@ def _row(fields: Fields, begin: int, long_enough: int) -> Row | None:
 
 def bytes_of_flags(composite: Composite[Any], at_least: int) -> set[int]:
     """The bytes of a frame that have so many flags or more, without optional flags and those that a loop reads."""
-    members = (one for one in composite.flat_members if one.model.type == "bool" and not one.model.when)
-    flags = (flag for one in members if loop_of(one) is None for flag in one.elements or (one,))
+    members = (one for one in composite.walk(Into.STRUCTS) if one.model.type == "bool" and not one.model.when)
+    flags = (flag for one in members if loop_of(one) is None for flag in one.elements)
     counts = Counter(flag.pieces[0].byte for flag in flags)
     return {byte for byte, count in counts.items() if count >= at_least}
 

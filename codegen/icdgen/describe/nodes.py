@@ -51,12 +51,6 @@ class MessageDescription(Composite[Message]):
         """The members that are not always there."""
         return tuple(member for member in self.members if member.model.when)
 
-    @cached_property
-    def unconditional_fields(self) -> tuple[FieldDescription, ...]:
-        """Those of `frame_fields` that are in every frame."""
-        fields = self.frame_fields
-        return tuple(field for field in fields if not field.model.when) if self.conditional else fields
-
     @property
     def tail(self) -> TailDescription | None:
         """Its open end, where frames differ in length."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from icdgen.describe.description import FieldDescription
+from icdgen.describe.description import FieldDescription, Into
 from icdgen.describe.nodes import MessageDescription
 
 
@@ -33,14 +33,14 @@ class PartDescription(NamedTuple):
     def copies(self, composite: MessageDescription, begin: int) -> Iterator[Copied]:
         """What its members are of a message, from a bit on; of a struct what stands in it."""
         fields = {field.model.at: field for field in composite.fields}
-        arrays = {field.model.at: field for field in composite.leaf_members if field.count}
-        for member in self.message.leaf_members:
+        arrays = {field.model.at: field for field in composite.walk(Into.ARRAYS_OF_STRUCTS) if field.count}
+        for member in self.message.walk(Into.ARRAYS_OF_STRUCTS):
             at = begin + member.model.at
             array = arrays.get(at) if member.count else None
             if array is not None and array.count == member.count:
                 yield Copied(member, (array,))
             else:
-                yield Copied(member, tuple(fields[begin + one.model.at] for one in member.elements or (member,)))
+                yield Copied(member, tuple(fields[begin + one.model.at] for one in member.elements))
 
 
 def parts_of(composite: MessageDescription) -> tuple[PartDescription, ...]:

@@ -133,7 +133,13 @@ class _Rows:
 
     def all(self) -> dict[str, object]:
         node, upper = self.node, self.node.name.upper()
-        used = {f.enum: None for message in node.messages for f in message.all_fields if f.enum is not None}
+        used = {
+            f.enum: None
+            for message in node.messages
+            for member in message.all_members
+            for f in member.scalars
+            if f.enum is not None
+        }
         dispatchers = [
             self.dispatcher("telecommand", [(m, m.telecommand_id_name) for m in node.telecommands]),
             self.dispatcher("telemetry", [(m, m.telemetry_id_name) for m in node.telemetry]),

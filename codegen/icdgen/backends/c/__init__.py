@@ -110,7 +110,7 @@ def _composite(one: Composite[Any], more: Iterable[str] = ()) -> dict[str, objec
 
 def _message(message: MessageDescription) -> dict[str, object]:
     fields = [
-        *groups(message.unconditional_fields, THRESHOLDS),
+        *groups(message, THRESHOLDS),
         *_arrays(message, (one for one in repeated_in(message) if not one.part.is_open)),
     ]
     return {
@@ -140,7 +140,7 @@ def _arrays(message: MessageDescription, arrays: Iterable[Repeated]) -> Groups:
 def _repeated(message: MessageDescription, one: Repeated) -> dict[str, object]:
     """The functions that read and write an element of an array of structs."""
     fields = [
-        *groups(one.element.frame_fields, THRESHOLDS),
+        *groups(one.element, THRESHOLDS),
         *_arrays(message, repeated_in(one.element, f"{one.name}_")),
     ]
     return {

@@ -14,7 +14,7 @@ from icdgen.backends.c.statement import loop
 from icdgen.backends.c.text import literal
 from icdgen.backends.lines import STEP
 from icdgen.describe import FieldDescription, MessageDescription
-from icdgen.describe.description import Composite
+from icdgen.describe.description import Composite, Into
 
 _Said = Callable[[FieldDescription, str, str], list[str]]
 """The lines for a field, for what it is called in C from the message on, and in the ICD; none if there is nothing to do."""
@@ -32,7 +32,7 @@ def _statements(
     if field.element is None:
         lines = said(field, member, name)
     else:
-        inner = ((one, f"{one.count}u") for one in field.element.flat_members)
+        inner = ((one, f"{one.count}u") for one in field.element.walk(Into.STRUCTS))
         lines = [
             line for one, many in inner for line in _statements(one, said, many, f"{member}.", f"{name}[].", depth + 1)
         ]
@@ -45,7 +45,7 @@ def initial(message: Composite[Any]) -> list[str]:
     """Statements that give fields with only one valid value that value, and what counts an open end its smallest."""
     counters = [field for field in message.members if field.model.smallest_raw]
     found = [f"message->{field.member} = {field.initial_raw}u;" for field in counters]
-    for field in message.flat_members:
+    for field in message.walk(Into.STRUCTS):
         if field.initial_count or not field.count:
             found += _statements(field, _valid, f"{field.initial_count}u")
     return found
@@ -67,7 +67,7 @@ def excess(message: MessageDescription) -> list[str]:
 
 def _looked_at(message: MessageDescription, is_open: bool, said: _Said) -> list[str]:
     found = []
-    for field in message.flat_members:
+    for field in message.walk(Into.STRUCTS):
         if field.is_open == is_open:
             found += _statements(field, said, elements(message.tail) if is_open and message.tail else f"{field.count}u")
     return found

@@ -45,7 +45,7 @@ def _statements(copied: Copied) -> Iterator[str]:
         whole = f"part->{member.member}"
         yield call("(void)memcpy", (whole, f"message->{copied.twins[0].member}", f"sizeof {whole}"))
         return
-    for one, twin in zip(member.elements or (member,), copied.twins, strict=True):
+    for one, twin in zip(member.elements, copied.twins, strict=True):
         target, source = f"part->{one.member}", f"message->{twin.member}"
         is_bytes = one.model.is_bytes
         yield call("(void)memcpy", (target, source, f"sizeof {target}")) if is_bytes else f"{target} = {source};"

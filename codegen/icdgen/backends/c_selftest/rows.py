@@ -115,7 +115,7 @@ class _Rows:
         for row in vectors.rows:  # reserved bits are those that no vector keeps
             kept = bytes(a | b for a, b in zip(kept, row.encoded.ljust(len(kept), b"\0"), strict=True))
         tables: dict[tuple[int, ...], str] = {}
-        fields = [self.field(field, vectors, tables) for field in message.all_fields]
+        fields = [self.field(field, vectors, tables) for field in _scalars(message)]
         doubles = (f"UINT64_C(0x{double})" for row in vectors.rows for double in row.doubles.values())
         differ = len(message.model.layout.lengths) > 1
         return {
@@ -194,7 +194,7 @@ def _plain(message: MessageDescription, vectors: MessageVectors) -> MessageVecto
     if not message.conditional:
         return vectors
     absent: Raw = {field.model.name: field.model.initial_value for field in message.conditional}
-    scaled = [one.model for one in message.all_fields if one.model.has_formula]
+    scaled = [one.model for one in _scalars(message) if one.model.has_formula]
     rows = []
     for row in vectors.rows:
         raw = {field.name: (absent | row.raw)[field.name] for field in scalars_in(message.model.layout)}
@@ -205,11 +205,16 @@ def _plain(message: MessageDescription, vectors: MessageVectors) -> MessageVecto
     return replace(vectors, rows=tuple(rows), default=vectors.default | fresh, unfit=always)
 
 
+def _scalars(message: MessageDescription) -> Iterator[FieldDescription]:
+    """All scalars of a message, overlay fields and derived values among them, in the order of the ICD."""
+    return (scalar for member in message.all_members for scalar in member.scalars)
+
+
 def _tail(message: MessageDescription, tail: TailDescription, vectors: MessageVectors) -> dict[str, object]:
     """What there is of a message whose frames differ in length."""
     return {
         "least": message.model.layout.shortest,
-        "counter": next(place for place, one in enumerate(message.all_fields) if one.model is tail.counter.model),
+        "counter": next(place for place, one in enumerate(_scalars(message)) if one.model is tail.counter.model),
         "high": tail.model.high,
         "frames": _bytes(b"".join(frame.ljust(message.model.length, b"\0") for frame in vectors.miscounted)),
         "frame_lengths": list(map(len, vectors.miscounted)),

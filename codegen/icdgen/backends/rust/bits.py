@@ -54,7 +54,7 @@ def _called(field: FieldDescription, helper: str, within: str, depth: int) -> st
 
 
 def _struct(field: FieldDescription, struct: StructDescription, tables: set[int], depth: int, within: str) -> str:
-    pad, (row,) = STEP * depth, field.members_by_instance
+    pad, (row,) = STEP * depth, field.instances
     lines = (f"{pad}{STEP}{own_name(one)}: {reading(one, tables, depth + 1, within)},\n" for one in row)
     return f"{struct_path(struct, field.message.seen_from)} {{\n{''.join(lines)}{pad}}}"
 

@@ -10,7 +10,7 @@ from icdgen.backends.rust import arrays, bits
 from icdgen.backends.rust.names import one_type, own_name, struct_path
 from icdgen.describe import FieldDescription, StructDescription
 from icdgen.describe.arrays import ElementRounds, loop_of
-from icdgen.describe.description import Composite
+from icdgen.describe.description import Composite, Into
 from icdgen.describe.groups import bytes_of_flags
 
 DEPTH = 2  # steps of the body of a function
@@ -30,7 +30,7 @@ def functions(one: Composite[Any]) -> Iterator[dict[str, object]]:
 def _of_struct(struct: StructDescription, within: str) -> dict[str, object]:
     tables, type = bytes_of_flags(struct, bits.FLAGS_FROM), struct_path(struct, struct.seen_from)
     value = literal(struct.members, [bits.reading(one, tables, within=within) for one in struct.members], type)
-    writings = [line for one in struct.flat_members for line in bits.writing(one, "part", within)]
+    writings = [line for one in struct.walk(Into.STRUCTS) for line in bits.writing(one, "part", within)]
     step = struct.model.length
     return {"step": step, "type": type, "tables": sorted(tables), "value": value, "writings": writings}
 

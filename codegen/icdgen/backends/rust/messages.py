@@ -11,7 +11,7 @@ from icdgen.backends.rust.physical import has_constant
 from icdgen.backends.rust.text import double, integer
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.constants import Constant
-from icdgen.describe.description import Composite, TailDescription
+from icdgen.describe.description import Composite, Into, TailDescription
 from icdgen.describe.groups import bytes_of_flags
 
 _SUPPORT = frozenset("""
@@ -30,7 +30,7 @@ def values(message: MessageDescription) -> dict[str, object]:
     readings = ["None" if field.model.when else bits.reading(field, tables) for field in fields]
     views = [(field, bits.reading(field, set(), depth=2)) for field in message.overlays]
     conditions = conditional.conditional(message)
-    writings = [line for one in message.flat_members if not one.model.when for line in bits.writing(one)]
+    writings = [line for one in message.walk(Into.STRUCTS) if not one.model.when for line in bits.writing(one)]
     return {
         **of_composite(message),
         "refused": message.is_narrow or bool(conditions),

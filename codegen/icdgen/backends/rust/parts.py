@@ -44,7 +44,7 @@ def _values(part: PartDescription, composite: MessageDescription, begin: int) ->
 def _struct(field: FieldDescription, struct: StructDescription, copies: dict[str, Copied]) -> str:
     """A struct, or an array of them, of the values that stand in it."""
     path, found = struct_path(struct, field.message.node), []
-    for row in field.members_by_instance:
+    for row in field.instances:
         values = (_struct(one, one.struct, copies) if one.struct else _value(copies[one.model.name]) for one in row)
         found.append(f"{path} {{ {', '.join(values)} }}")
     rows = ", ".join(found)

@@ -10,7 +10,7 @@ from icdgen import naming
 from icdgen.backends.xtce.places import Run, gaps, run_of, run_of_all
 from icdgen.backends.xtce.types import Type, Types, is_said, most_first, type_of, unique
 from icdgen.describe import FieldDescription, MessageDescription
-from icdgen.describe.description import TailDescription
+from icdgen.describe.description import Into, TailDescription
 from icdgen.icd.model import TELECOMMAND, Special
 
 
@@ -227,7 +227,7 @@ def _add_row(made: Frame, one: FieldDescription, type_: str, most: int = 0) -> N
 
 def _parts(message: MessageDescription) -> Iterator[FieldDescription]:
     """What has a fixed place: fields of structs, arrays as one where XTCE can have them so, at last views."""
-    for one in message.leaf_members:
+    for one in message.walk(Into.ARRAYS_OF_STRUCTS):
         if one.is_open or one.is_inner or one.model.is_count:
             continue
         is_array = one.model.const is None and one.count and run_of_all(one.model.elements(), message.node) is not None
