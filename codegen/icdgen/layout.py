@@ -26,7 +26,22 @@ class Piece(NamedTuple):
     @property
     def mask(self) -> int:
         """Mask of the run within its byte."""
-        return ((1 << self.bits) - 1) << self.shift
+        return self.low_mask << self.shift
+
+    @property
+    def low_mask(self) -> int:
+        """Mask of the run once it is shifted down to bit 0."""
+        return (1 << self.bits) - 1
+
+    @property
+    def is_byte(self) -> bool:
+        """Whether the run is all of its byte."""
+        return self.bits == 8
+
+    @property
+    def reaches_top(self) -> bool:
+        """Whether the run has the most significant bit of its byte, so that shifting it down leaves no other bits."""
+        return self.shift + self.bits == 8
 
 
 @lru_cache(maxsize=65536)
@@ -78,7 +93,7 @@ def constant_bytes(variant: Variant) -> tuple[ConstantByte, ...]:
     for field in variant.constants:
         for piece in pieces(field, variant.node):
             mask, value = masks.get(piece.byte, (0, 0))
-            bits = (field.const or 0) >> piece.at & (1 << piece.bits) - 1
+            bits = (field.const or 0) >> piece.at & piece.low_mask
             masks[piece.byte] = mask | piece.mask, value | bits << piece.shift
     return tuple(ConstantByte(byte, mask, value) for byte, (mask, value) in sorted(masks.items()))
 

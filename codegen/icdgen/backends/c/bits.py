@@ -64,8 +64,8 @@ def _byte(piece: Piece, frame: str) -> str:
 def _low_bits(piece: Piece, frame: str) -> str:
     """The run of bits, moved down to bit 0."""
     if piece.shift == 0:
-        return _byte(piece, frame) if piece.bits == 8 else f"{_byte(piece, frame)} & {mask(piece.mask, 8)}"
-    return f"({_byte(piece, frame)} >> {piece.shift}) & {mask((1 << piece.bits) - 1, 8)}"
+        return _byte(piece, frame) if piece.is_byte else f"{_byte(piece, frame)} & {mask(piece.mask, 8)}"
+    return f"({_byte(piece, frame)} >> {piece.shift}) & {mask(piece.low_mask, 8)}"
 
 
 def _shifted(piece: Piece, wide: int, frame: str) -> str:
@@ -82,8 +82,8 @@ def put(field: FieldDescription, piece: Piece) -> str:
     if storage.bits > 8 or storage.signed:
         value = cast(value, 8)
     top = piece.at + piece.bits == field.model.bits and not storage.signed
-    if not top and piece.shift + piece.bits < 8:
-        value = f"{grouped(value)} & 0x{(1 << piece.bits) - 1:02X}"
+    if not top and not piece.reaches_top:
+        value = f"{grouped(value)} & 0x{piece.low_mask:02X}"
     return f"{grouped(value)} << {piece.shift}" if piece.shift else value
 
 

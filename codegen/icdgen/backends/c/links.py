@@ -9,6 +9,7 @@ from icdgen.backends.c.facts import TYPES, boolean, or_none, spelled
 from icdgen.backends.c.text import comment, plain
 from icdgen.backends.lines import STEP, in_rows
 from icdgen.describe.links import CAN_PARTS, INDEX_PARTS, Assumptions, LinkDescription, SentMessage, StepDescription
+from icdgen.protocol.crc import byte_table
 from icdgen.protocol.declared import Kind, facts_of
 from icdgen.protocol.envelope import CRC, PACKET, EnvelopeField, Stream, StreamRow
 from icdgen.protocol.sections import BUSES, CAN_KINDS, PROCEDURES, Crc, Step
@@ -265,7 +266,7 @@ class _Tables:
         """The initialiser of a CRC without its braces; the table for whole bytes is one of its own."""
         found = ["NULL", "NULL"]
         if is_crc and one.width <= 16:
-            entries = (f"{value:#0{2 + -(-one.width // 4)}x}u" for value in crc_table(one))
+            entries = (f"{value:#0{2 + -(-one.width // 4)}x}u" for value in byte_table(one))
             bits = 8 if one.width <= 8 else 16
             found[bits // 8 - 1] = f"ICDGEN_TABLE({self.numbers(f'{name}_table', f'uint{bits}_t', entries, 8)})"
             self.tables[-1] = self.tables[-1]._replace(unless="ICDGEN_NO_TABLES")
@@ -370,16 +371,3 @@ def _short(messages: Iterable[SentMessage]) -> list[SentMessage]:
 
 def _count(name: str, messages: list[SentMessage]) -> str:
     return f"ICDGEN_U16((sizeof({name}) / sizeof({name}[0])) - 1u)" if messages else "0u"
-
-
-def crc_table(one: Crc) -> list[int]:
-    """What each byte, first bit on top, makes of a register of zeros."""
-    top, mask = 1 << one.width - 1, (1 << one.width) - 1
-    table = []
-    for byte in range(256):
-        register = 0
-        for position in reversed(range(8)):
-            out = bool(register & top) != bool(byte >> position & 1)
-            register = register << 1 & mask ^ (one.polynomial if out else 0)
-        table.append(register)
-    return table

@@ -130,10 +130,10 @@ def _signed(field: FieldDescription, value: str, size: int) -> str:
 def _one_byte(piece: Piece) -> str:
     byte = f"bytes[{piece.byte}]"
     if piece.shift == 0:
-        return f"{byte} & {mask(piece.mask)}" if piece.bits < 8 else byte
-    if piece.shift + piece.bits == 8:
+        return byte if piece.is_byte else f"{byte} & {mask(piece.mask)}"
+    if piece.reaches_top:
         return f"{byte} >> {piece.shift}"
-    return f"({byte} >> {piece.shift}) & {mask((1 << piece.bits) - 1)}"
+    return f"({byte} >> {piece.shift}) & {mask(piece.low_mask)}"
 
 
 def _parenthesised(text: str) -> str:
@@ -237,10 +237,10 @@ def _put_pieces(row: tuple[Piece, ...], source: str, size: int) -> list[str]:
 
 def _put(piece: Piece, part: str) -> str:
     """The statement that puts the low bits of ``part`` into their byte."""
-    if piece.bits == 8:
+    if piece.is_byte:
         return f"bytes[{piece.byte}] = {part};"
-    if piece.shift + piece.bits < 8:
-        part = f"{_parenthesised(part)} & {mask((1 << piece.bits) - 1)}"
+    if not piece.reaches_top:
+        part = f"{_parenthesised(part)} & {mask(piece.low_mask)}"
     if piece.shift:
         part = f"{_parenthesised(part)} << {piece.shift}"
     return f"bytes[{piece.byte}] |= {part};"

@@ -180,7 +180,7 @@ class Frames:
         runs: list[tuple[Run, int]] = []
         for piece in one.pieces:
             run = Run(self.head + 8 * piece.byte + 8 - piece.shift - piece.bits, piece.bits)
-            here = value >> piece.at & (1 << piece.bits) - 1
+            here = value >> piece.at & piece.low_mask
             if runs and runs[-1][0].at + runs[-1][0].bits == run.at:
                 before, above = runs.pop()
                 run, here = Run(before.at, before.bits + run.bits), above << run.bits | here
