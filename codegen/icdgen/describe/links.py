@@ -16,7 +16,7 @@ from icdgen.once import cached_property
 from icdgen.protocol import facts as protocol_facts
 from icdgen.protocol.declared import Fact
 from icdgen.protocol.facts import Facts
-from icdgen.protocol.sections import Can, Index, Step, TimePart
+from icdgen.protocol.sections import Can, Crc, Index, Step, TimePart
 
 ROLES = frozenset(
     "all block_size busy bytes checksum counter destination error id ignore_hole_map interface_version length node_type number "
@@ -86,6 +86,19 @@ class Assumptions:
     def others(self) -> list[tuple[str, str, str]]:
         """Section, key and reason of all that is not told."""
         return [(section, key, self.why(section, key)) for section, key in [*self._untold]]
+
+
+def byte_table(crc: Crc) -> list[int]:
+    """Return the register after each of the 256 bytes, most significant bit first, if it was 0 before."""
+    top, mask = 1 << crc.width - 1, (1 << crc.width) - 1
+    table = []
+    for byte in range(256):
+        register = 0
+        for position in reversed(range(8)):
+            is_odd = bool(register & top) != bool(byte >> position & 1)
+            register = register << 1 & mask ^ (crc.polynomial if is_odd else 0)
+        table.append(register)
+    return table
 
 
 def links_of(description: Description) -> dict[str, LinkDescription]:

@@ -8,8 +8,15 @@ from typing import NamedTuple
 from icdgen.backends.c.facts import TYPES, boolean, or_none, spelled
 from icdgen.backends.c.text import comment, plain
 from icdgen.backends.lines import STEP, in_rows
-from icdgen.describe.links import CAN_PARTS, INDEX_PARTS, Assumptions, LinkDescription, SentMessage, StepDescription
-from icdgen.protocol.crc import byte_table
+from icdgen.describe.links import (
+    CAN_PARTS,
+    INDEX_PARTS,
+    Assumptions,
+    LinkDescription,
+    SentMessage,
+    StepDescription,
+    byte_table,
+)
 from icdgen.protocol.declared import Kind, facts_of
 from icdgen.protocol.envelope import CRC, PACKET, EnvelopeField, Stream, StreamRow
 from icdgen.protocol.sections import BUSES, CAN_KINDS, PROCEDURES, Crc, Step
