@@ -1,5 +1,5 @@
 /*
- * Commands a node, reads it, and says what went wrong. In another terminal: icdgen sim --node cubeacp --tcp 4000
+ * Sends two telecommands, reads two messages, and prints errors. In another terminal: icdgen sim --node cubeacp --tcp 4000
  * cc -std=c99 -D_POSIX_C_SOURCE=200809L -Igenerated/c examples/control.c -o control && ./control 4000
  */
 #include "cubeacp.h"
@@ -8,16 +8,16 @@
 static cubeacp_client_t acp;
 static uint8_t buffer[CUBEACP_CLIENT_BYTES], frame[CUBEACP_LONGEST];
 
-/* The end of a request that was given to the client; ends the program if it is not a good one. */
-static icd_event_t done(int port, icd_status_t given)
+/* Waits for the outcome of a request that was started with the status `started`. Exits unless the request succeeds. */
+static icd_event_t done(int port, icd_status_t started)
 {
     icd_event_t end;
-    if (given != ICD_OK) { /* ICD_ERROR_RANGE: a value does not fit its field; ICD_ERROR_BUSY: one after the other */
-        fprintf(stderr, "not sent, status %d\n", (int)given);
+    if (started != ICD_OK) { /* ICD_ERROR_RANGE: a value does not fit its field; ICD_ERROR_BUSY: a request is pending */
+        fprintf(stderr, "not sent, status %d\n", (int)started);
         exit(EXIT_FAILURE);
     }
-    end = port_ask(port, &acp.client, frame, sizeof frame); /* sends, waits, asks again */
-    if (end.kind == ICD_EVENT_REFUSED) {                    /* end.reason is what the ICD says of the code */
+    end = port_ask(port, &acp.client, frame, sizeof frame); /* sends, waits, and sends again after a time-out */
+    if (end.kind == ICD_EVENT_REFUSED) {                    /* end.reason: the role of the code in the ICD */
         fprintf(stderr, "refused, code %u\n", (unsigned)end.code);
         exit(EXIT_FAILURE);
     }
@@ -46,7 +46,7 @@ int main(int argc, char **argv)
 
     cubeacp_commanded_attitude_angles_init(&commanded);
     if (cubeacp_commanded_attitude_angles_set_commanded_roll_angle_deg(&commanded, 1.5) != ICD_OK) {
-        return 1; /* it does not fit the field */
+        return 1; /* 1.5 deg does not fit the field */
     }
     done(port, cubeacp_send_commanded_attitude_angles(&acp, port_now(), &commanded, NULL, NULL));
 
@@ -57,8 +57,8 @@ int main(int argc, char **argv)
 
     end = done(port, cubeacp_request_current_adcs_state(&acp, port_now()));
     if (cubeacp_receive_current_adcs_state(&state, &end) == ICD_OK) {
-        const cubeacp_estim_mode_select_t mode = state.attitude_estimation_mode; /* any number is kept */
-        const char *const name = cubeacp_estim_mode_select_name(mode);           /* NULL if it has none */
+        const cubeacp_estim_mode_select_t mode = state.attitude_estimation_mode; /* also a value without a name */
+        const char *const name = cubeacp_estim_mode_select_name(mode);           /* NULL for such a value */
         if (mode == CUBEACP_ESTIM_MODE_SELECT_NO_ATTITUDE_ESTIMATION) {
             printf("nothing is estimated\n");
         } else if (name != NULL) {

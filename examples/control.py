@@ -1,4 +1,4 @@
-"""Commands a node, reads it, and says what went wrong. In another terminal: icdgen sim --node cubeacp --tcp 4000"""
+"""Sends two telecommands, reads two messages, and prints errors. In another terminal: icdgen sim --node cubeacp --tcp 4000"""
 
 import socket
 import sys

@@ -1,4 +1,4 @@
-/* A TCP port and a clock for a client of the generated wire layer, on POSIX: what request.c needs beside it. */
+/* A TCP port and a clock on POSIX for request.c and control.c. Your driver and clock replace them. */
 #ifndef PORT_H
 #define PORT_H
 
@@ -28,7 +28,7 @@ static inline void port_failed(const char *what)
     exit(EXIT_FAILURE);
 }
 
-/* Connects; ends the program if it cannot. */
+/* Connects, or exits with an error. */
 static inline int port_open(const char *host, const char *number)
 {
     const int one = 1, port = socket(AF_INET, SOCK_STREAM, 0);
@@ -64,7 +64,7 @@ static inline void port_send(int port, icd_client_t *client)
     }
 }
 
-/* Hands the client what comes before `until`, or the time. */
+/* Waits for bytes until the time `until`, and passes them, or the time alone, to the client. */
 static inline void port_receive(int port, icd_client_t *client, uint32_t until, icd_event_fn *on_event, void *context)
 {
     uint8_t input[4096];
@@ -81,7 +81,7 @@ static inline void port_receive(int port, icd_client_t *client, uint32_t until, 
     icd_client_received(client, port_now(), input, (size_t)got, on_event, context);
 }
 
-/* The end of a request: an event whose data have been copied. */
+/* The outcome of a request: an event, with a copy of its data. */
 typedef struct {
     icd_event_t event;
     bool ended;
@@ -104,7 +104,7 @@ static inline void port_on_event(void *context, const icd_event_t *event)
     }
 }
 
-/* Sends the request that the client was given, and waits for its end; a frame is copied. */
+/* Sends the pending request and waits for its outcome, whose data are copied to `frame`. */
 static inline icd_event_t port_ask(int port, icd_client_t *client, uint8_t *frame, size_t capacity)
 {
     port_outcome_t outcome;

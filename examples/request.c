@@ -4,15 +4,16 @@
 
 int main(int argc, char **argv)
 {
-    static cubeacp_client_t acp; /* takes the messages of CubeACP and no others */
+    static cubeacp_client_t acp; /* a compiler error for messages of other devices */
     static uint8_t buffer[CUBEACP_CLIENT_BYTES], frame[CUBEACP_LONGEST];
     cubeacp_estimated_attitude_angles_t angles;
     const int port = port_open("127.0.0.1", argc > 1 ? argv[1] : "4000");
     cubeacp_client_uart(&acp, buffer, sizeof buffer);
     cubeacp_request_estimated_attitude_angles(&acp, port_now());
-    const icd_event_t end = port_ask(port, &acp.client, frame, sizeof frame); /* sends, waits, asks again */
+    const icd_event_t end = port_ask(port, &acp.client, frame, sizeof frame); /* sends, waits, repeats */
     if (cubeacp_receive_estimated_attitude_angles(&angles, &end) != ICD_OK) {
-        return fprintf(stderr, "no reply, asked %u times\n", (unsigned)end.attempts), 1;
+        fprintf(stderr, "no reply to %u requests\n", (unsigned)end.attempts);
+        return 1;
     }
     printf("roll %.2f deg\n", cubeacp_estimated_attitude_angles_estimated_roll_angle_deg(&angles));
     return 0;

@@ -25,7 +25,7 @@ FRAME = bytes.fromhex("020166 08e81c")  # 21.5 C
 _BYTES = ", ".join(f"0x{byte:02x}" for byte in FRAME)
 
 C = f"""
-#include "battery.h"
+%s
 #include <stdio.h>
 
 static bool show(const uint8_t *data, size_t length)
@@ -116,7 +116,8 @@ def test_the_message_shown_is_that_of_the_first_icd(battery):
 def test_the_c_shown_reads_the_message(battery, tmp_path):
     headers = c.generate(c.read(battery), tmp_path / "c")
     source = tmp_path / "program.c"
-    source.write_text(C % snippet("c"))
+    include, _, body = snippet("c").partition("\n")
+    source.write_text(C % (include, body))
     program = c.compile(source, "-std=c99", *c.WARNINGS, f"-I{headers}", output=tmp_path / "program")
     assert subprocess.run([program], capture_output=True, text=True).stdout == "21.50\n"
 
