@@ -61,10 +61,12 @@ def program(tmp_path_factory):
 
 def test_the_loop_requests_an_angle_each_second(program):
     angle = ("--set", "Estimated Attitude Angles", "roll=12.5")
-    with simulator("--node", "cubeacp", "--tcp", "0", *angle) as (place, _):
-        with subprocess.Popen([program, str(urlsplit(place).port)], stdout=subprocess.PIPE, text=True) as process:
-            lines = [process.stdout.readline() for _ in range(2)]
-            process.kill()
+    with (
+        simulator("--node", "cubeacp", "--tcp", "0", *angle) as (place, _),
+        subprocess.Popen([program, str(urlsplit(place).port)], stdout=subprocess.PIPE, text=True) as process,
+    ):
+        lines = [process.stdout.readline() for _ in range(2)]
+        process.kill()
     assert lines == ["roll 12.50 deg\n"] * 2
 
 

@@ -132,7 +132,7 @@ def test_a_lost_line_ends_a_counted_monitor_with_no_answer_and_the_last_values()
         watching = subprocess.Popen(
             [sys.executable, "-m", "icdgen", *command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
         )
-        assert "frame" in watching.stdout.readline()
+        assert "message" in watching.stdout.readline()
         first.kill()
         out, err = watching.communicate(timeout=30)
     assert (

@@ -32,11 +32,12 @@ _TYPES = {
     "string": "`type: text`", "str": "`type: text`", "char": "`type: uint` with `bits: 8`", "byte": "`type: uint` with `bits: 8`",
 }  # fmt: skip
 _KEYS = {
-    "byte": "`at:`, in bits: byte 2 is `at: 16`", "bytes": "`bits:`: 2 bytes are `bits: 16`", "offset": "`at:`, in bits",
+    "offset": "`at:`, in bits",
     "scale": "`formula: raw*0.01`", "factor": "`formula: raw*0.01`", "size": "`bits:`, or the `length:` of a message in bytes",
     "width": "`bits:`", "description": "`summary:`", "comment": "`summary:`", "values": "`enum:`, with the members under `enums:`",
 }  # fmt: skip
 
+_IN_BYTES = {"byte": ("at", "the first bit, if bytes count from 0"), "bytes": ("bits", "the width in bits")}
 _REPEATED = frozenset({"count", "repeat", "array", "times", "elements", "length"})
 _MOST_DIGITS = 30
 _BOOLEANS = dict.fromkeys(("true", "yes", "y", "on"), "true") | dict.fromkeys(("false", "no", "n", "off"), "false")
@@ -66,7 +67,7 @@ def of_syntax(problem: str, line: str, column: int) -> str:
         return f"a colon followed by a space begins a value: {_QUOTES} if they belong to it, or correct the indentation"
     if "expected ',' or" in problem:
         if character in ("[", "{", "]"):
-            return f"within {{ }}, a text with brackets needs quotes: {_QUOTES}"
+            return f"within {{ }}, {_QUOTES} if it has brackets"
         return "a bracket before this place is not closed, or a comma is missing: `{at: 0, bits: 8, name: Mode}`"
     return ""
 
@@ -119,7 +120,7 @@ def of_ambiguous(written: str) -> str:
     """Return the help for a word that YAML readers read as values of different types."""
     truth = of_type("boolean", written)
     if truth or written[:1].isalpha():
-        return f'write "{written}" in quotes if it is text' + (f", {truth} if it is a truth value" if truth else "")
+        return f'write "{written}" in quotes if it is text' + (f", {truth} if it is a boolean" if truth else "")
     number = plain_number(written) or "a plain decimal or 0x number"
     return f'write "{written}" in quotes if it is text, {number} if it is a number'
 
@@ -142,8 +143,12 @@ def plain_number(written: str) -> str:
     return f"{sign}{whole}.{rest or '0'}e{exact[5] or '+'}{exponent}"
 
 
-def of_key(key: str, known: list[str]) -> Remedy | None:
-    """Help for a key that is not one of those ``known`` in its place; None if none is similar."""
+def of_key(key: str, value: object, known: list[str]) -> Remedy | None:
+    """Return help for a key with a value that is not one of those ``known`` in its place; None if none is similar."""
+    target, meaning = _IN_BYTES.get(key.lower(), ("", ""))
+    if target in known:
+        written = f" {8 * value}" if type(value) is int and 0 <= value < 1 << 16 else ""
+        return Remedy(f"write `{target}:{written}`, {meaning}")
     if key.lower() in _REPEATED:
         if "count" in known:
             return Remedy(

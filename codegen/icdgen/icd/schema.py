@@ -116,7 +116,9 @@ def _explain(error: Any, path: list[Any], owner: Map, place: Place, lines: Lines
         return [Finding(CODE, message, place, f"add `{missing}:`" + (f", {hint}" if hint else ""))]
     if name == "additionalProperties":
         known = list(rule.get("properties", {}))
-        return [_unknown_key(key, known, owner.key_at(key)) for key in kind.unexpected if key in owner.spots]
+        return [
+            _unknown_key(key, owner[key], known, owner.key_at(key)) for key in kind.unexpected if key in owner.spots
+        ]
     if name == "type":
         wanted = rule.get("type", "")
         words = " or ".join(_TYPES.get(one, one) for one in ([wanted] if isinstance(wanted, str) else wanted))
@@ -142,7 +144,7 @@ def _explain(error: Any, path: list[Any], owner: Map, place: Place, lines: Lines
     elif name == "pattern":
         message = f"{what} cannot be {_describe(error.instance)}"
     elif name in ("minItems", "minProperties"):
-        message = f"{what} is empty" if rule[name] == 1 else f"{what} has less than {rule[name]} entries"
+        message = f"{what} is empty" if rule[name] == 1 else f"{what} has fewer than {rule[name]} entries"
     elif name in ("maxItems", "maxProperties"):
         message = f"{what} has more than {rule[name]} {'entry' if rule[name] == 1 else 'entries'}"
     elif name == "anyOf":
@@ -154,12 +156,12 @@ def _explain(error: Any, path: list[Any], owner: Map, place: Place, lines: Lines
     return [Finding(CODE, message, place, help, fix=Fix(place, fix) if fix else None)]
 
 
-def _unknown_key(key: str, known: list[str], place: Place) -> Finding:
+def _unknown_key(key: str, value: Any, known: list[str], place: Place) -> Finding:
     from icdgen.icd import remedies
 
     if key == "<<":
         return Finding(CODE, "merge keys (`<<`) are not supported", place, "write the keys themselves in its place")
-    help, fix = remedies.of_key(key, known) or ("known keys: " + ", ".join(known), "")
+    help, fix = remedies.of_key(key, value, known) or ("known keys: " + ", ".join(known), "")
     if " " in key and not fix:
         help = f"if it is the rest of a text with a comma, put that in quotes; {help}"
     return Finding(CODE, f"unknown key `{key[:60]}`", place, help, fix=Fix(place, fix) if fix else None)
@@ -190,7 +192,7 @@ def _follow(form: dict[str, Any]) -> dict[str, Any]:
 
 def _describe(value: object) -> str:
     if isinstance(value, bool):
-        return f"the truth value {str(value).lower()}"
+        return f"the boolean {str(value).lower()}"
     if isinstance(value, dict):
         return "a mapping"
     if isinstance(value, list):

@@ -271,7 +271,7 @@ class Builder:
         elif _AMBIGUOUS.match(text) and text not in (".", "-"):
             from icdgen.icd import remedies
 
-            self.add(AMBIGUOUS, f"YAML readers disagree about what `{text}` is", event, remedies.of_ambiguous(text))
+            self.add(AMBIGUOUS, f"YAML parsers disagree about what `{text}` is", event, remedies.of_ambiguous(text))
             return text
         else:
             value = text

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from icdgen_runtime.wire.events import Event
 
 OLD_SECONDS = 5.0  # from then on the age of a value is shown, though nobody asked for it
-COLUMNS = ("frame", "field", "value", "unit", "remarks")
+COLUMNS = ("message", "field", "value", "unit", "remarks")
 
 
 class Monitor:

@@ -266,9 +266,13 @@ def undescribed_end(ctx: Context) -> Iterator[Fault]:
             left = message.length - covered - message.reserved
             described = f"its fields describe {covered:,}" if message.layout.nodes else "no field describes them"
             text = f"{quote(message.name)} has {count(message.length, 'byte')}, but {described}"
-            help = f"describe {'' if message.reserved else 'the last '}{count(left, 'byte')} or correct `length`"
-            reserve = f"if the manual calls them reserved: `reserved: {left + message.reserved}`"
-            yield Fault.at(message.source, "length", text, f"{help}; {reserve}")
+            missing = "the last byte" if left == 1 and not message.reserved else f"the last {count(left, 'byte')}"
+            missing = f"{count(left, 'byte')} before those" if message.reserved else missing
+            pronoun = "it" if left + message.reserved == 1 else "them"
+            reserve = (
+                f"write `reserved: {left + message.reserved}` beside `length` if the manual calls {pronoun} reserved"
+            )
+            yield Fault.at(message.source, "length", text, f"describe {missing}, or correct `length`; {reserve}")
 
 
 @rule("ICD025")
