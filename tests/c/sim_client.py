@@ -24,12 +24,12 @@ def source(icd: Icd, node_name: str = NODE) -> str:
     """The client's source."""
     node = icd.node(node_name)
     known = facts.of(icd, node)
-    plans = {one.model.name: one for one in describe(icd).node(node).spoken}
+    plans = {one.model.name: one for one in describe(icd).node(node).all_messages}
     telecommands = [plans[m.name] for m in known.telecommands.values()]
     starters = [one.name for one in icd.nodes if one.protocol.get("program_start", {}).get("application") == node.name]
     boot = icd.node(starters[0])
     name = boot.protocol["program_start"]["message"]
-    start = next(one for one in describe(icd).node(boot).spoken if one.model.name == name)
+    start = next(one for one in describe(icd).node(boot).all_messages if one.model.name == name)
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(harness.HERE),
         trim_blocks=True,

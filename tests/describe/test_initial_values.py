@@ -37,9 +37,9 @@ def test_the_frame_of_a_new_message_has_as_many_elements_as_code_gives_them_init
             message.node, message.model, codec.initial_values(message.node, message.model)
         )
         sizes = codec.sizes_of_frame(message.node, message.model, frame)
-        assert all(field.initial_count == field.count for field in message.members if not field.is_open)
-        for part in message.open_parts[-1:]:
-            assert part.part.initial_count == sizes[part.model.name]
+        assert all(field.initial_count == field.count for field in message.members if not field.is_in_last_part)
+        for part in message.variable_parts[-1:]:
+            assert part.field.initial_count == sizes[part.model.name]
         assert len(frame) == layout.length + sum(part.fewest * part.step for part in layout.parts)
 
 
@@ -52,7 +52,7 @@ def test_what_is_zero_in_a_new_message_has_no_other_value_in_any_element(path):
         for member in message.members:
             names = [one.model.name for one in member.scalars if one.model.name in initial.keys() & present]
             is_zero = not any(initial[name] for name in names if not isinstance(initial[name], bytes))
-            if member.struct is None or member.is_open:
+            if member.struct is None or member.is_in_last_part:
                 assert member.is_initially_zero <= is_zero, f"{message.name}: {member.name}"
                 some_differ |= not is_zero
     assert some_differ or path.startswith("examples")

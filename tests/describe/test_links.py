@@ -75,11 +75,11 @@ def test_places_are_those_of_known_roles_and_the_fresh_frame_holds_the_constants
         steps = [link.step(step) for step in (link.facts.files.steps.values() if link.facts.files else ())]
         assert all(role in ROLES for step in steps for role, _ in step.places)
         for step in steps:
-            raw = codec.decode(link.facts.node, step.message, step.fresh)
+            raw = codec.decode(link.facts.node, step.message, step.initial_frame)
             assert {field.const or 0 for field in step.message.fields if not field.is_bytes} == {
                 raw[field.name] for field in step.message.fields if not field.is_bytes
             }
-        assert link.longest_step >= max((len(step.fresh) for step in steps), default=0)
+        assert link.longest_step >= max((len(step.initial_frame) for step in steps), default=0)
 
 
 def test_literals_are_laid_out_without_counting_columns():

@@ -43,7 +43,7 @@ class Place(NamedTuple):
 def source(icd: Icd, node_name: str = NODE) -> str:
     """The client's main file."""
     node, known = icd.node(node_name), facts.of(icd, icd.node(node_name))
-    rows = {one.model.name: one for one in describe(icd).node(node).spoken}
+    rows = {one.model.name: one for one in describe(icd).node(node).all_messages}
 
     def of(messages, values) -> list[Row]:
         return [_row(icd, rows[message.name], values(icd, message)) for message in messages]

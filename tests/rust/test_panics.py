@@ -63,9 +63,9 @@ def everything(icd: Icd) -> Iterator[str]:
         for message in node.messages:
             name, type_ = f"{node.name}_{message.name}", f"icd::{node.name}::{type_name(message)}"
             yield MESSAGE.format(name=name, type=type_)
-            for field in (field for field in message.all_members if field.is_scaled):
+            for field in (field for field in message.declared_members if field.is_scaled):
                 one, templates = field.physical_name, (ELEMENT, READ_ELEMENT) if field.count else (SCALED, READ)
-                template = templates[not field.is_set]
+                template = templates[not field.is_settable]
                 value = "Option<f64>" if field.model.when else "f64"
                 yield template.format(name=f"{name}_{one}", type=type_, getter=one, setter=f"set_{one}", value=value)
         for way, messages in (("telecommand", node.telecommands), ("telemetry", node.telemetry)):

@@ -16,47 +16,49 @@ MANY_ENOUGH = 4
 """From this many elements on there are rounds; of fewer, each is read and written by itself."""
 
 
-class Repeated(NamedTuple):
+class StructArray(NamedTuple):
     """An array of structs, of a message or of an element of another array of it."""
 
-    part: FieldDescription  # the array as one
-    element: StructDescription  # in the orders that hold here
+    field: FieldDescription  # the array as one
+    element_struct: StructDescription  # in the orders that hold here
     name: str  # from the message on: ``satellites_signals``
 
     @property
     def begin(self) -> int:
         """The first byte, counted in what it stands in."""
-        return self.part.model.at // 8
+        return self.field.model.at // 8
 
     @property
     def step(self) -> int:
         """Bytes of an element."""
-        return self.element.model.length
+        return self.element_struct.model.length
 
 
-def repeated_in(one: Composite[Any], within: str = "") -> tuple[Repeated, ...]:
+def struct_arrays_in(one: Composite[Any], within: str = "") -> tuple[StructArray, ...]:
     """Those of a message or struct itself, its open end among them; ``within`` is where their names begin."""
     return tuple(
-        Repeated(part, part.element, within + part.name) for part in one.walk(Into.STRUCTS) if part.element is not None
+        StructArray(part, part.element_struct, within + part.name)
+        for part in one.walk(Into.STRUCTS)
+        if part.element_struct is not None
     )
 
 
-def all_repeated(one: Composite[Any]) -> Iterator[Repeated]:
+def all_struct_arrays(one: Composite[Any]) -> Iterator[StructArray]:
     """All of a message, those in others before them."""
-    for part, name in arrays_named(one, lambda part: part.element is not None):
-        if part.element is not None:
-            yield Repeated(part, part.element, name)
+    for part, name in named_arrays(one, lambda part: part.element_struct is not None):
+        if part.element_struct is not None:
+            yield StructArray(part, part.element_struct, name)
 
 
-def arrays_named(
+def named_arrays(
     one: Composite[Any], wanted: Callable[[FieldDescription], bool], within: str = ""
 ) -> Iterator[tuple[FieldDescription, str]]:
     """The arrays of a message that are wanted, arrays of structs among them, and their names; those in others come first."""
     for part in one.walk(Into.STRUCTS):
         if wanted(part):
             name = within + part.name
-            if part.element is not None:
-                yield from arrays_named(part.element, wanted, f"{name}_")
+            if part.element_struct is not None:
+                yield from named_arrays(part.element_struct, wanted, f"{name}_")
             yield part, name
 
 
@@ -103,8 +105,8 @@ def rounds_of(first: FieldDescription, count: int) -> ElementRounds | None:
 
 def loop_of(field: FieldDescription) -> ElementRounds | None:
     """The loop that reads or writes all elements of an array; None if they are copied, or read and written one by one."""
-    if field.element is not None:
-        return ElementRounds(1, field.count, field.model.at // 8, field.element.model.length)
+    if field.element_struct is not None:
+        return ElementRounds(1, field.count, field.model.at // 8, field.element_struct.model.length)
     if not field.count or field.struct is not None:
         return None
     rounds = rounds_of(field, field.count)

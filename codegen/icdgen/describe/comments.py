@@ -123,9 +123,9 @@ def _conditions(field: NodePlace, message: Message) -> str:
     return " and ".join(condition_text(one, message) for one in field.when)
 
 
-def part_comment(part: Message, begins: Sequence[int]) -> str:
+def part_comment(part: Message, positions: Sequence[int]) -> str:
     """What is given of a message that another one repeats."""
-    return f"{words(part.name)}, repeated from {' and from '.join(map(_from, begins))}."
+    return f"{words(part.name)}, repeated from {' and from '.join(map(_from, positions))}."
 
 
 def _from(at: int) -> str:

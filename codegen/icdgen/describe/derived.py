@@ -31,7 +31,7 @@ def derived(field: FieldDescription, taken: Collection[str] = ()) -> Derived:
     """Of a field that is derived; no local is called as one of ``taken`` is."""
     how = field.model.derived
     assert how is not None
-    known = {one.model.name: one for one in field.message.all_members}
+    known = {one.model.name: one for one in field.message.declared_members}
     names: list[str] = []
     for name in how.fields:
         names.append(_free(known[name].name, {*taken, *names}))

@@ -18,7 +18,7 @@ from icdgen.icd.model import Enum, Icd, Message, Node, Struct
 from icdgen.icd.places import NodePlace, places_of
 from icdgen.once import cached_property
 
-_OF_PLACE = ("needs", "elements", "instances", "element", "comment")
+_OF_PLACE = ("needs", "elements", "instances", "element_struct", "comment")
 """Attributes that are worked out for one place of a field."""
 
 
@@ -104,7 +104,7 @@ class FieldDescription(ScalarDescription):
         return self.model.index
 
     @property
-    def is_open(self) -> bool:
+    def is_in_last_part(self) -> bool:
         """Whether it is the open end of its message, or stands in it."""
         sequence = self.message.model.layout.sequence
         return bool(sequence) and self.member_of_message.model.node is sequence[-1]
@@ -112,9 +112,9 @@ class FieldDescription(ScalarDescription):
     @property
     def initial_count(self) -> int:
         """Elements of an array in a new message, or bytes of variable length: the last variable part has its fewest."""
-        if self.is_open:
-            assert self.message.tail is not None
-            return self.message.tail.model.fewest
+        if self.is_in_last_part:
+            assert self.message.last_part is not None
+            return self.message.last_part.model.fewest
         return self.count
 
     @property
@@ -132,9 +132,9 @@ class FieldDescription(ScalarDescription):
         """Whether all of it is 0 or absent in a new message. A struct has the initial values of its own members."""
         if self.model.when:
             return not self.is_initially_present
-        if self.struct is not None and not self.is_open:
+        if self.struct is not None and not self.is_in_last_part:
             return True
-        return not self.has_initial_value or (self.struct is None and self.is_open and not self.initial_count)
+        return not self.has_initial_value or (self.struct is None and self.is_in_last_part and not self.initial_count)
 
     @property
     def needs_range_check(self) -> bool:
@@ -142,7 +142,7 @@ class FieldDescription(ScalarDescription):
         return self.is_narrow if self.struct is None else self.struct.is_narrow
 
     @property
-    def is_inner(self) -> bool:
+    def is_in_earlier_part(self) -> bool:
         """Whether it is open with something else behind it, or stands in such a part."""
         return any(self.member_of_message.model.node is node for node in self.message.model.layout.sequence[:-1])
 
@@ -181,9 +181,9 @@ class FieldDescription(ScalarDescription):
         return self.walk(Into.ALL_ARRAYS)
 
     @cached_property
-    def element(self) -> StructDescription | None:
+    def element_struct(self) -> StructDescription | None:
         """What an element of an array of structs is made of, in the orders that hold where it stands; else None."""
-        return None if self.struct is None or not self.count else self.message.element(self, self.struct)
+        return None if self.struct is None or not self.count else self.message.element_struct_of(self, self.struct)
 
     @cached_property
     def constants(self) -> tuple[Constant, ...]:
@@ -193,7 +193,7 @@ class FieldDescription(ScalarDescription):
             return self.declaration.constants
         if field.const is None and not field.special and field.limits is None:
             return ()
-        return tuple(constants(field, self.declared, self.physical_name, self.message.node.vocabulary))
+        return tuple(constants(field, self.declared_name, self.physical_name, self.message.node.vocabulary))
 
     @cached_property
     def comment(self) -> Comment:
@@ -201,20 +201,20 @@ class FieldDescription(ScalarDescription):
         return field_comment(self.model, told, self.message.model)
 
 
-class TailDescription(NamedTuple):
+class VariablePartDescription(NamedTuple):
     """A part of variable length: an array, bytes or text."""
 
     model: VariablePart
-    part: FieldDescription  # the array as one, or the bytes or text
+    field: FieldDescription  # the array as one, or the bytes or text
     counter: FieldDescription  # how many elements there are; a field of the frame, or what only its length tells
 
     @property
-    def element(self) -> StructDescription | None:
+    def element_struct(self) -> StructDescription | None:
         """What an element is made of, where that is a struct."""
-        return self.part.element
+        return self.field.element_struct
 
     @property
-    def is_bound(self) -> bool:
+    def needs_count_check(self) -> bool:
         """Whether the integer that holds the count holds larger or smaller ones than there can be."""
         return self.model.low > 0 or self.counter.storage.max > self.model.high
 
@@ -232,7 +232,7 @@ class Composite(Named[Fielded]):
         self._declared, self.node = declared, node
         self.outer_orders = outer
         """Those of the array of which it is an element."""
-        self.seen_from = node
+        self.using_node = node
         """The node in whose code it is read and written."""
 
     @cached_property
@@ -241,7 +241,7 @@ class Composite(Named[Fielded]):
         raise NotImplementedError
 
     @cached_property
-    def all_members(self) -> tuple[FieldDescription, ...]:
+    def declared_members(self) -> tuple[FieldDescription, ...]:
         """Members and views, in the order of the ICD: what is declared in code."""
         return tuple(map(self._member, places_of(self.model.layout, self.outer_orders)))
 
@@ -255,27 +255,31 @@ class Composite(Named[Fielded]):
     @cached_property
     def member_for(self) -> dict[int, FieldDescription]:
         """Members by the identity of their nodes."""
-        return {id(member.model.node): member for member in self.all_members}
+        return {id(member.model.node): member for member in self.declared_members}
 
     @cached_property
-    def views(self) -> tuple[FieldDescription, ...]:
+    def read_only_members(self) -> tuple[FieldDescription, ...]:
         """What reads bits of others, or is derived: it is asked of a message, and never set."""
-        return tuple(member for member in self.all_members if member.model.view)
+        return tuple(member for member in self.declared_members if member.model.view)
 
     @cached_property
     def overlays(self) -> tuple[FieldDescription, ...]:
         """The views that read bits."""
-        return tuple(field for field in self.views if field.model.derived is None)
+        return tuple(field for field in self.read_only_members if field.model.derived is None)
 
     @cached_property
     def derived(self) -> tuple[FieldDescription, ...]:
         """The views that are derived from the values of fields: see `icdgen.describe.derived`."""
-        return tuple(field for field in self.views if field.model.derived is not None)
+        return tuple(field for field in self.read_only_members if field.model.derived is not None)
 
     @cached_property
     def members(self) -> tuple[FieldDescription, ...]:
         """What it is made of, in the order of the ICD, an array as one, and a struct."""
-        return tuple(member for member in self.all_members if not member.model.view) if self.views else self.all_members
+        return (
+            tuple(member for member in self.declared_members if not member.model.view)
+            if self.read_only_members
+            else self.declared_members
+        )
 
     @cached_property
     def fields(self) -> tuple[FieldDescription, ...]:
@@ -283,7 +287,7 @@ class Composite(Named[Fielded]):
         return tuple(self.walk(Into.ALL_ARRAYS))
 
     @property
-    def tail(self) -> TailDescription | None:
+    def last_part(self) -> VariablePartDescription | None:
         """The open end of a message, where frames differ in length."""
         return None
 
@@ -292,23 +296,23 @@ class Composite(Named[Fielded]):
         for member in self.members:
             yield from member.walk(into)
 
-    def element(self, part: FieldDescription, struct: StructDescription) -> StructDescription:
+    def element_struct_of(self, part: FieldDescription, struct: StructDescription) -> StructDescription:
         """What an array of structs in it has as an element."""
         found = StructDescription(
             self._declared, struct.model, struct.node, part.model.orders_in_effect(self.node.orders)
         )
-        found.seen_from = self.seen_from
+        found.using_node = self.using_node
         return found
 
     @cached_property
     def enums(self) -> tuple[EnumDescription, ...]:
         """The enumerations of the members that it declares itself, each once."""
-        return tuple(dict.fromkeys(one.enum for one in self.all_members if one.enum is not None))
+        return tuple(dict.fromkeys(one.enum for one in self.declared_members if one.enum is not None))
 
     @cached_property
     def structs(self) -> tuple[StructDescription, ...]:
         """The structs that stand in it, each once."""
-        return tuple(dict.fromkeys(one.struct for one in self.all_members if one.struct is not None))
+        return tuple(dict.fromkeys(one.struct for one in self.declared_members if one.struct is not None))
 
     @property
     def is_narrow(self) -> bool:
@@ -334,12 +338,12 @@ class Composite(Named[Fielded]):
     @cached_property
     def has_wide_steps(self) -> bool:
         """Whether the formula of a field that it declares has numbers of many digits."""
-        return any(field.steps is not None and field.steps.is_wide for field in self.all_members)
+        return any(field.steps is not None and field.steps.is_wide for field in self.declared_members)
 
     @cached_property
     def first_owners(self) -> dict[str, Thing]:
         """By the ids of errata: which part of it tells of it."""
-        return first_owners((self.model, *(member.model for member in self.all_members)))
+        return first_owners((self.model, *(member.model for member in self.declared_members)))
 
 
 class StructDescription(Composite[Struct]):

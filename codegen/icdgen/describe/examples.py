@@ -45,7 +45,7 @@ def worth_showing(message: MessageDescription) -> FieldDescription | None:
     """The first field with a formula that leads back, else the first that is neither constant nor an array or struct."""
     # these are the smallest in an example, whose frame has the fewest elements
     counters = {part.counter for part in message.model.layout.parts}
-    decides = {need.field.model.name for one in message.conditional for need in one.needs}  # what else is there
+    decides = {need.field.model.name for one in message.optional_members for need in one.needs}  # what else is there
     usual = [
         one
         for one in message.members
@@ -57,7 +57,7 @@ def worth_showing(message: MessageDescription) -> FieldDescription | None:
         and not one.count
         and one.model.name not in counters
     ]
-    return next((one for one in usual if one.is_scaled and one.is_set), usual[0] if usual else None)
+    return next((one for one in usual if one.is_scaled and one.is_settable), usual[0] if usual else None)
 
 
 def example(message: MessageDescription) -> Example:

@@ -61,7 +61,7 @@ Group = Flags | Row | Rounds | FieldDescription
 def grouped_fields(composite: Composite[Any]) -> Iterator[FieldDescription]:
     """The scalars that have bits in every frame, without those in arrays of structs."""
     for member in composite.walk(Into.STRUCTS):
-        if member.element is None and not member.model.is_count and not member.model.when:
+        if member.element_struct is None and not member.model.is_count and not member.model.when:
             yield from member.scalars
 
 

@@ -45,7 +45,7 @@ class StepDescription:
 
     message: Message
     fields: tuple[Place, ...]
-    fresh: bytes  # the frame before values are put into it
+    initial_frame: bytes  # the frame before values are put into it
 
     @property
     def places(self) -> list[Place]:

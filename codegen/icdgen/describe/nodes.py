@@ -15,7 +15,7 @@ from icdgen.describe.description import (
     Declarations,
     FieldDescription,
     StructDescription,
-    TailDescription,
+    VariablePartDescription,
 )
 from icdgen.describe.enums import EnumDescription
 from icdgen.describe.shared_ids import sharing
@@ -47,26 +47,26 @@ class MessageDescription(Composite[Message]):
         return bool(layout.gaps(self.model, self.node))
 
     @cached_property
-    def conditional(self) -> tuple[FieldDescription, ...]:
+    def optional_members(self) -> tuple[FieldDescription, ...]:
         """The members that are not always there."""
         return tuple(member for member in self.members if member.model.when)
 
     @property
-    def tail(self) -> TailDescription | None:
+    def last_part(self) -> VariablePartDescription | None:
         """Its open end, where frames differ in length."""
-        return self.open_parts[-1] if self.open_parts else None
+        return self.variable_parts[-1] if self.variable_parts else None
 
     @property
-    def inner(self) -> tuple[TailDescription, ...]:
+    def earlier_parts(self) -> tuple[VariablePartDescription, ...]:
         """What is open in front of the tail."""
-        return self.open_parts[:-1]
+        return self.variable_parts[:-1]
 
     @cached_property
-    def open_parts(self) -> tuple[TailDescription, ...]:
+    def variable_parts(self) -> tuple[VariablePartDescription, ...]:
         """All parts of variable length, in the order of the frame."""
         by_name = {member.model.name: member for member in self.members}
         return tuple(
-            TailDescription(part, by_name[part.name], by_name[part.counter]) for part in self.model.layout.parts
+            VariablePartDescription(part, by_name[part.name], by_name[part.counter]) for part in self.model.layout.parts
         )
 
     @cached_property
@@ -74,7 +74,7 @@ class MessageDescription(Composite[Message]):
         """The messages that it repeats, each with the bit at which it begins, in the order of the ICD."""
         if not self.model.contains:
             return ()
-        known = {one.model.name: one for one in self._whole.node(self.node).spoken}
+        known = {one.model.name: one for one in self._whole.node(self.node).all_messages}
         return tuple((known[one.message], one.at) for one in self.model.contains if one.message in known)
 
     @cached_property
@@ -101,13 +101,13 @@ class MessageDescription(Composite[Message]):
     @property
     def is_narrow(self) -> bool:
         """Whether a field of it may be given a raw value that does not fit, or a count."""
-        return super().is_narrow or any(one.is_bound for one in self.open_parts)
+        return super().is_narrow or any(one.needs_count_check for one in self.variable_parts)
 
     @cached_property
     def comment(self) -> Comment:
         node, telemetry_id = self._whole.node(self.node), self.model.telemetry_id
         bit = None if telemetry_id is None else node.log_bits.get(telemetry_id)
-        return message_comment(self.model, bit, sharing(node.known_ids, self.model))
+        return message_comment(self.model, bit, sharing(node.messages_by_id, self.model))
 
 
 class Direction(NamedTuple):
@@ -190,19 +190,19 @@ class NodeDescription:
         return (*self.messages, *self.enums, *self.structs)
 
     @cached_property
-    def spoken(self) -> tuple[MessageDescription, ...]:
+    def all_messages(self) -> tuple[MessageDescription, ...]:
         """All messages that it speaks: those of included nodes first."""
         return tuple(map(self._description.message, self._description.icd.messages_of(self.model)))
 
     @property
     def telecommands(self) -> tuple[MessageDescription, ...]:
-        """Those of `spoken` that can be sent to it."""
-        return tuple(one for one in self.spoken if one.model.telecommand_id is not None)
+        """Those of `all_messages` that can be sent to it."""
+        return tuple(one for one in self.all_messages if one.model.telecommand_id is not None)
 
     @property
     def telemetry(self) -> tuple[MessageDescription, ...]:
-        """Those of `spoken` that can be requested from it."""
-        return tuple(one for one in self.spoken if one.model.telemetry_id is not None)
+        """Those of `all_messages` that can be requested from it."""
+        return tuple(one for one in self.all_messages if one.model.telemetry_id is not None)
 
     @property
     def directions(self) -> tuple[Direction, ...]:
@@ -227,13 +227,13 @@ class NodeDescription:
         return any(one.message is message for among in shared for one in among)
 
     @cached_property
-    def known_ids(self) -> Ids:
+    def messages_by_id(self) -> Ids:
         """All messages that it speaks, by their ids."""
         return ids_of(self._description.icd, self.model)
 
     @cached_property
     def _ids(self) -> dict[str, tuple[MessagesOfId, ...]]:
-        known = self.known_ids
+        known = self.messages_by_id
         return {
             "telecommand": tuple(self._under("set_id", id, those) for id, those in known.telecommand.items()),
             "telemetry": tuple(self._under("get_id", id, those) for id, those in known.telemetry.items()),

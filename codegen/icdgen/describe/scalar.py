@@ -28,7 +28,7 @@ class ScalarDescription(Named[NodePlace]):
     """How it is computed in doubles."""
     physical_name: str
     """``estimated_roll_angle_deg``"""
-    declared: str
+    declared_name: str
     """The name that is declared for it: of an element, that of its array; of a field of a struct, that in the struct."""
 
     def __init__(
@@ -45,9 +45,9 @@ class ScalarDescription(Named[NodePlace]):
         self.steps, self.curve = steps.steps(place), place.curve
         if place.derived is not None and place.unit is not None:  # it is a physical value, and has no raw one
             self.name = f"{self.name}_{place.unit.identifier}"
-        self.declared = self.name
+        self.declared_name = self.name
         unit = "text" if self.is_text else place.unit.identifier if place.unit else "physical"
-        self.physical_name = f"{self.declared}_{unit}"
+        self.physical_name = f"{self.declared_name}_{unit}"
 
     @property
     def arithmetic(self) -> Arithmetic | None:
@@ -65,7 +65,7 @@ class ScalarDescription(Named[NodePlace]):
         return self.model.bits != self.storage.bits and self.model.type in ("uint", "int", "enum")
 
     @property
-    def takes(self) -> str:
+    def allowed_text(self) -> str:
         """What it takes, in words, for who gave it something else."""
         return takes_text(self.model, self.is_narrow)
 
@@ -127,7 +127,7 @@ class ScalarDescription(Named[NodePlace]):
 
     def integer_name(self, per: int) -> str:
         """``estimated_roll_angle_mdeg``: its physical value in whole parts of the unit."""
-        return f"{self.declared}_{part_of_unit(self.model, per)[0]}"
+        return f"{self.declared_name}_{part_of_unit(self.model, per)[0]}"
 
     def integer_title(self, per: int) -> str:
         """``Estimated Roll Angle in thousandths of deg``"""
@@ -153,7 +153,7 @@ class ScalarDescription(Named[NodePlace]):
         return self.steps is not None or self.curve is not None
 
     @property
-    def is_set(self) -> bool:
+    def is_settable(self) -> bool:
         """Whether a physical value sets it."""
         return not self.model.view and self.model.is_invertible
 

@@ -351,7 +351,7 @@ class _ReducedIcd:
         field = next(place for place in places_in(message.layout) if place.node.source is node.source)
         if field.type == "enum" and field.enum is None:
             return f"u{field.bits}" if language == "rust" else "int"
-        members = describe(self.icd).message(message).all_members
+        members = describe(self.icd).message(message).declared_members
         member = next(member for member in members if member.model.source is node.source)
         if language == "rust":
             return rust.raw_type(member)

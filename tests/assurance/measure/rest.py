@@ -15,8 +15,8 @@ from icdgen.backends.c.names import stem
 from icdgen.backends.c.parts import part_name
 from icdgen.backends.c.text import literal
 from icdgen.describe import Description, FieldDescription, MessageDescription, NodeDescription, describe
+from icdgen.describe.contained import contained_messages
 from icdgen.describe.links import links_of
-from icdgen.describe.parts import parts_of
 from icdgen.icd.model import Icd
 from icdgen.vectors.make import Row, message_vectors
 
@@ -64,13 +64,13 @@ def _parts(message: MessageDescription, frame: bytes) -> Iterator[dict[str, Any]
 
     What the part reserves may hold something of the whole message: encoding the part leaves it out.
     """
-    for part in parts_of(message):
-        for index, begin in enumerate(part.begins):
-            which = f"{index}u, " if len(part.begins) > 1 else ""
+    for part in contained_messages(message):
+        for index, begin in enumerate(part.positions):
+            which = f"{index}u, " if len(part.positions) > 1 else ""
             call = f"{stem(message)}_{part_name(part.message)}(&message, {which}&part)"
             yield {"stem": stem(part.message), "call": call, "bytes": _part(part.message, frame, begin)}
-            if which and begin == part.begins[-1]:
-                beyond = call.replace(which, f"{len(part.begins)}u, ")
+            if which and begin == part.positions[-1]:
+                beyond = call.replace(which, f"{len(part.positions)}u, ")
                 yield {"stem": stem(part.message), "call": f"CHECK({beyond} == ICD_ERROR_RANGE)", "bytes": ""}
 
 

@@ -60,7 +60,7 @@ def _path(message: MessageDescription) -> str:
 
 def _lines(message: MessageDescription) -> Iterator[str]:
     """What is asked of a message: accessors, texts, views and parts."""
-    for field in message.all_members:
+    for field in message.declared_members:
         if field.model.view:
             yield f"let _ = one.{field_name(field)}();"
         index, option = ("0", ".unwrap()") if field.count else ("", "")

@@ -21,7 +21,7 @@ def plan(icd: Icd) -> dict[str, Any]:
             {
                 "name": node.name,
                 "id_bits": node.id_bits,
-                "speaks": [places[one.model.node, one.model.name] for one in node.spoken],
+                "speaks": [places[one.model.node, one.model.name] for one in node.all_messages],
                 "enums": [enum.model.name for enum in node.enums],
                 "link": _link(icd, node.model) if node.is_linked else None,
             }

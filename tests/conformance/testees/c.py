@@ -136,7 +136,7 @@ class _Rows:
         used = {
             f.enum: None
             for message in node.messages
-            for member in message.all_members
+            for member in message.declared_members
             for f in member.scalars
             if f.enum is not None
         }
@@ -148,7 +148,7 @@ class _Rows:
             "node": node.name,
             "id_type": f"uint{node.id_bits}_t",
             "messages": [self.message(message) for message in node.messages],
-            "included": [names.stem(one) for one in node.spoken if one not in node.messages],
+            "included": [names.stem(one) for one in node.all_messages if one not in node.messages],
             "enums": [_enum(enum) for enum in dict.fromkeys(node.enums) | used],
             "own_enums": [_enum(enum) for enum in node.enums],
             "dispatchers": [one for one in dispatchers if one.routes],
@@ -162,7 +162,7 @@ class _Rows:
             Route(names.constant(one, id), names.enumerator_of(name, one) if is_shared else "0u", names.stem(one))
             for one, id in messages
         ]
-        is_open = any(one.tail is not None for one, _ in messages)
+        is_open = any(one.last_part is not None for one, _ in messages)
         return Dispatcher(direction, name, is_shared, routes, is_open)
 
     def message(self, message: MessageDescription) -> MessageRow:
@@ -171,8 +171,8 @@ class _Rows:
             length=names.constant(message, "length"),
             ids=[names.constant(message, id.name) for id in message.ids],
             misfit=message.is_narrow,
-            is_open=message.tail is not None,
-            fields=[self.field(field) for field in (*message.fields, *message.views)],
+            is_open=message.last_part is not None,
+            fields=[self.field(field) for field in (*message.fields, *message.read_only_members)],
         )
 
     def field(self, one: FieldDescription) -> FieldRow:
@@ -188,7 +188,7 @@ class _Rows:
             size=field.bits // 8 if field.is_bytes else one.storage.bits // 8,
             name_of=f"{self.node.name}_{names.stem(one.enum)}_testee_name" if one.enum is not None else "",
             get=f"{stem}_{one.physical_name}" if one.is_scaled else "",
-            set=f"{stem}_set_{one.physical_name}" if one.is_scaled and one.is_set else "",
+            set=f"{stem}_set_{one.physical_name}" if one.is_scaled and one.is_settable else "",
             get_text=f"{stem}_{one.physical_name}" if one.is_text else "",
             set_text=f"{stem}_set_{one.physical_name}" if one.is_text else "",
             has=names.has(one) if field.when else "",

@@ -99,7 +99,9 @@ class NodeEntry:
 
     def _message(self, message: MessageDescription) -> MessageEntry:
         ids = ", ".join(f"Self::{id.name.upper()} as u32" for id in message.ids)
-        return MessageEntry(self._path(message), ids, [_field(field) for field in (*message.fields, *message.views)])
+        return MessageEntry(
+            self._path(message), ids, [_field(field) for field in (*message.fields, *message.read_only_members)]
+        )
 
 
 def _field(field: FieldDescription) -> FieldEntry:
@@ -119,7 +121,7 @@ def _field(field: FieldDescription) -> FieldEntry:
             get, set = f"|m| {get}()", f"|m, value| {set}(value)"
         else:
             get, set = f"|m| {get}({index}).unwrap_or_default()", f"|m, value| {set}({index}, value)"
-        set = set if field.is_set else "|_, _| Ok(())"
+        set = set if field.is_settable else "|_, _| Ok(())"
         scale = f"Some(Scale {{ get: {get}, set: {set} }})"
     owner = field.declaration.message
     type = "Self" if owner is field.message else f"{CRATE}::{owner.node.name}::{names.type_name(owner)}"

@@ -17,9 +17,9 @@ from icdgen.backends.c.text import FILE, comment, described, literal, noted, pro
 from icdgen.backends.origin import origin
 from icdgen.backends.packages import Packages
 from icdgen.describe import MessageDescription, NodeDescription, describe
-from icdgen.describe.arrays import Repeated, all_repeated, repeated_in
+from icdgen.describe.arrays import StructArray, all_struct_arrays, struct_arrays_in
 from icdgen.describe.comments import sentence, text_comment, words
-from icdgen.describe.description import Composite, TailDescription
+from icdgen.describe.description import Composite, VariablePartDescription
 from icdgen.describe.groups import groups
 from icdgen.describe.numbers import byte_count, length_text
 from icdgen.icd.model import Icd
@@ -111,15 +111,15 @@ def _composite(one: Composite[Any], more: Iterable[str] = ()) -> dict[str, objec
 def _message(message: MessageDescription) -> dict[str, object]:
     fields = [
         *groups(message, THRESHOLDS),
-        *_arrays(message, (one for one in repeated_in(message) if not one.part.is_open)),
+        *_arrays(message, (one for one in struct_arrays_in(message) if not one.field.is_in_last_part)),
     ]
     return {
         **_composite(message, parts.headers(message)),
         "empty": decoding.EMPTY,
         "decode": decoding.statements(message, fields),
-        "repeated": [_repeated(message, one) for one in all_repeated(message)],
+        "repeated": [_repeated(message, one) for one in all_struct_arrays(message)],
         "element": None,
-        "inner": [],
+        "earlier": [],
         "miscount": "",
         "misfits": members.misfits(message, is_open=False),
         "misfits_of_end": members.misfits(message, is_open=True),
@@ -127,59 +127,61 @@ def _message(message: MessageDescription) -> dict[str, object]:
         "excess_type": bits.excess_type(message),
         "encode": encoding.statements(message, fields),
         "conditional": conditional.conditional(message),
-        **(_tail(message, message.tail) if message.tail else {}),
+        **(_of_variable_length(message, message.last_part) if message.last_part else {}),
         "views": [accessors.view(field) for field in message.overlays],
         "parts": parts.parts(message),
     }
 
 
-def _arrays(message: MessageDescription, arrays: Iterable[Repeated]) -> Groups:
+def _arrays(message: MessageDescription, arrays: Iterable[StructArray]) -> Groups:
     return [Structs(one, names.reading(message, one.name), names.writing(message, one.name)) for one in arrays]
 
 
-def _repeated(message: MessageDescription, one: Repeated) -> dict[str, object]:
+def _repeated(message: MessageDescription, one: StructArray) -> dict[str, object]:
     """The functions that read and write an element of an array of structs."""
     fields = [
-        *groups(one.element, THRESHOLDS),
-        *_arrays(message, repeated_in(one.element, f"{one.name}_")),
+        *groups(one.element_struct, THRESHOLDS),
+        *_arrays(message, struct_arrays_in(one.element_struct, f"{one.name}_")),
     ]
     return {
-        "part": one.part,
-        "type": f"{names.stem(one.element)}_t",
+        "field": one.field,
+        "type": f"{names.stem(one.element_struct)}_t",
         "reading": names.reading(message, one.name),
         "writing": names.writing(message, one.name),
-        "read": decoding.statements(one.element, fields),
-        "write": encoding.statements(one.element, fields),
+        "read": decoding.statements(one.element_struct, fields),
+        "write": encoding.statements(one.element_struct, fields),
     }
 
 
-def _tail(message: MessageDescription, tail: TailDescription) -> dict[str, object]:
+def _of_variable_length(message: MessageDescription, last: VariablePartDescription) -> dict[str, object]:
     """What the code of frames that differ in length needs."""
     of_element = None
-    if tail.element is not None:
-        reading, writing = names.reading(message, tail.part.name), names.writing(message, tail.part.name)
+    if last.element_struct is not None:
+        reading, writing = names.reading(message, last.field.name), names.writing(message, last.field.name)
         of_element = {
-            "type": f"{names.stem(tail.element)}_t",
+            "type": f"{names.stem(last.element_struct)}_t",
             "reading": reading,
-            "walking": names.walking(message, tail.part.name) if not message.inner else "",
-            "there": decoding.there(tail),
-            "place": decoding.place(tail.model.begin, tail.model.step),
-            "decode": decoding.of_elements(tail, reading),
+            "walking": names.walking(message, last.field.name) if not message.earlier_parts else "",
+            "there": decoding.there(last),
+            "place": decoding.place(last.model.begin, last.model.step),
+            "decode": decoding.of_elements(last, reading),
             "encode": [
-                decoding.for_each(tail.part.member, decoding.elements(tail), writing, tail.model.begin, tail.model.step)
+                decoding.for_each(
+                    last.field.member, decoding.elements(last), writing, last.model.begin, last.model.step
+                )
             ],
         }
     return {
         "element": of_element,
-        "inner": decoding.of_inner(message),
+        "earlier": decoding.of_inner(message),
         "size": encoding.size(message),
         "misfit_length": decoding.misfit_length(
-            tail, names.constant(message, "length"), tail.model.begin if message.inner else 0
+            last, names.constant(message, "length"), last.model.begin if message.earlier_parts else 0
         ),
-        "miscounted": decoding.miscounted(tail),
-        "elements": decoding.elements(tail),
-        "counted_text": encoding.counted_text(tail),
-        "miscount": decoding.miscount(tail) if tail.is_bound else "",
+        "miscounted": decoding.miscounted(last),
+        "elements": decoding.elements(last),
+        "counted_text": encoding.counted_text(last),
+        "miscount": decoding.miscount(last) if last.needs_count_check else "",
     }
 
 

@@ -38,7 +38,7 @@ class Accessor(NamedTuple):
 
 def accessors(message: Composite[Any]) -> list[Accessor]:
     """In double precision."""
-    scaled = [_double(field) for field in message.all_members if field.is_scaled]
+    scaled = [_double(field) for field in message.declared_members if field.is_scaled]
     return [*scaled, *map(_derived, message.derived)]
 
 
@@ -85,7 +85,7 @@ def _double(field: FieldDescription) -> Accessor:
         about=physical_comment(field.model),
         what=physical_name(field.model),
         expression=found.getter.format(raw=_raw(field)),
-        assignment="" if not field.is_set else call(f"return {function}", (f"&{_member(field)}", *arguments)),
+        assignment="" if not field.is_settable else call(f"return {function}", (f"&{_member(field)}", *arguments)),
         declared=found.declared,
         elements=field.count,
     )
@@ -102,7 +102,7 @@ def _member(field: FieldDescription) -> str:
 
 def integer_accessors(message: Composite[Any]) -> list[Accessor]:
     """In whole thousandths or millionths of the unit."""
-    found = ((field, physical.scaled(field).integers) for field in message.all_members if field.steps is not None)
+    found = ((field, physical.scaled(field).integers) for field in message.declared_members if field.steps is not None)
     return [_integer_accessor(field, integers) for field, integers in found if integers is not None]
 
 

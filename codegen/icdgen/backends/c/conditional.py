@@ -22,7 +22,7 @@ def conditional(message: MessageDescription) -> list[dict[str, object]]:
             "decode": decoding.number(field, f"message->{field.member}"),
             "encode": _written(field),
         }
-        for field in message.conditional
+        for field in message.optional_members
     ]
 
 

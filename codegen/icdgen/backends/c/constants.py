@@ -25,7 +25,7 @@ _MAX_ENUMERATOR = 32767
 
 def of_fields(message: Composite[Any]) -> list[tuple[Constant, str]]:
     """The constants of a message's fields, and their values."""
-    return [(one, _value(one, field)) for field in message.all_members for one in field.constants]
+    return [(one, _value(one, field)) for field in message.declared_members for one in field.constants]
 
 
 def _value(one: Constant, field: FieldDescription) -> str:

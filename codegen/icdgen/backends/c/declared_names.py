@@ -9,9 +9,9 @@ from icdgen.backends import Identifier
 from icdgen.backends.c import names, physical
 from icdgen.backends.c.parts import part_name
 from icdgen.describe import Description, FieldDescription, MessageDescription, NodeDescription, StructDescription
-from icdgen.describe.arrays import all_repeated
+from icdgen.describe.arrays import all_struct_arrays
+from icdgen.describe.contained import contained_messages
 from icdgen.describe.description import Composite
-from icdgen.describe.parts import parts_of
 
 FILE = "C names at file scope"
 FILES = "C header files"
@@ -97,15 +97,15 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
     yield message.identifier(FILES, f"{message.node.name}/{message.name}.h")
     for end in ("h", "length", *(id.name for id in message.ids)):
         yield message.identifier(FILE, names.constant(message, end))
-    rare = (*(("misfit",) if message.is_narrow else ()), *(("size",) if message.tail else ()))
+    rare = (*(("misfit",) if message.is_narrow else ()), *(("size",) if message.last_part else ()))
     for end in ("t", "init", "decode", "encode", "fields", *rare):
         yield message.identifier(FILE, f"{stem}_{end}")
-    for one in all_repeated(message):
+    for one in all_struct_arrays(message):
         yield message.identifier(FILE, names.reading(message, one.name))
         yield message.identifier(FILE, names.writing(message, one.name))
-    if message.tail is not None and message.tail.element is not None and not message.inner:
-        yield message.identifier(FILE, names.walking(message, message.tail.part.name))
-    for part in parts_of(message):
+    if message.last_part is not None and message.last_part.element_struct is not None and not message.earlier_parts:
+        yield message.identifier(FILE, names.walking(message, message.last_part.field.name))
+    for part in contained_messages(message):
         yield message.identifier(FILE, f"{stem}_{part_name(part.message)}")
     yield from _fields(message)
 
@@ -113,7 +113,7 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
 def _fields(message: Composite[Any]) -> Iterator[Identifier]:
     stem = names.stem(message)
     members = f"members of {stem}_t"
-    for field in message.all_members:
+    for field in message.declared_members:
         is_view = field.model.view
         yield field.identifier(FILE, f"{stem}_{field.name}") if is_view else field.identifier(members, field.name)
         if field.model.when:
@@ -122,7 +122,7 @@ def _fields(message: Composite[Any]) -> Iterator[Identifier]:
             yield field.identifier(FILE, names.constant(message, one.name))
         for end in _physical_names(field) if field.has_physical else ():
             yield field.identifier(FILE, f"{stem}_{end}")
-            if field.is_set:
+            if field.is_settable:
                 yield field.identifier(FILE, f"{stem}_set_{end}")
 
 

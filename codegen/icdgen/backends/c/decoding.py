@@ -12,8 +12,8 @@ from icdgen.backends.c.text import WIDTH
 from icdgen.backends.c.types import cast, type_of
 from icdgen.backends.lines import STEP
 from icdgen.describe import FieldDescription, MessageDescription
-from icdgen.describe.arrays import ElementRounds, Repeated
-from icdgen.describe.description import Composite, TailDescription
+from icdgen.describe.arrays import ElementRounds, StructArray
+from icdgen.describe.description import Composite, VariablePartDescription
 from icdgen.describe.groups import Flags, Group, Rounds, Row, Thresholds
 from icdgen.describe.lengths import length_tests
 
@@ -27,14 +27,14 @@ EMPTY = "empty"
 class Structs(NamedTuple):
     """An array of structs, which a loop reads and writes."""
 
-    array: Repeated
+    array: StructArray
     reading: str  # the function for an element
     writing: str
 
     @property
     def length(self) -> int:
         """Bytes of the frame."""
-        return self.array.part.count * self.array.step
+        return self.array.field.count * self.array.step
 
 
 Groups = list[Group | Structs]
@@ -58,49 +58,49 @@ def statements(message: Composite[Any], groups: Groups) -> list[str]:
     if not message.members:
         return ["(void)buffer;", f"message->{EMPTY} = 0u;"]
     found = [_one(one) if isinstance(one, FieldDescription) else _group(one, message) for one in groups]
-    if message.tail is not None and message.tail.counter.model.is_count:
-        counter = message.tail.counter
-        found.append(f"message->{counter.name} = {cast(_count(message.tail), counter.storage.bits)};")
+    if message.last_part is not None and message.last_part.counter.model.is_count:
+        counter = message.last_part.counter
+        found.append(f"message->{counter.name} = {cast(_count(message.last_part), counter.storage.bits)};")
     return found
 
 
-def _count(tail: TailDescription) -> str:
+def _count(part: VariablePartDescription) -> str:
     """How many elements there are in ``length`` bytes, without the fewest that there can be."""
-    rest = f"length - {tail.model.shortest}u" if tail.model.shortest else "length"
-    if tail.model.step == 1:
+    rest = f"length - {part.model.shortest}u" if part.model.shortest else "length"
+    if part.model.step == 1:
         return rest
-    return f"({rest}) / {tail.model.step}u" if tail.model.shortest else f"{rest} / {tail.model.step}u"
+    return f"({rest}) / {part.model.step}u" if part.model.shortest else f"{rest} / {part.model.step}u"
 
 
-def misfit_length(tail: TailDescription, longest: str, known: int = 0) -> str:
+def misfit_length(part: VariablePartDescription, longest: str, known: int = 0) -> str:
     """What holds of a ``length`` of ``known`` bytes or more that no frame has; ``longest`` is the macro of the longest."""
-    return either([failed_length_test(test, longest) for test in length_tests(tail.model.lengths, known)])
+    return either([failed_length_test(test, longest) for test in length_tests(part.model.lengths, known)])
 
 
-def miscounted(tail: TailDescription) -> tuple[str, str, str] | None:
+def miscounted(part: VariablePartDescription) -> tuple[str, str, str] | None:
     """Type and reading of the count that a frame holds, as ``value``, and what holds where it is not that of its length."""
-    if tail.counter.model.is_count:
+    if part.counter.model.is_count:
         return None
-    bits = max(tail.counter.storage.bits, 32)
-    value = "value" if tail.counter.storage.bits == bits else cast("value", bits)
-    told = cast(_count(tail), bits) + (f" + {tail.model.low}u" if tail.model.low else "")
-    return type_of(tail.counter), number(tail.counter, "value"), f"{value} != {told}"
+    bits = max(part.counter.storage.bits, 32)
+    value = "value" if part.counter.storage.bits == bits else cast("value", bits)
+    told = cast(_count(part), bits) + (f" + {part.model.low}u" if part.model.low else "")
+    return type_of(part.counter), number(part.counter, "value"), f"{value} != {told}"
 
 
 def of_inner(message: MessageDescription) -> list[dict[str, object]]:
-    """How the open parts in front of the tail are found in a frame, whose fixed part is in ``buffer``, and put into one."""
+    """How the open parts in front of the part are found in a frame, whose fixed part is in ``buffer``, and put into one."""
     return [
         {
             "type": type_of(one.counter),
             "reading": number(one.counter, "value"),
-            "misfit": miscount(one, "value") if one.is_bound else "",
+            "misfit": miscount(one, "value") if one.needs_count_check else "",
             "begin": one.model.begin,
             "there": _bytes(elements(one, "value"), one.model.step),
             "given": _bytes(elements(one), one.model.step),
-            "miscount": miscount(one) if one.is_bound else "",
+            "miscount": miscount(one) if one.needs_count_check else "",
             "counter": one.counter,
         }
-        for one in message.inner
+        for one in message.earlier_parts
     ]
 
 
@@ -108,10 +108,10 @@ def _bytes(count: str, step: int) -> str:
     return count if step == 1 else f"{count} * {step}u"
 
 
-def of_elements(tail: TailDescription, reading: str) -> list[str]:
+def of_elements(part: VariablePartDescription, reading: str) -> list[str]:
     """The statements that read the structs of an open end, each where it stands in ``buffer``."""
-    name = tail.part.member
-    loop_over = for_each(name, there(tail), reading, tail.model.begin, tail.model.step)
+    name = part.field.member
+    loop_over = for_each(name, there(part), reading, part.model.begin, part.model.step)
     return [f"(void)memset(message->{name}, 0, sizeof message->{name});", loop_over]
 
 
@@ -123,16 +123,16 @@ def for_each(name: str, count: str, function: str, begin: int, step: int) -> str
     return f"{loop('element', count)}\n{STEP * 2}{made}\n{STEP}}}"
 
 
-def of_array(array: Repeated, function: str) -> str:
+def of_array(array: StructArray, function: str) -> str:
     """The same for all of an array."""
-    return for_each(array.part.member, f"{array.part.count}u", function, array.begin, array.step)
+    return for_each(array.field.member, f"{array.field.count}u", function, array.begin, array.step)
 
 
-def there(tail: TailDescription) -> str:
+def there(part: VariablePartDescription) -> str:
     """How many elements a frame of ``length`` bytes has."""
-    count = _count(tail)
+    count = _count(part)
     count = f"({count})" if " " in count else count
-    return count + (f" + {tail.model.fewest}u" if tail.model.fewest else "")
+    return count + (f" + {part.model.fewest}u" if part.model.fewest else "")
 
 
 def place(begin: int, step: int, in_round: int = 1) -> str:
@@ -142,19 +142,19 @@ def place(begin: int, step: int, in_round: int = 1) -> str:
     return f"{begin}u + {f'({offset})' if step > 1 else offset}" if begin else offset
 
 
-def elements(tail: TailDescription, counter: str = "") -> str:
+def elements(part: VariablePartDescription, counter: str = "") -> str:
     """How many elements a message has."""
-    count = f"ICDGEN_SIZE({counter or f'message->{tail.counter.name}'})"
-    if not tail.model.plus:
+    count = f"ICDGEN_SIZE({counter or f'message->{part.counter.name}'})"
+    if not part.model.plus:
         return count
-    return f"({count} {'+' if tail.model.fewest else '-'} {abs(tail.model.plus)}u)"
+    return f"({count} {'+' if part.model.fewest else '-'} {abs(part.model.plus)}u)"
 
 
-def miscount(tail: TailDescription, counter: str = "") -> str:
+def miscount(part: VariablePartDescription, counter: str = "") -> str:
     """What holds of a message whose count is none that it can have."""
-    count = counter or f"message->{tail.counter.name}"
-    tests = [f"{count} < {tail.model.low}u"] if tail.model.low else []
-    tests += [f"{count} > {tail.model.high}u"] if tail.counter.storage.max > tail.model.high else []
+    count = counter or f"message->{part.counter.name}"
+    tests = [f"{count} < {part.model.low}u"] if part.model.low else []
+    tests += [f"{count} > {part.model.high}u"] if part.counter.storage.max > part.model.high else []
     return either(tests)
 
 

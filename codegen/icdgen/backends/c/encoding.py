@@ -9,42 +9,43 @@ from icdgen.backends.c.decoding import Groups, Structs, elements, in_rounds, mac
 from icdgen.backends.c.names import stem
 from icdgen.backends.c.statement import assigned_byte, call
 from icdgen.describe import FieldDescription, MessageDescription
-from icdgen.describe.description import Composite, TailDescription
+from icdgen.describe.description import Composite, VariablePartDescription
 from icdgen.describe.groups import Flags, FrameBytes, Rounds, Row
 
 
 def size(message: MessageDescription) -> list[str]:
     """Bytes of the frame that a message makes, as the terms of a sum."""
-    tail = message.tail
-    assert tail is not None
+    last = message.last_part
+    assert last is not None
     parts = [
-        _held(one) if one.model.step == 1 else f"{_held(one)} * {one.model.step}u" for one in (*message.inner, tail)
+        _held(one) if one.model.step == 1 else f"{_held(one)} * {one.model.step}u"
+        for one in (*message.earlier_parts, last)
     ]
-    if message.inner:
+    if message.earlier_parts:
         return [f"{message.model.layout.length}u", *parts]
-    if not tail.model.begin:
+    if not last.model.begin:
         return parts
-    return [f"{tail.model.begin}u", parts[0] if tail.model.step == 1 else f"({parts[0]})"]
+    return [f"{last.model.begin}u", parts[0] if last.model.step == 1 else f"({parts[0]})"]
 
 
-def _held(tail: TailDescription) -> str:
+def _held(last: VariablePartDescription) -> str:
     """How many elements there are; none where the counter is smaller than any frame has it."""
-    if not tail.model.low:
-        return elements(tail)
-    return f"((message->{tail.counter.name} > {tail.model.low}u) ? {elements(tail)} : 0u)"
+    if not last.model.low:
+        return elements(last)
+    return f"((message->{last.counter.name} > {last.model.low}u) ? {elements(last)} : 0u)"
 
 
-def counted_text(tail: TailDescription) -> str:
+def counted_text(last: VariablePartDescription) -> str:
     """What the counter of an open text says of a ``text``, which is filled up to the fewest characters."""
-    if tail.model.fewest:
-        return f"(strlen(text) > {tail.model.fewest}u) ? (strlen(text) - {tail.model.fewest}u) : 0u"
-    return f"strlen(text) + {tail.model.low}u" if tail.model.low else "strlen(text)"
+    if last.model.fewest:
+        return f"(strlen(text) > {last.model.fewest}u) ? (strlen(text) - {last.model.fewest}u) : 0u"
+    return f"strlen(text) + {last.model.low}u" if last.model.low else "strlen(text)"
 
 
 def statements(message: Composite[Any], groups: Groups) -> list[str]:
     """Statements that write every byte of the frame once, in order, but for structs of an open end."""
-    if message.tail is not None and message.tail.element is not None:
-        return _Frame(message, groups, message.tail.model.begin).in_order()
+    if message.last_part is not None and message.last_part.element_struct is not None:
+        return _Frame(message, groups, message.last_part.model.begin).in_order()
     frame = _Frame(message, groups, message.model.length)
     unused = [] if message.members else ["(void)message;"]
     if not message.members and not message.model.length:

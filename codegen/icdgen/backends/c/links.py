@@ -228,8 +228,8 @@ class _Tables:
         ]
         places = self.array(f"{name}_places", "icd_place_t", rows)
         fresh = "NULL"
-        if any(step.fresh):
-            fresh = self.numbers(f"{name}_fresh", "uint8_t", (f"{byte:#04x}u" for byte in step.fresh), 16)
+        if any(step.initial_frame):
+            fresh = self.numbers(f"{name}_fresh", "uint8_t", (f"{byte:#04x}u" for byte in step.initial_frame), 16)
         ids = f"{or_none(step.message.telecommand_id)}, {or_none(step.message.telemetry_id)}"
         return f"{ids}, {step.message.length}u, {len(rows)}u, {places}, {fresh}"
 

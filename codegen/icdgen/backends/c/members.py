@@ -29,10 +29,10 @@ def _statements(
         return said(field, member, name)
     index = "0" if count == "1u" else "element" if depth == 1 else f"element_{depth}"
     member += f"[{index}]"
-    if field.element is None:
+    if field.element_struct is None:
         lines = said(field, member, name)
     else:
-        inner = ((one, f"{one.count}u") for one in field.element.walk(Into.STRUCTS))
+        inner = ((one, f"{one.count}u") for one in field.element_struct.walk(Into.STRUCTS))
         lines = [
             line for one, many in inner for line in _statements(one, said, many, f"{member}.", f"{name}[].", depth + 1)
         ]
@@ -68,8 +68,10 @@ def excess(message: MessageDescription) -> list[str]:
 def _looked_at(message: MessageDescription, is_open: bool, said: _Said) -> list[str]:
     found = []
     for field in message.walk(Into.STRUCTS):
-        if field.is_open == is_open:
-            found += _statements(field, said, elements(message.tail) if is_open and message.tail else f"{field.count}u")
+        if field.is_in_last_part == is_open:
+            found += _statements(
+                field, said, elements(message.last_part) if is_open and message.last_part else f"{field.count}u"
+            )
     return found
 
 

@@ -14,7 +14,7 @@ from icdgen.backends.c.types import type_of
 from icdgen.backends.lines import in_rows
 from icdgen.backends.origin import origin
 from icdgen.describe import FieldDescription, MessageDescription, NodeDescription, describe
-from icdgen.describe.description import TailDescription
+from icdgen.describe.description import VariablePartDescription
 from icdgen.describe.nodes import Direction
 from icdgen.icd.model import Icd, Message
 from icdgen.icd.places import NodePlace, raw_fields_in, scalars_in
@@ -83,7 +83,7 @@ class _Rows:
             "messages": [self.message(*both) for both in zip(node.messages, self.vectors.messages, strict=True)],
             "dispatchers": [self.dispatcher(one, id_bits) for one in node.directions],
             "id_type": f"uint{id_bits}_t",
-            "longest": max((one.model.length for one in node.spoken), default=0),
+            "longest": max((one.model.length for one in node.all_messages), default=0),
             "constant": names.constant,
             "literal": literal,
             "plain": plain,
@@ -129,7 +129,7 @@ class _Rows:
             "fields": fields,
             "lengths": in_rows((str(len(row.frame)) for row in vectors.rows), BYTES_IN_ROW) if differ else [],
             "refused_lengths": vectors.lengths,
-            "tail": _tail(message, message.tail, vectors) if message.tail is not None else None,
+            "tail": _tail(message, message.last_part, vectors) if message.last_part is not None else None,
         }
 
     def vector(self, row: Row, fields: list[FieldRow]) -> list[str]:
@@ -189,11 +189,11 @@ def _frame(row: SharedRow) -> str:
 
 def _plain(message: MessageDescription, vectors: MessageVectors) -> MessageVectors:
     """As C sees a message of which a field is not always there: its members are as in a new one then; other bits are 0."""
-    if message.inner:  # bits that are no field's are not at one place in all frames
+    if message.earlier_parts:  # bits that are no field's are not at one place in all frames
         return replace(vectors, rows=tuple(replace(row, frame=row.encoded) for row in vectors.rows))
-    if not message.conditional:
+    if not message.optional_members:
         return vectors
-    absent: Raw = {field.model.name: field.model.initial_value for field in message.conditional}
+    absent: Raw = {field.model.name: field.model.initial_value for field in message.optional_members}
     scaled = [one.model for one in _scalars(message) if one.model.has_formula]
     rows = []
     for row in vectors.rows:
@@ -207,10 +207,10 @@ def _plain(message: MessageDescription, vectors: MessageVectors) -> MessageVecto
 
 def _scalars(message: MessageDescription) -> Iterator[FieldDescription]:
     """All scalars of a message, overlay fields and derived values among them, in the order of the ICD."""
-    return (scalar for member in message.all_members for scalar in member.scalars)
+    return (scalar for member in message.declared_members for scalar in member.scalars)
 
 
-def _tail(message: MessageDescription, tail: TailDescription, vectors: MessageVectors) -> dict[str, object]:
+def _tail(message: MessageDescription, tail: VariablePartDescription, vectors: MessageVectors) -> dict[str, object]:
     """What there is of a message whose frames differ in length."""
     return {
         "least": message.model.layout.shortest,

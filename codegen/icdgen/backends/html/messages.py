@@ -76,7 +76,7 @@ def _facts(relations: Relations, node: Node, message: Message) -> list[tuple[str
         *_open_parts(message),
         ("End", "trailing zeros may be omitted" if message.may_end_early else "", ""),
         ("Reserved", f"last {count(message.reserved, 'byte')}" if message.reserved else "", ""),
-        ("Id", sharing(describe(relations.icd).node(node).known_ids, message), ""),
+        ("Id", sharing(describe(relations.icd).node(node).messages_by_id, message), ""),
         ("Group", message.group, ""),
         ("Answered with", answer.name, relations.links.message(answer)) if answer else ("", "", ""),
         ("Acknowledged", ("yes" if message.acknowledge else "no") if is_acknowledged else "", ""),

@@ -11,7 +11,7 @@ from icdgen.backends.python.text import literal
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.constants import Constant
 from icdgen.describe.derived import derived
-from icdgen.describe.description import TailDescription
+from icdgen.describe.description import VariablePartDescription
 from icdgen.describe.integer_scale import IntegerScale
 from icdgen.icd import floats
 from icdgen.icd.curve import Curve
@@ -43,7 +43,7 @@ def default(field: FieldDescription) -> str:
     """The raw value in a new message."""
     if field.count:
         return _repeated(field, _default(field))
-    if field.is_open:
+    if field.is_in_last_part:
         return f"bytes({field.initial_count})" if field.initial_count else 'b""'
     return _default(field)
 
@@ -68,10 +68,10 @@ def _told(field: FieldDescription) -> list[str]:
     one, items = field.model, []
     if field.count:
         items.append(f"elements={field.count}")
-    if field.is_open:
+    if field.is_in_last_part:
         items.append("is_open=True")
         items += [f"fewest={field.initial_count}"] if field.initial_count else []
-    if field.is_open and field.enum is not None:
+    if field.is_in_last_part and field.enum is not None:
         items.append(f"enum={class_name(field.enum)}")
     if field.needs:
         needs = (f'("{need.field.name}", ({", ".join(map(str, need.values))},))' for need in field.needs)
@@ -113,17 +113,17 @@ def declaration(field: FieldDescription) -> str:
 def inner(message: MessageDescription) -> list[str]:
     """The items of ``INNER``: what is open in front of the end, its place, and the bits of what counts it."""
     found = []
-    for one in message.inner:
+    for one in message.earlier_parts:
         pieces = [f"({p.byte}, {p.shift}, {p.bits}, {p.at})" for p in one.counter.pieces]
         found.append(f"({open_part(one)}, {one.model.begin}, ({', '.join(pieces)}{',' * (len(pieces) == 1)}))")
     return found
 
 
-def open_part(one: TailDescription) -> str:
+def open_part(one: VariablePartDescription) -> str:
     """``_base.Tail(...)``: attributes, bytes and elements of what is open."""
     counter = "" if one.counter.model.is_count else one.counter.name
     plus = f", {one.model.plus}" if one.model.plus else ""
-    return f'_base.Tail("{one.part.name}", "{counter}", {one.model.step}, {one.model.most}{plus})'
+    return f'_base.Tail("{one.field.name}", "{counter}", {one.model.step}, {one.model.most}{plus})'
 
 
 def view_info(field: FieldDescription) -> str:
@@ -168,9 +168,9 @@ def scaled(field: FieldDescription) -> str:
     first, note = (_repeated(field, first), "tuple[float, ...]") if field.count else (first, _perhaps(field, "float"))
     if curve is not None:
         items = [*_pieces(curve), f"default={first}"]
-        if field.is_set and field.model.settable_raws != (field.model.raw_min, field.model.raw_max):
+        if field.is_settable and field.model.settable_raws != (field.model.raw_min, field.model.raw_max):
             items.append(f"ends={field.model.settable_raws}")
-        return _statement(field.physical_name, note, "curve" if field.is_set else "curve_only", items)
+        return _statement(field.physical_name, note, "curve" if field.is_settable else "curve_only", items)
     assert steps is not None
     return _statement(field.physical_name, note, "scaled", [*map(str, steps.terms), f"default={first}"])
 

@@ -76,7 +76,7 @@ def declared_names(description: Description, package: str) -> Iterator[Identifie
 
 
 def _fields(one: Composite[Any], scope: str) -> Iterator[Identifier]:
-    for field in one.all_members:
+    for field in one.declared_members:
         if field.model.is_count:
             continue
         exact, physical = field.integer_scale, [field.physical_name] if field.has_physical else []

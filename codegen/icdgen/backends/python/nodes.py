@@ -11,9 +11,9 @@ from icdgen.backends.python.fields import constant
 from icdgen.backends.python.text import docstring, literal, paragraph
 from icdgen.describe import Description, EnumDescription, MessageDescription, NodeDescription, StructDescription
 from icdgen.describe.comments import sentence
+from icdgen.describe.contained import contained_messages
 from icdgen.describe.description import Composite
 from icdgen.describe.nodes import MessagesOfId
-from icdgen.describe.parts import parts_of
 from icdgen.icd.model import Message, Node
 
 _OF_NODE = (
@@ -107,7 +107,7 @@ def _documentation(node: Node) -> list[str]:
 
 def of_message(message: MessageDescription) -> dict[str, object]:
     """What is said of it, and what it repeats in the order of the frame."""
-    parts = [(begin, part.message) for part in parts_of(message) for begin in part.begins]
+    parts = [(begin, part.message) for part in contained_messages(message) for begin in part.positions]
     return {**of_composite(message), "parts": sorted(parts, key=lambda one: one[0])}
 
 
@@ -116,7 +116,7 @@ def of_composite(composite: Composite[Any]) -> dict[str, object]:
     used_by: tuple[EnumDescription | StructDescription, ...] = (*composite.enums, *composite.structs)
     return {
         "imports": sorted(_import(used, composite) for used in used_by),
-        "constants": [(one, constant(one, field)) for field in composite.all_members for one in field.constants],
+        "constants": [(one, constant(one, field)) for field in composite.declared_members for one in field.constants],
     }
 
 

@@ -33,10 +33,10 @@ def accessors(field: FieldDescription) -> list[Accessor]:
     end = ", or if there is no such element." if field.count else "."
     if field.curve is not None:
         kind = {32: "single", 64: "number"}[field.model.bits] if field.model.type == "float" else "raw"
-        raw = f"{curve_name(field)}.{kind}(value)" if field.is_set else ""
+        raw = f"{curve_name(field)}.{kind}(value)" if field.is_settable else ""
         refused = f"if it is beyond the values of the field, or not finite{end}"
         return [Accessor(name, "f64", about, curve_value(field), sets.format(what), refused, raw)]
-    scale, refused = field.declared.upper(), f"if it does not fit or is not finite{end}"
+    scale, refused = field.declared_name.upper(), f"if it does not fit or is not finite{end}"
     found = [
         Accessor(name, "f64", about, physical(field), sets.format(what), refused, f"{scale}.raw(value)"),
         Accessor(single_name(field), "f32", f"{what}, the nearest float of 32 bits.", single(field)),
@@ -75,7 +75,7 @@ def scale_of(field: FieldDescription) -> str:
     terms = field.steps.terms if field.steps else (1, 0, 1)
     one = field.model
     numbers = [f"({', '.join(map(integer, row))})" for row in ((one.raw_min, one.raw_max), terms)]
-    return _constant(field.name.upper(), "Scale", [string(one.name), string(field.takes), *numbers])
+    return _constant(field.name.upper(), "Scale", [string(one.name), string(field.allowed_text), *numbers])
 
 
 def _constant(name: str, type: str, items: list[str]) -> str:
@@ -93,7 +93,7 @@ def curve_of(field: FieldDescription) -> str:
     ends = one.settable_raws if one.type != "float" and one.is_invertible else (0, 0)
     pieces = [f"({double(start)}, &[{', '.join(map(double, terms))}])" for start, terms in field.curve.pieces]
     listed = "\n".join(["", *(f"{STEP}{piece}," for piece in pieces), ""]) if len(pieces) > 1 else pieces[0]
-    items = f"{string(one.name)}, {string(field.takes)}, ({', '.join(map(integer, ends))}), &[{listed}]"
+    items = f"{string(one.name)}, {string(field.allowed_text)}, ({', '.join(map(integer, ends))}), &[{listed}]"
     return f"#[rustfmt::skip]\nconst {curve_name(field)}: Curve = Curve::new({items});"
 
 

@@ -6,13 +6,13 @@ from collections.abc import Iterator
 from typing import Any
 
 from icdgen.describe import FieldDescription
-from icdgen.describe.arrays import arrays_named, loop_of
+from icdgen.describe.arrays import loop_of, named_arrays
 from icdgen.describe.description import Composite
 
 
 def named(one: Composite[Any]) -> Iterator[tuple[FieldDescription, str]]:
     """Those of a message, those in elements of others before these; and their names, from the message on."""
-    return arrays_named(one, lambda field: loop_of(field) is not None)
+    return named_arrays(one, lambda field: loop_of(field) is not None)
 
 
 def helper_of(field: FieldDescription) -> str:

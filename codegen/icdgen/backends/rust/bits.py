@@ -56,7 +56,7 @@ def _called(field: FieldDescription, helper: str, within: str, depth: int) -> st
 def _struct(field: FieldDescription, struct: StructDescription, tables: set[int], depth: int, within: str) -> str:
     pad, (row,) = STEP * depth, field.instances
     lines = (f"{pad}{STEP}{own_name(one)}: {reading(one, tables, depth + 1, within)},\n" for one in row)
-    return f"{struct_path(struct, field.message.seen_from)} {{\n{''.join(lines)}{pad}}}"
+    return f"{struct_path(struct, field.message.using_node)} {{\n{''.join(lines)}{pad}}}"
 
 
 def _array(field: FieldDescription, depth: int) -> str:
@@ -152,11 +152,15 @@ def fitting(field: FieldDescription) -> list[str]:
     if field.struct is not None and not field.count:
         return [f"{member}.fit()?;"]
     if field.struct is not None:
-        return [f"for part in {f'{member}()' if field.is_open else f'&{member}'} {{", f"{STEP}part.fit()?;", "}"]
+        return [
+            f"for part in {f'{member}()' if field.is_in_last_part else f'&{member}'} {{",
+            f"{STEP}part.fit()?;",
+            "}",
+        ]
     raw = ".raw()" if field.enum is not None else ""
     if not field.count:
         return [f"{field.name.upper()}.fit({_source(field)}{raw})?;"]
-    values = f"{member}().iter().copied()" if field.is_open else member
+    values = f"{member}().iter().copied()" if field.is_in_last_part else member
     return [f"for value in {values} {{", f"{STEP}{field.name.upper()}.fit(value{raw})?;", "}"]
 
 

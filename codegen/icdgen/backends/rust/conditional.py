@@ -25,7 +25,7 @@ def conditional(message: MessageDescription) -> list[dict[str, object]]:
                 *bits.writing(field),
             ],
         }
-        for field in message.conditional
+        for field in message.optional_members
     ]
 
 

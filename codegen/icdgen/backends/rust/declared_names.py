@@ -67,22 +67,22 @@ def _members(message: Composite[Any]) -> Iterator[Identifier]:
     is_message = isinstance(message, MessageDescription)
     yield from _ours(methods, _METHODS if is_message else _METHODS_OF_STRUCTS)
     if isinstance(message, MessageDescription):
-        if message.tail is not None:
-            yield from _ours(methods, (*_OPEN_METHODS, "inner") if message.inner else _OPEN_METHODS)
+        if message.last_part is not None:
+            yield from _ours(methods, (*_OPEN_METHODS, "inner") if message.earlier_parts else _OPEN_METHODS)
         for _, name in arrays.named(message):
             yield message.identifier(methods, arrays.reader(name))
             yield message.identifier(methods, arrays.writer(name))
     yield from _ours(associated, _CONSTANTS if is_message else _CONSTANTS_OF_STRUCTS)
-    for field in message.all_members:
+    for field in message.declared_members:
         is_view = field.model.view
-        if message.tail is not None and (field.is_open or field.is_inner):
+        if message.last_part is not None and (field.is_in_last_part or field.is_in_earlier_part):
             yield field.identifier(methods, names.field_name(field))
         yield field.identifier(methods if is_view else fields, names.field_name(field))
         if field.model.when:
             yield field.identifier(methods, names.has(field))
         if field.has_physical:
             yield field.identifier(methods, field.physical_name)
-            if field.is_set:
+            if field.is_settable:
                 yield field.identifier(methods, f"set_{field.physical_name}")
         if field.steps is not None:
             yield field.identifier(methods, single_name(field))

@@ -21,14 +21,14 @@ def functions(one: Composite[Any]) -> Iterator[dict[str, object]]:
     for field, name in arrays.named(one):
         known = {"reader": arrays.reader(name), "writer": arrays.writer(name), "of": field.model.name}
         loop = loop_of(field)
-        if field.element is not None:
-            yield {**known, **_of_struct(field.element, f"{name}_")}
+        if field.element_struct is not None:
+            yield {**known, **_of_struct(field.element_struct, f"{name}_")}
         elif loop is not None:
             yield {**known, **_of_numbers(field, loop)}
 
 
 def _of_struct(struct: StructDescription, within: str) -> dict[str, object]:
-    tables, type = bytes_of_flags(struct, bits.FLAGS_FROM), struct_path(struct, struct.seen_from)
+    tables, type = bytes_of_flags(struct, bits.FLAGS_FROM), struct_path(struct, struct.using_node)
     value = literal(struct.members, [bits.reading(one, tables, within=within) for one in struct.members], type)
     writings = [line for one in struct.walk(Into.STRUCTS) for line in bits.writing(one, "part", within)]
     step = struct.model.length

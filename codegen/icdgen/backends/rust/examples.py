@@ -101,7 +101,7 @@ def _imports(message: MessageDescription, shown: Shown | None, crate: str) -> li
 def _received(message: MessageDescription, one: Example) -> list[str]:
     lines = [f"let frame = {_bytes(one.frame)};"]
     if len(one.frame) > _WHOLE:
-        size = str(len(one.frame)) if message.tail else f"{type_name(message)}::LENGTH"
+        size = str(len(one.frame)) if message.last_part else f"{type_name(message)}::LENGTH"
         lines = [f"let mut frame = [0; {size}];"]
         lines += [_put(start, run) for start, run in one.runs]
     return [

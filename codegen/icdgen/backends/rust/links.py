@@ -229,7 +229,7 @@ def _step(step: StepDescription | None, direction: str) -> Brackets | None:
     return struct(
         "Step",
         part("id", integer(id)),
-        part("fresh", flat_rows(map(str, step.fresh))),
+        part("fresh", flat_rows(map(str, step.initial_frame))),
         part("places", rows(places)),
         part("payload", some(payload)),
     )

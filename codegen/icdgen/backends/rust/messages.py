@@ -11,7 +11,7 @@ from icdgen.backends.rust.physical import has_constant
 from icdgen.backends.rust.text import double, integer
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.constants import Constant
-from icdgen.describe.description import Composite, Into, TailDescription
+from icdgen.describe.description import Composite, Into, VariablePartDescription
 from icdgen.describe.groups import bytes_of_flags
 
 _SUPPORT = frozenset("""
@@ -26,7 +26,7 @@ DERIVES_DEFAULT = 32  # elements of an array; longer ones do not
 
 def values(message: MessageDescription) -> dict[str, object]:
     """What is read, written, derived and imported."""
-    fields, tables, tail = message.members, bytes_of_flags(message, bits.FLAGS_FROM), message.tail
+    fields, tables, last = message.members, bytes_of_flags(message, bits.FLAGS_FROM), message.last_part
     readings = ["None" if field.model.when else bits.reading(field, tables) for field in fields]
     views = [(field, bits.reading(field, set(), depth=2)) for field in message.overlays]
     conditions = conditional.conditional(message)
@@ -35,9 +35,9 @@ def values(message: MessageDescription) -> dict[str, object]:
         **of_composite(message),
         "refused": message.is_narrow or bool(conditions),
         "conditional": conditions,
-        "tail": tail,
-        "inner": list(map(_inner, message.inner)),
-        **(_of_end(message, tail) if tail else {}),
+        "last": last,
+        "earlier": list(map(_inner, message.earlier_parts)),
+        **(_of_end(message, last) if last else {}),
         "tables": sorted(tables),
         "literal": elements.literal(fields, readings),
         "views": views,
@@ -47,19 +47,19 @@ def values(message: MessageDescription) -> dict[str, object]:
     }
 
 
-def _of_end(message: MessageDescription, tail: TailDescription) -> dict[str, object]:
+def _of_end(message: MessageDescription, last: VariablePartDescription) -> dict[str, object]:
     """What the code of frames that differ in length needs."""
     return {
-        "bytes_of_end": _times(tail.model.step, f"count + {tail.model.fewest}" if tail.model.fewest else "count"),
-        "bytes_of_elements": _times(tail.model.step, "count"),
-        "length_of_frame": _length(tail.model.shortest, tail.model.step),
-        "length_of_elements": _length(tail.model.begin, tail.model.step),
-        "counted_text": _counted_text(tail),
-        "open_parts": [(one, _number(one)) for one in (*message.inner, tail)],
+        "bytes_of_end": _times(last.model.step, f"count + {last.model.fewest}" if last.model.fewest else "count"),
+        "bytes_of_elements": _times(last.model.step, "count"),
+        "length_of_frame": _length(last.model.shortest, last.model.step),
+        "length_of_elements": _length(last.model.begin, last.model.step),
+        "counted_text": _counted_text(last),
+        "open_parts": [(one, _number(one)) for one in (*message.earlier_parts, last)],
     }
 
 
-def _inner(part: TailDescription) -> tuple[TailDescription, str, str, str]:
+def _inner(part: VariablePartDescription) -> tuple[VariablePartDescription, str, str, str]:
     """What is open in front of the end, how its count is read, and its bytes: of a count that there may be, and of any."""
     count = f"number(self.{field_name(part.counter)}, {part.model.low}, {part.model.fewest})"
     there, any_count = (_times(part.model.step, one) for one in (count, f"{count}.min({part.model.most})"))
@@ -87,8 +87,8 @@ def of_composite(one: Composite[Any]) -> dict[str, object]:
     return {
         "constants": _constants(one),
         "fits": [line for field in narrow if not field.model.when for line in bits.fitting(field)],
-        "scales": [field for field in one.all_members if has_constant(field)],
-        "curves": [field for field in one.all_members if field.curve is not None],
+        "scales": [field for field in one.declared_members if has_constant(field)],
+        "curves": [field for field in one.declared_members if field.curve is not None],
         "default": None if has_default else elements.literal(fields, [_initial(field) for field in fields]),
         "derives": ", ".join(traits + ([] if one.has_floats else ["Eq", "Hash"])),
         "uses_enums": any(enum.node is one.node for enum in one.enums),
@@ -97,7 +97,7 @@ def of_composite(one: Composite[Any]) -> dict[str, object]:
 
 def _constants(one: Composite[Any]) -> list[tuple[Constant, str, str]]:
     """The constants of fields, their types and values."""
-    return [(constant, *_constant(field, constant)) for field in one.all_members for constant in field.constants]
+    return [(constant, *_constant(field, constant)) for field in one.declared_members for constant in field.constants]
 
 
 def _constant(field: FieldDescription, one: Constant) -> tuple[str, str]:
@@ -118,17 +118,17 @@ def _length(before: int, step: int) -> str:
     return f"{before} + {rest}" if before else rest
 
 
-def _counted_text(tail: TailDescription) -> str:
+def _counted_text(last: VariablePartDescription) -> str:
     """What the counter of an open text says of a ``text``, which is filled up to the fewest characters."""
-    if tail.model.fewest:
-        return f"text.len().saturating_sub({tail.model.fewest})"
-    return f"(text.len() + {tail.model.low})" if tail.model.low else "text.len()"
+    if last.model.fewest:
+        return f"text.len().saturating_sub({last.model.fewest})"
+    return f"(text.len() + {last.model.low})" if last.model.low else "text.len()"
 
 
-def _number(tail: TailDescription) -> str:
+def _number(last: VariablePartDescription) -> str:
     """How many elements a message has."""
-    counter = f"self.{field_name(tail.counter)}"
-    return f"number({counter}, {tail.model.low}, {tail.model.fewest})" if tail.model.plus else counter
+    counter = f"self.{field_name(last.counter)}"
+    return f"number({counter}, {last.model.low}, {last.model.fewest})" if last.model.plus else counter
 
 
 def _is_default(field: FieldDescription) -> bool:
@@ -140,7 +140,7 @@ def _is_default(field: FieldDescription) -> bool:
 
 def _initial(field: FieldDescription) -> str:
     value = _valued(field, field.initial_raw)
-    if field.is_open and field.count:
+    if field.is_in_last_part and field.count:
         length = field.struct.model.length if field.struct is not None else 0
         absent = f"Self::{arrays.reader(field.name)}(&[0; {length}])" if length else _valued(field, 0)
         few = field.initial_count if field.has_initial_value else 0

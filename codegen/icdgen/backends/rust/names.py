@@ -51,7 +51,7 @@ def raw_words(expression: str) -> str:
 
 def own_name(field: FieldDescription) -> str:
     """What it is called in the message, or in the struct, that declares it."""
-    return f"r#{field.declared}" if field.declared in _RAW else field.declared
+    return f"r#{field.declared_name}" if field.declared_name in _RAW else field.declared_name
 
 
 def variant(word: str) -> str:

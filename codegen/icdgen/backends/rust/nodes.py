@@ -20,7 +20,7 @@ def summary(node: Node) -> str:
 
 def about(node: NodeDescription, example: list[str]) -> str:
     """What its module begins with: title, source, whose messages it speaks, too, and an example."""
-    one, spoken = node.model, dict.fromkeys(message.node.name for message in node.spoken)
+    one, spoken = node.model, dict.fromkeys(message.node.name for message in node.all_messages)
     printed = ", ".join(f"{key} {value}" for key, value in one.document)
     included = ", ".join(f"[`{name}`](crate::{name})" for name in spoken if name != node.name)
     paragraphs = [

@@ -10,7 +10,7 @@ from icdgen.backends.rust.names import field_name, own_name, struct_path
 from icdgen.backends.rust.text import WIDTH
 from icdgen.describe import FieldDescription, MessageDescription, StructDescription
 from icdgen.describe.comments import part_comment
-from icdgen.describe.parts import Copied, PartDescription, parts_of
+from icdgen.describe.contained import ContainedDescription, CopiedMember, contained_messages
 
 
 class Part(NamedTuple):
@@ -26,22 +26,22 @@ class Part(NamedTuple):
 def parts(message: MessageDescription) -> list[Part]:
     """Those of a composite message."""
     found = []
-    for one in parts_of(message):
+    for one in contained_messages(message):
         path = struct_path(one.message, message.node)
-        count = len(one.begins)
+        count = len(one.positions)
         kind = f"[{path}; {count}]" if count > 1 else path
-        values = tuple(tuple(_values(one, message, begin)) for begin in one.begins)
-        found.append(Part(part_comment(one.message.model, one.begins), kind, count > 1, values, path))
+        values = tuple(tuple(_values(one, message, begin)) for begin in one.positions)
+        found.append(Part(part_comment(one.message.model, one.positions), kind, count > 1, values, path))
     return found
 
 
-def _values(part: PartDescription, composite: MessageDescription, begin: int) -> Iterator[str]:
+def _values(part: ContainedDescription, composite: MessageDescription, begin: int) -> Iterator[str]:
     copies = {copied.member.model.name: copied for copied in part.copies(composite, begin)}
     for member in part.message.members:
         yield _struct(member, member.struct, copies) if member.struct else _value(copies[member.model.name])
 
 
-def _struct(field: FieldDescription, struct: StructDescription, copies: dict[str, Copied]) -> str:
+def _struct(field: FieldDescription, struct: StructDescription, copies: dict[str, CopiedMember]) -> str:
     """A struct, or an array of them, of the values that stand in it."""
     path, found = struct_path(struct, field.message.node), []
     for row in field.instances:
@@ -51,9 +51,9 @@ def _struct(field: FieldDescription, struct: StructDescription, copies: dict[str
     return f"{own_name(field)}: {f'[{rows}]' if field.count else rows}"
 
 
-def _value(copied: Copied) -> str:
+def _value(copied: CopiedMember) -> str:
     name = own_name(copied.member)
-    twins = [f"message.{field_name(one)}" for one in copied.twins]
+    sources = [f"message.{field_name(one)}" for one in copied.sources]
     if copied.is_whole:
-        return f"{name}: {twins[0]}"
-    return bracketed(f"{name}: [", twins, "]", WIDTH - len(STEP) * 4, STEP * 4)
+        return f"{name}: {sources[0]}"
+    return bracketed(f"{name}: [", sources, "]", WIDTH - len(STEP) * 4, STEP * 4)

@@ -34,7 +34,7 @@ def raw_value(field: FieldDescription) -> str:
 
 def curve_name(field: FieldDescription) -> str:
     """``TEMPERATURE__CURVE``: no name of a field has two lines in a row."""
-    return f"{field.declared.upper()}__CURVE"
+    return f"{field.declared_name.upper()}__CURVE"
 
 
 def curve_value(field: FieldDescription) -> str:
@@ -52,7 +52,7 @@ def physical(field: FieldDescription) -> str:
     """
     assert field.arithmetic is not None
     if not field.arithmetic.is_exact_in_doubles:
-        return f"{field.declared.upper()}.physical({raw_value(field)})"
+        return f"{field.declared_name.upper()}.physical({raw_value(field)})"
     return _quotient(field.arithmetic.steps, f"f64::from({raw_value(field)})")
 
 
@@ -60,7 +60,7 @@ def single(field: FieldDescription) -> str:
     """The same in single precision."""
     assert field.arithmetic is not None
     if not field.arithmetic.is_exact_in_singles:
-        return f"{field.declared.upper()}.single({raw_value(field)})"
+        return f"{field.declared_name.upper()}.single({raw_value(field)})"
     return _quotient(field.arithmetic.steps, f"f32::from({raw_value(field)})")
 
 

@@ -10,7 +10,7 @@ from icdgen import naming
 from icdgen.backends.xtce.places import Run, gaps, run_of, run_of_all
 from icdgen.backends.xtce.types import Type, Types, is_said, most_first, type_of, unique
 from icdgen.describe import FieldDescription, MessageDescription
-from icdgen.describe.description import Into, TailDescription
+from icdgen.describe.description import Into, VariablePartDescription
 from icdgen.icd.model import TELECOMMAND, Special
 
 
@@ -116,9 +116,9 @@ class Frames:
                 found += self._constant(made, one)
             else:
                 found.append(self._entry(made, one, run))
-        tail = message.tail
-        can_stand = not message.inner and not any(one.needs for one in found)
-        behind = self._open(made, tail) if tail is not None and can_stand else None
+        last = message.last_part
+        can_stand = not message.earlier_parts and not any(one.needs for one in found)
+        behind = self._open(made, last) if last is not None and can_stand else None
         if behind is None:
             made.lacks += (
                 f"`{part.name}`, which has no fixed size, is left out" for part in message.model.layout.sequence
@@ -133,18 +133,18 @@ class Frames:
             made.entries.append(behind._replace(at=behind.run.at if is_placed else None))
         return made
 
-    def _open(self, made: Frame, tail: TailDescription) -> Entry | None:
+    def _open(self, made: Frame, last: VariablePartDescription) -> Entry | None:
         """An open end that a field counts; None where XTCE has no word for it, as of structs and of what nothing counts."""
-        part, node = tail.part, made.message.node
-        is_odd = tail.counter.model.is_count or part.struct is not None or part.model.const is not None
-        if is_odd or tail.counter.name not in made.names:
+        part, node = last.field, made.message.node
+        is_odd = last.counter.model.is_count or part.struct is not None or part.model.const is not None
+        if is_odd or last.counter.name not in made.names:
             return None
         run = run_of(part.model, node) if part.model.is_bytes else run_of_all(part.model.elements(), node)
         if run is None:
             return None
         name = self._give_name(made, part)
-        type_ = self.types.of_open(tail, made.names[tail.counter.name], _type_name(made, name), run.is_little)
-        _add_row(made, part, type_, tail.model.most)
+        type_ = self.types.of_open(last, made.names[last.counter.name], _type_name(made, name), run.is_little)
+        _add_row(made, part, type_, last.model.most)
         return Entry(name, run._replace(at=self.head + run.at), is_array=not part.model.is_bytes or bool(part.count))
 
     def _give_name(self, made: Frame, one: FieldDescription) -> str:
@@ -228,7 +228,7 @@ def _add_row(made: Frame, one: FieldDescription, type_: str, most: int = 0) -> N
 def _parts(message: MessageDescription) -> Iterator[FieldDescription]:
     """What has a fixed place: fields of structs, arrays as one where XTCE can have them so, at last views."""
     for one in message.walk(Into.ARRAYS_OF_STRUCTS):
-        if one.is_open or one.is_inner or one.model.is_count:
+        if one.is_in_last_part or one.is_in_earlier_part or one.model.is_count:
             continue
         is_array = one.model.const is None and one.count and run_of_all(one.model.elements(), message.node) is not None
         yield from (one,) if is_array or not one.count else one.elements

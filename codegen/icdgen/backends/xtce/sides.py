@@ -47,7 +47,7 @@ def side(icd: Icd, node: NodeDescription, direction: str) -> Side | None:
     if not spoken:
         return None
     types = Types()
-    id_bits = max(node.model.id_bits, *(id.bit_length() for one in node.spoken for id in one.model.ids))
+    id_bits = max(node.model.id_bits, *(id.bit_length() for one in node.all_messages for id in one.model.ids))
     head = _head(id_bits, icd.protocol_of(node.model), direction, types)
     shared = {
         one.id: min(among.message.model.layout.shortest for among in one.messages)

@@ -11,7 +11,7 @@ from typing import Any
 from icdgen import naming
 from icdgen.describe import FieldDescription
 from icdgen.describe.bounds import bounds
-from icdgen.describe.description import TailDescription
+from icdgen.describe.description import VariablePartDescription
 from icdgen.describe.numbers import exact_text, point_text
 from icdgen.icd.curve import CLAMP, EXTRAPOLATE
 from icdgen.icd.model import Member
@@ -82,12 +82,12 @@ class Types:
         name = self._element(field, wanted, is_little)
         return name if not field.count else self.name(Type("Array", of=name, count=field.count), f"{wanted}_Array")
 
-    def of_open(self, tail: TailDescription, counter: str, wanted: str, is_little: bool) -> str:
+    def of_open(self, tail: VariablePartDescription, counter: str, wanted: str, is_little: bool) -> str:
         """The name of the type of an open end, of which ``counter`` says how much there is."""
-        if tail.part.model.is_bytes and not tail.part.count:
-            made = replace(type_of(tail.part.model), bits=0)
+        if tail.field.model.is_bytes and not tail.field.count:
+            made = replace(type_of(tail.field.model), bits=0)
         else:
-            made, wanted = Type("Array", of=self._element(tail.part, wanted, is_little)), f"{wanted}_Array"
+            made, wanted = Type("Array", of=self._element(tail.field, wanted, is_little)), f"{wanted}_Array"
         return self.name(replace(made, count=tail.model.most, counter=counter, plus=tail.model.plus), wanted)
 
     def _element(self, field: FieldDescription, wanted: str, is_little: bool) -> str:

@@ -9,28 +9,28 @@ from icdgen.describe.description import FieldDescription, Into
 from icdgen.describe.nodes import MessageDescription
 
 
-class Copied(NamedTuple):
+class CopiedMember(NamedTuple):
     """A member of a part, and what of the composite message has its value.
 
     Of an array that stands as one in both that is the array; else there is one twin for each element.
     """
 
     member: FieldDescription
-    twins: tuple[FieldDescription, ...]
+    sources: tuple[FieldDescription, ...]
 
     @property
     def is_whole(self) -> bool:
         """Whether one assignment copies the member."""
-        return len(self.twins) == 1 and self.twins[0].count == self.member.count
+        return len(self.sources) == 1 and self.sources[0].count == self.member.count
 
 
-class PartDescription(NamedTuple):
+class ContainedDescription(NamedTuple):
     """A message that a composite message repeats."""
 
     message: MessageDescription
-    begins: tuple[int, ...]  # the bits at which it does, in the order of the ICD
+    positions: tuple[int, ...]  # the bits at which it does, in the order of the ICD
 
-    def copies(self, composite: MessageDescription, begin: int) -> Iterator[Copied]:
+    def copies(self, composite: MessageDescription, begin: int) -> Iterator[CopiedMember]:
         """What its members are of a message, from a bit on; of a struct what stands in it."""
         fields = {field.model.at: field for field in composite.fields}
         arrays = {field.model.at: field for field in composite.walk(Into.ARRAYS_OF_STRUCTS) if field.count}
@@ -38,15 +38,15 @@ class PartDescription(NamedTuple):
             at = begin + member.model.at
             array = arrays.get(at) if member.count else None
             if array is not None and array.count == member.count:
-                yield Copied(member, (array,))
+                yield CopiedMember(member, (array,))
             else:
-                yield Copied(member, tuple(fields[begin + one.model.at] for one in member.elements))
+                yield CopiedMember(member, tuple(fields[begin + one.model.at] for one in member.elements))
 
 
-def parts_of(composite: MessageDescription) -> tuple[PartDescription, ...]:
+def contained_messages(composite: MessageDescription) -> tuple[ContainedDescription, ...]:
     """Each message that it repeats, but for those that hold nothing."""
-    begins: dict[MessageDescription, list[int]] = {}
+    positions: dict[MessageDescription, list[int]] = {}
     for part, begin in composite.contained:
         if part.members:
-            begins.setdefault(part, []).append(begin)
-    return tuple(PartDescription(part, tuple(bits)) for part, bits in begins.items())
+            positions.setdefault(part, []).append(begin)
+    return tuple(ContainedDescription(part, tuple(bits)) for part, bits in positions.items())
