@@ -1,1 +1,1 @@
-"""What an ICD is: reading, checking and the model that everything else is made from."""
+"""The ICD: files, checks and the model of one device interface."""

@@ -1,4 +1,4 @@
-"""Errata overlays: decisions about the manual's faults, laid over the vendor's data before the model is built, and notes."""
+"""Errata overlays: decisions about faults of the manual, which change the tree of an ICD before the model is built."""
 
 from __future__ import annotations
 
@@ -16,25 +16,25 @@ STALE, NOWHERE, DOUBLE_ID, OTHER_NODE = "ICD080", "ICD081", "ICD082", "ICD083"
 
 
 class Applied:
-    """The outcome of laying an overlay over a node's tree."""
+    """Result of applying an overlay to the tree of an ICD."""
 
     def __init__(self) -> None:
         self.entries: list[Erratum] = []
         self.notes: list[Erratum] = []
-        self.of: dict[int, list[Erratum]] = {}  # id(mapping) -> entries that concern it
-        self.accepts: list[tuple[str, Place, Map]] = []  # code, where it says so, and the mapping that it concerns
+        self.of: dict[int, list[Erratum]] = {}  # id() of a mapping -> its entries and notes
+        self.accepts: list[tuple[str, Place, Map]] = []  # accepted code, its place in the overlay, and the mapping
         self.findings: list[Finding] = []
 
     def about(self, item: object) -> tuple[Erratum, ...]:
-        """The entries, then the notes, that concern the object read from this mapping."""
-        found = self.of.get(id(item))
-        return tuple(sorted(found, key=lambda erratum: erratum.is_note)) if found else ()
+        """Return the entries, then the notes, about the object that was read from a mapping."""
+        errata = self.of.get(id(item))
+        return tuple(sorted(errata, key=lambda erratum: erratum.is_note)) if errata else ()
 
 
 def apply(tree: Map, overlay: Map | None, broken: Set[int] = frozenset()) -> Applied:
-    """Changes ``tree`` in place. Every entry that fits nowhere or no longer matches is a finding.
+    """Apply an overlay to ``tree``, in place. Entries without a matching place are findings.
 
-    Entries that violate the schema (``broken`` holds the ids of such mappings) are passed over.
+    Entries that violate the schema are ignored; ``broken`` has the id() of such mappings.
     """
     applied = Applied()
     if overlay is None:
@@ -47,7 +47,8 @@ def apply(tree: Map, overlay: Map | None, broken: Set[int] = frozenset()) -> App
         return applied
     seen: dict[str, Place] = {}
     named = _ByName()
-    notes = mappings(overlay.get("notes"))  # first: what they speak of is what the vendor prints
+    # Notes come first, because they are about the values that the manual prints, before entries change them.
+    notes = mappings(overlay.get("notes"))
     for entry in (*notes, *mappings(overlay.get("entries"))):
         if broken and _is_broken(entry, broken):
             continue
@@ -60,33 +61,35 @@ def apply(tree: Map, overlay: Map | None, broken: Set[int] = frozenset()) -> App
 
 
 def _apply_entry(tree: Map, entry: Map, applied: Applied, named: _ByName) -> None:
+    """Apply an entry or a note to all places that its `where` names, and add findings about stale or unknown places."""
     printed: Map = entry.get("printed") or unread()
-    held: Map = entry.get("held") or unread()
+    changes: Map = entry.get("held") or unread()
     erratum = _erratum(entry)
     (applied.notes if erratum.is_note else applied.entries).append(erratum)
     where = entry.get("where")
     wheres = where if isinstance(where, Seq) else [where] if where else []
     matched: list[Map] = []
     wildcard = False
-    for one in wheres:
-        targets = list(_targets(tree, one, named))
-        wild = "*" in (one.get("message"), one.get("field"))
-        wildcard |= wild
-        if wild:
-            targets = [t for t in targets if _matches(t, printed)]
-        if not targets and not wild:
-            applied.findings.append(_nowhere(tree, one, named))
+    for selector in wheres:
+        targets = list(_targets(tree, selector, named))
+        is_wildcard = "*" in (selector.get("message"), selector.get("field"))
+        wildcard |= is_wildcard
+        if is_wildcard:
+            targets = [target for target in targets if _matches(target, printed)]
+        if not targets and not is_wildcard:
+            applied.findings.append(_nowhere(tree, selector, named))
         for target in targets:
             if not _matches(target, printed):
                 applied.findings.append(_stale(entry, target, printed))
                 continue
             matched.append(target)
-            _change(target, held, entry)
-            if any(key == "name" or isinstance(value, Seq) for key, value in held.items()):
+            _change(target, changes)
+            if any(key == "name" or isinstance(value, Seq) for key, value in changes.items()):
                 named.forget()
             applied.of.setdefault(id(target), []).append(erratum)
             for code, place in entry["accept"].placed() if "accept" in entry else ():
                 applied.accepts.append((code, place, target))
+    # With a wildcard, the number of places must be stated: a new message could match without being meant.
     expected = entry.get("places")
     if wildcard and len(matched) != expected:
         message = f"`printed` matches {len(matched)} places" + (f", not {expected}" if expected else "")
@@ -99,24 +102,26 @@ def _apply_entry(tree: Map, entry: Map, applied: Applied, named: _ByName) -> Non
 
 
 def _place(target: Map) -> Place:
-    """Where something of an ICD begins."""
+    """Return the place of the first value of a mapping."""
     return target.at(next(iter(target)))
 
 
 def _is_broken(value: object, broken: Set[int]) -> bool:
+    """Return whether a mapping at any depth of a value violates the schema."""
     if isinstance(value, Map):
         return id(value) in broken or any(_is_broken(item, broken) for item in value.values())
     return isinstance(value, Seq) and any(_is_broken(item, broken) for item in value)
 
 
 def _erratum(entry: Map) -> Erratum:
+    """Return the object of the model for an entry (with `why`) or a note (with `what`)."""
     return Erratum(
         id=entry["id"],
         title=str(entry.get("title", "")),
         why=str(entry.get("what" if "what" in entry else "why", "")),
         evidence=str(entry.get("evidence", "")),
         confidence=str(entry.get("confidence", "")),
-        tables=tuple(t for t in entry.get("tables") or () if isinstance(t, int)),
+        tables=tuple(table for table in entry.get("tables") or () if isinstance(table, int)),
         printed=tuple((entry.get("printed") or {}).items()),
         held=tuple((entry.get("held") or {}).items()),
         changes=bool(entry.get("held")),
@@ -126,6 +131,7 @@ def _erratum(entry: Map) -> Erratum:
 
 
 def _targets(tree: Map, where: Map, named: _ByName) -> Iterator[Map]:
+    """Yield the mappings of the tree that a `where` names."""
     if "section" in where:
         yield from section(tree, str(where["section"]))
     elif "enum" in where:
@@ -133,27 +139,28 @@ def _targets(tree: Map, where: Map, named: _ByName) -> Iterator[Map]:
             if "member" not in where:
                 yield enum
             else:
-                yield from (m for m in mappings(enum.get("members")) if m.get("value") == where["member"])
+                members = mappings(enum.get("members"))
+                yield from (member for member in members if member.get("value") == where["member"])
     elif "loggable" in where:
         yield from (row for row in mappings(tree.get("loggable")) if row.get("bit") == where["loggable"])
     elif "message" in where or "struct" in where:
         names = where.get("fields") or ([where["field"]] if "field" in where else None)
-        what = "message" if "message" in where else "struct"
-        for message in named.of(tree, f"{what}s", where[what]):
+        kind = "message" if "message" in where else "struct"
+        for owner in named.of(tree, f"{kind}s", where[kind]):
             if names is None:
-                yield message
+                yield owner
             else:
-                yield from (f for name in names for f in named.of(message, "fields", name))
+                yield from (field for name in names for field in named.of(owner, "fields", name))
 
 
 class _ByName:
-    """Finds what an ICD lists by its name, without looking through the whole list again for each entry."""
+    """Index of lists in an ICD by name. Without it, each entry would search the complete list again."""
 
     def __init__(self) -> None:
         self._rows: dict[tuple[int, str], dict[str, list[Map]]] = {}
 
     def of(self, owner: Map, key: str, name: str) -> Iterable[Map]:
-        """What a key lists under the name; all of it under ``*``."""
+        """Return the mappings of a name in the list of a key; all mappings for the name ``*``."""
         if name == "*":
             return mappings(owner.get(key))
         rows = self._rows.get((id(owner), key))
@@ -165,12 +172,12 @@ class _ByName:
         return rows.get(name, ())
 
     def forget(self) -> None:
-        """A name was changed, or a list."""
+        """Discard the index, after a change of a name or of a list."""
         self._rows.clear()
 
 
 def section(tree: Map, path: str) -> Iterator[Map]:
-    """The mapping at a path of keys, ``protocol.uart``, if there is one."""
+    """Yield the mapping at a path of keys and list indices, such as ``protocol.uart``, if it exists."""
     node: object = tree
     for step in path.split("."):
         if isinstance(node, Map) and step in node:
@@ -184,25 +191,29 @@ def section(tree: Map, path: str) -> Iterator[Map]:
 
 
 def _matches(target: Map, printed: Map) -> bool:
+    """Return whether a mapping has the values that the manual prints."""
     return all(_same(target.get(key), value) for key, value in printed.items())
 
 
-def _same(one: object, other: object) -> bool:
-    """Whether both are equal, and neither or both a truth value: to Python, True is 1."""
-    return one == other and isinstance(one, bool) == isinstance(other, bool)
+def _same(first: object, second: object) -> bool:
+    """Return whether two values are equal and of the same kind: in Python, True == 1."""
+    return first == second and isinstance(first, bool) == isinstance(second, bool)
 
 
-def _change(target: Map, held: Map, entry: Map) -> None:
-    for key, value in held.items():
+def _change(target: Map, changes: Map) -> None:
+    """Set the changed values of a mapping; a value of null removes the key."""
+    for key, value in changes.items():
         if value is None:
             target.pop(key, None)
         else:
             target[key] = value
+            # Findings about the value point to the overlay, findings about the key to the ICD.
             key_spot = target.spots[key][0] if key in target.spots else target.spot
-            target.spots[key] = key_spot, held.spots[key][1]
+            target.spots[key] = key_spot, changes.spots[key][1]
 
 
 def _stale(entry: Map, target: Map, printed: Map) -> Finding:
+    """Return the finding for an entry whose `printed` differs from the ICD."""
     key, value = next((key, value) for key, value in printed.items() if not _same(target.get(key), value))
     stale = f"stale {_erratum(entry).label.lower()} {entry['id']}: it was written for `{key}: {_show(value)}`"
     now = f"the ICD now has `{key}: {_show(target.get(key))}` ({target.at(key)})"
@@ -210,29 +221,31 @@ def _stale(entry: Map, target: Map, printed: Map) -> Finding:
 
 
 def _nowhere(tree: Map, where: Map, named: _ByName) -> Finding:
-    wanted, known, key = "", [], ""
+    """Return the finding for a `where` that names no place of the ICD, with a similar name as fix."""
+    target, names, key = "", [], ""
     if "section" in where:
-        wanted = f"section `{where['section']}`"
+        target = f"section `{where['section']}`"
     elif "enum" in where:
-        wanted = f"enumeration `{where['enum']}`" + (f" with value {where['member']}" if "member" in where else "")
-        names = [e.get("name") for e in mappings(tree.get("enums"))]
-        known, key = [] if where["enum"] in names else names, "enum"
+        target = f"enumeration `{where['enum']}`" + (f" with value {where['member']}" if "member" in where else "")
+        enum_names = [enum.get("name") for enum in mappings(tree.get("enums"))]
+        names, key = [] if where["enum"] in enum_names else enum_names, "enum"
     elif "loggable" in where:
-        wanted = f"loggable bit {where['loggable']}"
+        target = f"loggable bit {where['loggable']}"
     elif "message" in where or "struct" in where:
-        what = key = "message" if "message" in where else "struct"
-        wanted = f"{what} `{where[what]}`"
-        known = [m.get("name") for m in mappings(tree.get(f"{what}s"))]
-        messages = list(named.of(tree, f"{what}s", where[what]))
-        if messages:
-            wanted = f"field `{where.get('field') or where.get('fields')}` in {wanted}"
-            known, key = [f.get("name") for m in messages for f in mappings(m.get("fields"))], "field"
-    candidates = (name for name in known if isinstance(name, str))
+        kind = key = "message" if "message" in where else "struct"
+        target = f"{kind} `{where[kind]}`"
+        names = [owner.get("name") for owner in mappings(tree.get(f"{kind}s"))]
+        owners = list(named.of(tree, f"{kind}s", where[kind]))
+        if owners:
+            target = f"field `{where.get('field') or where.get('fields')}` in {target}"
+            names, key = [field.get("name") for owner in owners for field in mappings(owner.get("fields"))], "field"
+    candidates = (name for name in names if isinstance(name, str))
     help, fix = suggestion(str(where.get(key, "")), candidates, "names are the manual's, to the letter")
-    return Finding(NOWHERE, f"there is no {wanted}", where.place, help, fix=Fix(where.at(key), fix) if fix else None)
+    return Finding(NOWHERE, f"there is no {target}", where.place, help, fix=Fix(where.at(key), fix) if fix else None)
 
 
 def _show(value: object) -> str:
+    """Return a value as YAML; ``(absent)`` for a missing key."""
     if value is None:
         return "(absent)"
     return str(value).lower() if isinstance(value, bool) else str(value)

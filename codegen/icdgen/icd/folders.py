@@ -28,7 +28,7 @@ class Search:
     icds: list[Path] = field(default_factory=list)
     folders: list[Path] = field(default_factory=list)
     overlays: list[Path] = field(default_factory=list)  # errata overlays in the folder itself
-    others: list[Path] = field(default_factory=list)  # other *.yaml files
+    other_files: list[Path] = field(default_factory=list)  # other *.yaml files
     is_complete: bool = True  # whether the search ended before `MOST_FOLDERS`
 
 
@@ -76,18 +76,18 @@ def _list_of(result: Search, path: Path, is_direct: bool) -> list[Path]:
     """Return the list of the result that a file belongs to."""
     # Links to folders, pipes and devices.
     if path.is_dir() or not (is_direct or path.is_file()):
-        return result.others
+        return result.other_files
     try:
         text = source.contents(path, str(path)).decode("utf-8", "replace")
     except Findings:
         # Loading it as an ICD reports why it cannot be read.
-        return result.icds if is_direct else result.others
+        return result.icds if is_direct else result.other_files
     keys = set(_KEY.findall(text))
     if "icdgen" in keys:
         return result.icds
     if not is_direct:
-        return result.others
+        return result.other_files
     if "errata" in keys:
         return result.overlays
     # Empty files, and files in another encoding, have no keys at all.
-    return result.icds if not keys or "messages" in keys else result.others
+    return result.icds if not keys or "messages" in keys else result.other_files

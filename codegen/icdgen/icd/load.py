@@ -85,7 +85,7 @@ class _Loader:
     def folder(self, path: Path) -> list[Path]:
         """Return the ICDs of a folder and its subfolders."""
         result = folders.search(path)
-        other_files = [*result.overlays, *result.others]
+        other_files = [*result.overlays, *result.other_files]
         for examined in (*result.folders, *other_files):
             self.inputs[examined] = fingerprints.of_path(str(examined))
         if not result.is_complete:

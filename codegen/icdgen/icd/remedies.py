@@ -1,4 +1,4 @@
-"""Help for mistakes that are common in a first ICD, and the correction where it is known."""
+"""Help and fixes for common mistakes in the YAML text and the keys of an ICD."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from typing import Any, NamedTuple
 from icdgen.suggest import close_to
 
 _QUOTES = "put the text in quotes"
+
+# Common words for values and keys of the format, with the correct value or the help.
 _KINDS = {
     "tlm": "telemetry", "tm": "telemetry", "telemetries": "telemetry", "status": "telemetry", "tc": "telecommand",
     "cmd": "telecommand", "command": "telecommand", "tcmd": "telecommand", "telecmd": "telecommand", "config": "configuration",
@@ -42,22 +44,23 @@ _REPEATED = frozenset({"count", "repeat", "array", "times", "elements", "length"
 _MOST_DIGITS = 30
 _BOOLEANS = dict.fromkeys(("true", "yes", "y", "on"), "true") | dict.fromkeys(("false", "no", "n", "off"), "false")
 _PLAIN = re.compile(r"[-+.:\w]+")
-_BASED = re.compile(r"0[xX][0-9A-Fa-f]+|0[bB][01]+|0[oO][0-7]+")
+_PREFIXED_NUMBER = re.compile(r"0[xX][0-9A-Fa-f]+|0[bB][01]+|0[oO][0-7]+")
 _SCIENTIFIC = re.compile(r"(-?)([0-9]*)(?:\.([0-9]*))?(?:[eE](?=[-+]?([0-9]+)\Z)([-+]?)[0-9]+)?")
+# Text before a value and the value itself, in block style and in flow style (within brackets).
 _BEFORE_BLOCK, _BLOCK_VALUE = re.compile(r":[ ]+|-[ ]+(?=[^ \w])"), re.compile(r"[^'\"{\[].*?(?=\s*(?:\s#.*)?\Z)")
 _BEFORE_FLOW, _FLOW_VALUE = re.compile(r"(?<=[:,]) |[{\[]"), re.compile(r"[^'\"{}\[\],]+")
 _RENAMED = re.compile(r"`(\w+):`")
 
 
 class Remedy(NamedTuple):
-    """What to do about a mistake; ``fix`` is the right key or value as YAML, if it is known."""
+    """Help for a mistake; ``fix`` is the correct key or value as YAML, if it is known."""
 
     help: str
     fix: str = ""
 
 
 def of_syntax(problem: str, line: str, column: int) -> str:
-    """What to do where the YAML breaks off, at a column (from 0) of a line; nothing if there is no telling."""
+    """Return the help for a syntax error of YAML at a column (from 0) of a line; empty if the cause is unclear."""
     character = line[column : column + 1]
     if "tab character" in problem or character == "\t":
         return "indent with spaces: YAML does not allow tabs"
@@ -73,25 +76,25 @@ def of_syntax(problem: str, line: str, column: int) -> str:
 
 
 def value_around(line: str, column: int) -> tuple[int, int]:
-    """Return start and end of the unquoted value at a column (from 0) of a line; equal if there is none."""
+    """Return start and end of the unquoted value at a column (from 0) of a line; equal if there is no value."""
     is_flow = any(bracket in line[:column] for bracket in "{[")
-    starts = [found.end() for found in (_BEFORE_FLOW if is_flow else _BEFORE_BLOCK).finditer(line, 0, column + 1)]
+    starts = [match.end() for match in (_BEFORE_FLOW if is_flow else _BEFORE_BLOCK).finditer(line, 0, column + 1)]
     begin = (starts[-1] if is_flow else starts[0]) if starts else column
     value = (_FLOW_VALUE if is_flow else _BLOCK_VALUE).match(line, begin)
     return (begin, begin) if value is None else value.span()
 
 
 def in_quotes(text: str) -> str:
-    """Write a text in double quotes."""
+    """Return a text in double quotes, as YAML."""
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
 def of_value(key: str, value: object, owner: Mapping[str, Any], allowed: Iterable[str]) -> Remedy | None:
-    """Help for a word that is not one of the ``allowed`` values of a key of ``owner``; None if none is similar."""
+    """Return the help for a word that is not an ``allowed`` value of a key of ``owner``; None if no value is similar."""
     word = str(value).strip().lower()
-    known = {"kind": _KINDS, "byte_order": _ORDERS, "bit_order": _BITS}.get(key, {})
-    if word in known:
-        return Remedy(f"write `{key}: {known[word]}`", known[word])
+    synonyms = {"kind": _KINDS, "byte_order": _ORDERS, "bit_order": _BITS}.get(key, {})
+    if word in synonyms:
+        return Remedy(f"write `{key}: {synonyms[word]}`", synonyms[word])
     sized = _SIZED.fullmatch(word) if key == "type" else None
     if sized:
         bits = sized[2] or sized[4] or sized[5]
@@ -106,18 +109,19 @@ def of_value(key: str, value: object, owner: Mapping[str, Any], allowed: Iterabl
 
 
 def of_type(wanted: str | list[str], written: str) -> str:
-    """Return a value of the ``wanted`` type of JSON Schema for one that is ``written`` in another; empty if unknown."""
+    """Return the spelling of a value as the ``wanted`` type of JSON Schema; empty if it cannot be converted safely."""
     word = written.lower()
     if "boolean" in wanted:
         return _BOOLEANS.get(word, "")
     if "string" in wanted:
-        return f'"{written}"' if _PLAIN.fullmatch(written) else ""  # not a tag, nor a text that has quotes
+        # Only for plain words: a tag or a text with quotes can mean something else.
+        return f'"{written}"' if _PLAIN.fullmatch(written) else ""
     number = plain_number(written.strip("'\""))
     return number if "number" in wanted or ("integer" in wanted and "." not in number) else ""
 
 
 def of_ambiguous(written: str) -> str:
-    """Return the help for a word that YAML readers read as values of different types."""
+    """Return the help for a word that readers of YAML interpret as values of different types."""
     truth = of_type("boolean", written)
     if truth or written[:1].isalpha():
         return f'write "{written}" in quotes if it is text' + (f", {truth} if it is a boolean" if truth else "")
@@ -130,27 +134,27 @@ def plain_number(written: str) -> str:
     text = written.replace("_", "").removeprefix("+")
     if len(text) > _MOST_DIGITS:
         return ""
-    if _BASED.fullmatch(text):
+    if _PREFIXED_NUMBER.fullmatch(text):
         return f"0x{text[2:]}" if text[1] in "xX" else str(int(text, 0))
     exact = _SCIENTIFIC.fullmatch(text)
     if exact is None or len(exact[4] or "") > 2:
         return ""
-    sign, whole, rest, exponent = exact[1], exact[2] or "0", exact[3], exact[4]
-    if whole != "0" and whole.startswith("0"):
-        return ""  # octal for some readers of YAML
+    sign, integer, fraction, exponent = exact[1], exact[2] or "0", exact[3], exact[4]
+    if integer != "0" and integer.startswith("0"):
+        return ""  # an octal number in YAML 1.1
     if exponent is None:
-        return f"{sign}{whole}" + (f".{rest}" if rest else "")
-    return f"{sign}{whole}.{rest or '0'}e{exact[5] or '+'}{exponent}"
+        return f"{sign}{integer}" + (f".{fraction}" if fraction else "")
+    return f"{sign}{integer}.{fraction or '0'}e{exact[5] or '+'}{exponent}"
 
 
-def of_key(key: str, value: object, known: list[str]) -> Remedy | None:
-    """Return help for a key with a value that is not one of those ``known`` in its place; None if none is similar."""
+def of_key(key: str, value: object, known_keys: list[str]) -> Remedy | None:
+    """Return the help for an unknown key with a value; None if no known key is similar."""
     target, meaning = _IN_BYTES.get(key.lower(), ("", ""))
-    if target in known:
+    if target in known_keys:
         written = f" {8 * value}" if type(value) is int and 0 <= value < 1 << 16 else ""
         return Remedy(f"write `{target}:{written}`, {meaning}")
     if key.lower() in _REPEATED:
-        if "count" in known:
+        if "count" in known_keys:
             return Remedy(
                 "write `count:`: `{at: 0, bits: 16, count: 6, name: Temperatures, type: int}` is an array of six numbers"
             )
@@ -158,8 +162,9 @@ def of_key(key: str, value: object, known: list[str]) -> Remedy | None:
     if key.isdecimal():
         return Remedy("write decimals with a point, not with a comma: `formula: raw*0.1`")
     meant = _KEYS.get(key.lower(), "")
-    if meant and re.search(r"`(\w+):", meant)[1] in known:  # type: ignore[index]
+    # `meant` begins with a key, which the mapping must allow.
+    if meant and re.search(r"`(\w+):", meant)[1] in known_keys:  # type: ignore[index]
         renamed = _RENAMED.fullmatch(meant)
         return Remedy(f"write {meant}", renamed[1] if renamed else "")
-    close = close_to(key, known)
+    close = close_to(key, known_keys)
     return Remedy(f"did you mean `{close}`?", close) if close else None

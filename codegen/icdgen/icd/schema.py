@@ -1,4 +1,4 @@
-"""Structure of ICD files and overlays: the JSON Schema, and its violations in words."""
+"""Check of ICD files and errata overlays against the JSON Schema, with its violations as findings."""
 
 from __future__ import annotations
 
@@ -11,12 +11,14 @@ from icdgen.diagnostics import Finding, Fix, Lines, Place
 from icdgen.icd.located import Map, Seq
 
 PATH = Path(__file__).with_name("schema.json")
-COPY = "icdgen.schema.json"  # the file beside ICDs, for editors
-LINE = f"# yaml-language-server: $schema={COPY}"  # at the top of an ICD, by which editors find it
+COPY = "icdgen.schema.json"  # copy of the schema in the folder of the ICDs, for editors
+LINE = f"# yaml-language-server: $schema={COPY}"  # first line of an ICD, which tells editors the schema
 CODE = "ICD010"
 
+# Keywords of JSON Schema whose violation concerns the keys of a mapping and not a value in it.
 _ABOUT_KEYS = ("required", "additionalProperties", "minProperties")
 
+# Types of JSON Schema in words.
 _TYPES = {
     "string": "text",
     "integer": "a whole number",
@@ -29,16 +31,16 @@ _TYPES = {
 
 
 def check(tree: Map, document: str, lines: Lines | None = None) -> tuple[list[Finding], set[int]]:
-    """Violations of ``#/$defs/<document>`` ("icd" or "errata"), and the ids of the mappings they stand in.
+    """Return the violations of ``#/$defs/<document>`` ("icd" or "errata"), and the id() of each mapping with a violation.
 
-    With the ``lines`` of the file, findings have the corrections that depend on how a value is written.
+    With the ``lines`` of the file, findings also have the fixes that depend on the spelling of a value.
     """
     findings: list[Finding] = []
     broken: set[int] = set()
     for error in _validator(document).iter_errors(tree):
         path = list(error.instance_path)
         holder, owner, place = locate(tree, path)
-        # A mapping where something else must stand breaks the mapping around it, not itself.
+        # If a value must not be a mapping, the mapping around it is invalid, not the value itself.
         broken.add(id(owner if error.kind.name in _ABOUT_KEYS else holder))
         findings += _explain(error, path, owner, place, lines or Lines(""))
     return findings, broken
@@ -51,29 +53,29 @@ def _schema() -> dict[str, Any]:
 
 
 def definition(name: str) -> dict[str, Any]:
-    """A form that is defined under a name."""
-    found: dict[str, Any] = _schema()["$defs"][name]
-    return found
+    """Return the sub-schema of a definition. Raises `KeyError`."""
+    form: dict[str, Any] = _schema()["$defs"][name]
+    return form
 
 
 def referred(form: dict[str, Any]) -> str:
-    """The name of the definition that a form refers to."""
+    """Return the name of the definition that a sub-schema refers to."""
     return str(form["$ref"]).rpartition("/")[2]
 
 
 def protocol() -> dict[str, Any]:
-    """The form of the protocol section."""
+    """Return the sub-schema of the protocol section."""
     return definition("protocol")
 
 
 def inside(form: dict[str, Any], key: str) -> dict[str, Any]:
-    """The form of a key of a mapping; empty if any name may stand there, or nothing."""
-    found: dict[str, Any] = _follow(form).get("properties", {}).get(key, {})
-    return found
+    """Return the sub-schema of a key of a mapping; empty if the key is unknown or any key is allowed."""
+    inner: dict[str, Any] = _follow(form).get("properties", {}).get(key, {})
+    return inner
 
 
 def meaning(form: dict[str, Any]) -> str:
-    """What a key means, in the words of the format."""
+    """Return the description of a key."""
     return str(form.get("description") or _follow(form).get("description", ""))
 
 
@@ -86,7 +88,7 @@ def _validator(document: str) -> Any:
 
 
 def locate(tree: Map, path: list[Any]) -> tuple[Map, Map, Place]:
-    """The innermost mapping around the value the path leads to, the same or the value itself, and the value's place."""
+    """Return the mapping around the value at a path, the value itself if it is a mapping (else the former), and its place."""
     node: Any = tree
     holder, owner, place = tree, tree, tree.place
     for step in path:
@@ -99,6 +101,7 @@ def locate(tree: Map, path: list[Any]) -> tuple[Map, Map, Place]:
 
 
 def _explain(error: Any, path: list[Any], owner: Map, place: Place, lines: Lines) -> list[Finding]:
+    """Return the findings of an error of `jsonschema_rs`; several if a mapping has several unknown keys."""
     from icdgen.icd import remedies
 
     kind = error.kind
@@ -115,13 +118,15 @@ def _explain(error: Any, path: list[Any], owner: Map, place: Place, lines: Lines
         message = f"`{missing}` is missing" + (f" from {what}" if path else "")
         return [Finding(CODE, message, place, f"add `{missing}:`" + (f", {hint}" if hint else ""))]
     if name == "additionalProperties":
-        known = list(rule.get("properties", {}))
+        known_keys = list(rule.get("properties", {}))
         return [
-            _unknown_key(key, owner[key], known, owner.key_at(key)) for key in kind.unexpected if key in owner.spots
+            _unknown_key(key, owner[key], known_keys, owner.key_at(key))
+            for key in kind.unexpected
+            if key in owner.spots
         ]
     if name == "type":
         wanted = rule.get("type", "")
-        words = " or ".join(_TYPES.get(one, one) for one in ([wanted] if isinstance(wanted, str) else wanted))
+        words = " or ".join(_TYPES.get(type, type) for type in ([wanted] if isinstance(wanted, str) else wanted))
         message = f"{what} must be {words}, not {_describe(error.instance)}"
         is_text = wanted == "string" and {"enum", "pattern"}.isdisjoint(rule)
         if isinstance(error.instance, str) or (is_text and type(error.instance) in (int, float)):
@@ -156,19 +161,21 @@ def _explain(error: Any, path: list[Any], owner: Map, place: Place, lines: Lines
     return [Finding(CODE, message, place, help, fix=Fix(place, fix) if fix else None)]
 
 
-def _unknown_key(key: str, value: Any, known: list[str], place: Place) -> Finding:
+def _unknown_key(key: str, value: Any, known_keys: list[str], place: Place) -> Finding:
+    """Return the finding for an unknown key of a mapping."""
     from icdgen.icd import remedies
 
     if key == "<<":
         return Finding(CODE, "merge keys (`<<`) are not supported", place, "write the keys themselves in its place")
-    help, fix = remedies.of_key(key, value, known) or ("known keys: " + ", ".join(known), "")
+    help, fix = remedies.of_key(key, value, known_keys) or ("known keys: " + ", ".join(known_keys), "")
+    # In `{summary: a, b c}` YAML reads "b c" as a key.
     if " " in key and not fix:
         help = f"if it is the rest of a text with a comma, put that in quotes; {help}"
     return Finding(CODE, f"unknown key `{key[:60]}`", place, help, fix=Fix(place, fix) if fix else None)
 
 
 def _with_values(help: str, rule: dict[str, Any]) -> str:
-    """The help with what there is to choose from, unless it tells that already."""
+    """Return the help with the allowed values appended, unless it names them all."""
     values = [str(value).lower() if isinstance(value, bool) else str(value) for value in rule.get("enum", ())]
     if not values or all(value in help for value in values):
         return help
@@ -176,7 +183,7 @@ def _with_values(help: str, rule: dict[str, Any]) -> str:
 
 
 def _rule_at(path: list[Any]) -> dict[str, Any]:
-    """The sub-schema that failed: the path without its last keyword, references followed."""
+    """Return the sub-schema that failed: the path without its last keyword, with references resolved."""
     node: Any = _schema()
     for step in path[:-1]:
         if step == "$ref" or (isinstance(node, dict) and step not in node):
@@ -187,10 +194,12 @@ def _rule_at(path: list[Any]) -> dict[str, Any]:
 
 
 def _follow(form: dict[str, Any]) -> dict[str, Any]:
+    """Return the definition that a sub-schema refers to, or the sub-schema itself."""
     return definition(referred(form)) if "$ref" in form else form
 
 
 def _describe(value: object) -> str:
+    """Return a value in words, shortened to 40 characters."""
     if isinstance(value, bool):
         return f"the boolean {str(value).lower()}"
     if isinstance(value, dict):

@@ -1,4 +1,4 @@
-"""The canonical layout of ICD files and errata overlays: ``icdgen fmt``."""
+"""Formatter for ICD files and errata overlays: ``icdgen fmt``."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from icdgen.icd.located import Map
 
 
 def format_text(text: str, name: str) -> str:
-    """The file's text in the canonical layout, comments kept. ``name`` is how findings call the file.
+    """Return the text of a file in the canonical layout, with its comments. ``name`` is the file name in findings.
 
-    Raises `diagnostics.Findings` for what the loader cannot read; such a text has no one meaning to preserve.
+    Raises `diagnostics.Findings` if the loader cannot read the text, because then its meaning is unclear.
     """
     from icdgen.icd.fmt import kinds, read, write
 
@@ -27,21 +27,23 @@ def format_text(text: str, name: str) -> str:
 
 
 def _verify(text: str, values: Map, result: str, name: str) -> None:
-    """A formatter that loses something is worse than none, so every change is read back."""
+    """Read a formatted text back, and raise `UserError` if values or comments differ from the original."""
     from icdgen.icd.fmt.read import comments
 
-    again = source.parse(result.encode("utf-8"), name)
-    if not same(values, again) or Counter(comments(text)) != Counter(comments(result)):
+    formatted = source.parse(result.encode("utf-8"), name)
+    if not same(values, formatted) or Counter(comments(text)) != Counter(comments(result)):
         raise UserError(
             f"{name}: the formatter would change the meaning of this file",
             "the file is left as it was; this is a defect of icdgen: please report it",
         )
 
 
-def same(one: object, other: object) -> bool:
-    """Whether two trees are equal, types included (1 is not true). The order of keys does not matter."""
-    if isinstance(one, dict):
-        return isinstance(other, dict) and one.keys() == other.keys() and all(same(v, other[k]) for k, v in one.items())
-    if isinstance(one, list):
-        return isinstance(other, list) and len(one) == len(other) and all(map(same, one, other))
-    return type(one) is type(other) and one == other
+def same(first: object, second: object) -> bool:
+    """Return whether two trees are equal, including types (1 is not true). The order of keys does not matter."""
+    if isinstance(first, dict):
+        if not isinstance(second, dict) or first.keys() != second.keys():
+            return False
+        return all(same(value, second[key]) for key, value in first.items())
+    if isinstance(first, list):
+        return isinstance(second, list) and len(first) == len(second) and all(map(same, first, second))
+    return type(first) is type(second) and first == second

@@ -1,4 +1,4 @@
-"""The tree that the formatter works on: values as they were spelled, and the comments that belong to each."""
+"""Tree of the formatter: values with their spelling and the comments that belong to them."""
 
 from __future__ import annotations
 
@@ -7,23 +7,23 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """A scalar. ``value`` is what the loader reads, ``spelling`` how the file has it (of interest for numbers)."""
+    """A scalar."""
 
-    value: object
-    spelling: str
+    value: object  # as the loader reads it
+    spelling: str  # in the file; the formatter preserves it for numbers
 
 
-NOTHING = Text(None, "")  # the value of a key that has none yet, the key of an item
+NOTHING = Text(None, "")  # value of a key before it is read; key of an item of a sequence
 
 
 @dataclass(slots=True)
 class Child:
-    """An entry of a mapping or, with `NOTHING` for a key, an item of a sequence. Among comments "" is a blank line."""
+    """An entry of a mapping or, with the key `NOTHING`, an item of a sequence. In lists of comments, "" is a blank line."""
 
     key: Text
     value: Text | Branch = NOTHING
-    before: list[str] = field(default_factory=list)  # comments on lines of their own above it
-    trailing: list[str] = field(default_factory=list)  # comments behind it on its line
+    before: list[str] = field(default_factory=list)  # comments on the lines above
+    trailing: list[str] = field(default_factory=list)  # comments at the end of its line
 
 
 @dataclass(slots=True)
@@ -32,21 +32,21 @@ class Branch:
 
     mapping: bool
     flow: bool  # written with braces or brackets
-    column: int  # where its entries begin, if not flow; counts from 0
+    column: int  # of its entries in block style, from 0
     children: list[Child] = field(default_factory=list)
     tail: list[str] = field(default_factory=list)  # comments after the last child
-    header: list[str] = field(default_factory=list)  # of the root only: comments about the whole file
+    header: list[str] = field(default_factory=list)  # of the root only: comments about the file
 
     def commented(self) -> bool:
-        """Whether a comment stands anywhere inside."""
+        """Return whether there is a comment in it, at any depth."""
         return bool(self.comments())
 
     def comments(self) -> list[str]:
-        """All comments inside, in order."""
-        found: list[str] = []
+        """Return all comments in it, at any depth, in order."""
+        comments: list[str] = []
         for child in self.children:
-            found += child.before
+            comments += child.before
             if isinstance(child.value, Branch):
-                found += child.value.comments()
-            found += child.trailing
-        return [comment for comment in (*found, *self.tail) if comment]
+                comments += child.value.comments()
+            comments += child.trailing
+        return [comment for comment in (*comments, *self.tail) if comment]

@@ -1,4 +1,4 @@
-"""Plain trees, as they are made in memory -> canonical YAML."""
+"""Conversion of trees of plain values, which importers make, to canonical YAML."""
 
 from __future__ import annotations
 
@@ -10,38 +10,39 @@ from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
 
 
 class Spelled(int):
-    """A number with the way it is written: ``0x5A``."""
+    """A number with its spelling, such as ``0x5A``."""
 
     spelling: str
 
     def __new__(cls, spelling: str) -> Spelled:
-        made = super().__new__(cls, int(spelling, 16) if "x" in spelling.lower() else int(spelling))
-        made.spelling = spelling
-        return made
+        """Return the number of a decimal or hexadecimal spelling."""
+        number = super().__new__(cls, int(spelling, 16) if "x" in spelling.lower() else int(spelling))
+        number.spelling = spelling
+        return number
 
 
 def text(tree: dict[str, Any]) -> str:
-    """The canonical YAML of a tree."""
+    """Return the canonical YAML of an ICD as a tree of plain values."""
     root = branch(tree)
     root.header = [schema.LINE]
     return of(root)
 
 
 def of(root: Branch) -> str:
-    """The text of a tree with comments; it is read back, so that nothing is written that does not load."""
+    """Return the canonical YAML of a tree of the formatter. The text is read back, so it is certain to load."""
     return format_text(write.write(root, kinds.root("icd")), "the result")
 
 
 def branch(value: dict[str, Any] | list[Any]) -> Branch:
-    """A mapping or a list as the formatter holds it."""
-    made = Branch(isinstance(value, dict), False, 0)
+    """Return a mapping or a list as a branch of the formatter."""
+    result = Branch(isinstance(value, dict), False, 0)
     items = value.items() if isinstance(value, dict) else ((None, item) for item in value)
-    made.children = [Child(Text(key, key) if key is not None else NOTHING, node(item)) for key, item in items]
-    return made
+    result.children = [Child(Text(key, key) if key is not None else NOTHING, node(item)) for key, item in items]
+    return result
 
 
 def node(value: object) -> Branch | Text:
-    """Any value as the formatter holds it."""
+    """Return a value as a node of the formatter."""
     if isinstance(value, (dict, list)):
         return branch(value)
     if isinstance(value, Spelled):

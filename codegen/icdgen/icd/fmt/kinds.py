@@ -1,4 +1,4 @@
-"""What kind of mapping stands where, and in which order its keys come: both are read off the JSON Schema."""
+"""Kinds of mappings in a file and the order of their keys, both taken from the JSON Schema."""
 
 from __future__ import annotations
 
@@ -7,46 +7,52 @@ from typing import Any
 
 from icdgen.icd import schema
 
-# Always one line, however long: the rows of the manual's tables.
+# Kinds that are always written on one line, at any length: they are rows of tables in the manual.
 ROWS = frozenset({"field", "derived", "member", "loggable", "unit"})
-# Always one key a line.
+# Kinds that are always written with one key per line.
 BLOCKS = frozenset({"icd", "errata", "node", "enum", "message", "erratum", "note", "protocol", "section"})
-# A list of these stays on one line if it fits.
+# Kinds of which a list is written on one line if it fits.
 INLINE = frozenset({"source"})
 
 
 class Kind:
-    """A place of the format: ``name`` is the schema's (empty where the schema says nothing), ``keys`` their order."""
+    """Kind of a mapping or sequence: the name of its definition in the schema, and the order of its keys."""
 
     __slots__ = ("_children", "_rule", "keys", "name")
 
     def __init__(self, name: str, rule: dict[str, Any]) -> None:
-        self.name, self._rule = name, rule
+        self.name, self._rule = name, rule  # the name is empty if the schema has no definition for it
         self.keys = {key: index for index, key in enumerate(rule.get("properties", {}))}
         self._children: dict[tuple[str | None, bool], Kind] = {}
 
     def child(self, key: str | None, mapping: bool) -> Kind:
-        """The kind of the value of ``key``, or of an item (``key`` None); ``mapping``: it is one, else a sequence."""
+        """Return the kind of the value of ``key``, or of an item if ``key`` is None.
+
+        ``mapping`` selects between a mapping and a sequence.
+        """
         at = (key if key in self.keys else None, mapping)
         if at not in self._children:
             self._children[at] = self._find(key, mapping)
         return self._children[at]
 
     def _find(self, key: str | None, mapping: bool) -> Kind:
+        """Look up the kind of a child in the schema."""
         rule = self._rule.get("items", {}) if key is None else self._rule.get("properties", {}).get(key, {})
         name, rule = _follow("section" if self.name == "protocol" and mapping else "", rule)
-        if rule.get("if") == {"type": "array"}:  # one, or a list of them
+        # The schema allows a single value or a list of values.
+        if rule.get("if") == {"type": "array"}:
             name, rule = _follow(name, rule["else" if mapping else "then"])
         return Kind(name, rule)
 
 
 @cache
 def root(document: str) -> Kind:
-    """The kind of a whole file: "icd" or "errata"."""
+    """Return the kind of the root of a document: "icd" or "errata"."""
     return Kind(document, schema.definition(document))
 
 
 def _follow(name: str, rule: dict[str, Any]) -> tuple[str, dict[str, Any]]:
+    """Resolve references of a sub-schema; return the name of the definition and its sub-schema."""
     while "$ref" in rule:
         name = schema.referred(rule)
         rule = schema.definition(name)

@@ -1,4 +1,4 @@
-"""YAML text -> tree with comments. YAML's events leave comments out, so they are found in the gaps between events."""
+"""Reader of YAML text with comments. PyYAML's events omit comments, so the reader searches the text between events."""
 
 from __future__ import annotations
 
@@ -17,44 +17,48 @@ _BEFORE_COMMENT = " \t\ufeff,[]{}\n\r\x85\u2028\u2029"
 
 
 def read(text: str, values: Map) -> Branch:
-    """The tree of ``text``. ``values`` is what `source.parse` made of the same text: it has accepted it."""
+    """Return the tree of a text. ``values`` is the result of `source.parse` for the same text."""
     return _Reader(text, values).read()
 
 
 def comments(text: str) -> list[str]:
-    """Every comment of a text that `source.parse` accepts, found without building a tree."""
+    """Return all comments of a text that `source.parse` accepts.
+
+    It does not use the tree, so that `icdgen fmt` can check that the tree has lost no comment.
+    """
     from yaml import events
 
-    found: list[str] = []
+    result: list[str] = []
     reached = 0
     parser = source.event_parser(text, "")
     while True:
         event = parser.get_event()
         kind, start = type(event), event.start_mark.index
-        found += [text[at:end] for at, end in _comments_in(text, reached, start)]
+        result += [text[at:end] for at, end in _comments_in(text, reached, start)]
         reached = max(reached, start)
         if kind is events.ScalarEvent:
-            found += _header_comment(text, event) if event.style in _BLOCK else []
+            result += _header_comment(text, event) if event.style in _BLOCK else []
             reached = max(reached, event.end_mark.index)
         elif kind is events.StreamEndEvent:
-            return [comment.rstrip() for comment in found]
+            return [comment.rstrip() for comment in result]
 
 
 class _Reader:
-    """One pass over the events, with the comments of the gap before each event dealt out to the tree."""
+    """Builds the tree in one pass over the events, and assigns the comments before each event to the tree."""
 
     def __init__(self, text: str, values: Map) -> None:
         self.text = text
         self.values = _scalars(values)
         self.root = Branch(True, False, 0)
         self.stack: list[Branch] = []
-        self.pending: list[str] = []  # comments that wait for the element they stand above
-        self.reached = 0  # everything before this index is done with
-        self.last: Child | None = None  # the element that ended, or the key that stood, at ``last_end``
+        self.pending: list[str] = []  # comments for the next element
+        self.reached = 0  # the text before this index is processed
+        self.last: Child | None = None  # the element or key that ends at ``last_end``
         self.last_end = 0
         self.comment_end = 0
 
     def read(self) -> Branch:
+        """Return the tree."""
         from yaml import events
 
         steps = {
@@ -81,11 +85,12 @@ class _Reader:
     # Elements
 
     def scalar(self, event: Event) -> None:
+        """Add a key, a value or an item."""
         top = self.stack[-1]
         key = top.mapping and (not top.children or top.children[-1].value is not NOTHING)
         value = event.value if key else next(self.values)
         if key and not event.style:
-            value = None  # what a plain key means is for the writer to find out
+            value = None  # the writer interprets an unquoted key from its spelling
         text = Text(value, event.value)
         if key:
             child = Child(text)
@@ -93,13 +98,16 @@ class _Reader:
         else:
             child = self.attach(text)
         end = event.end_mark.index
-        if event.style in _BLOCK:  # it ends in the next line, which it has no part in
+        # The end mark of a block scalar is at the start of the next line; use the end of the line before.
+        if event.style in _BLOCK:
             child.trailing += _header_comment(self.text, event)
-            end = max((m.start() for m in _BREAK.finditer(self.text, event.start_mark.index, end)), default=end)
+            breaks = _BREAK.finditer(self.text, event.start_mark.index, end)
+            end = max((match.start() for match in breaks), default=end)
         self.reached = max(self.reached, end)
         self.last, self.last_end = child, end
 
     def open(self, event: Event) -> None:
+        """Begin a mapping or sequence."""
         from yaml.events import MappingStartEvent
 
         branch = Branch(isinstance(event, MappingStartEvent), bool(event.flow_style), event.start_mark.column)
@@ -113,6 +121,7 @@ class _Reader:
             self.last, self.last_end = None, event.end_mark.index
 
     def close(self, event: Event) -> None:
+        """End a mapping or sequence."""
         branch = self.stack.pop()
         if not branch.flow:
             return
@@ -122,7 +131,7 @@ class _Reader:
         self.last_end = event.end_mark.index
 
     def attach(self, value: Text | Branch) -> Child:
-        """Puts a value where it belongs: behind the key that waits for it, or as an item."""
+        """Add a value to the innermost branch: to its last key, or as an item. Return the entry or item."""
         top = self.stack[-1]
         if top.mapping:
             child = top.children[-1]
@@ -135,6 +144,7 @@ class _Reader:
         return child
 
     def begin(self, child: Child) -> None:
+        """Add an entry or item to the innermost branch, with the pending comments."""
         top = self.stack[-1]
         child.before = self.take()
         if top is self.root and not top.children:
@@ -142,11 +152,12 @@ class _Reader:
         top.children.append(child)
 
     def take(self) -> list[str]:
+        """Return the pending comments, and clear them."""
         taken, self.pending = self.pending, []
         return taken
 
     def split_header(self, first: Child) -> None:
-        """Comments that a blank line separates from the first entry are about the file, and so is the schema line."""
+        """Move comments about the file to the header: those before the last blank line, and the schema line."""
         lines = first.before
         if lines and self.breaks(self.comment_end, self.reached) > 1:
             lines.append("")
@@ -159,36 +170,37 @@ class _Reader:
     # Comments
 
     def gap(self, event: Event, closing: bool) -> None:
-        """Deals out the comments between ``reached`` and the event."""
+        """Assign the comments between ``reached`` and an event to elements of the tree."""
         closing = closing and not self.stack[-1].flow
-        behind = self.reached
-        limit = None  # column of the container that took the comment before
+        previous_end = self.reached
+        limit = None  # column of the container that the previous comment was assigned to
         earlier: list[str] | None = None
         for start, end in _comments_in(self.text, self.reached, event.start_mark.index):
-            breaks = self.breaks(behind, start)
+            breaks = self.breaks(previous_end, start)
             target = self.pending
-            if breaks == 0 and behind == self.reached and self.follows_something(start):
+            if breaks == 0 and previous_end == self.reached and self.follows_something(start):
                 target = self.last.trailing if self.last else target
             elif breaks and closing and not self.pending:
-                column = start - _line_start(self.text, behind, start)
+                column = start - _line_start(self.text, previous_end, start)
                 holder = self.holder(column if limit is None else min(column, limit), event.start_mark.column)
                 if holder is not None:
                     target, limit = holder.tail, holder.column
             if breaks > 1 and target is earlier:
                 target.append("")
             target.append(self.text[start:end].rstrip())
-            earlier, behind = target, end
-        self.comment_end = behind
+            earlier, previous_end = target, end
+        self.comment_end = previous_end
 
     def follows_something(self, start: int) -> bool:
-        """Whether the element before stands on the same line."""
+        """Return whether the previous element ends on the same line."""
         return self.last is not None and not self.breaks(self.last_end, start)
 
     def breaks(self, start: int, end: int) -> int:
+        """Return the number of line breaks in a range of the text."""
         return sum(1 for _ in _BREAK.finditer(self.text, start, end))
 
     def holder(self, column: int, following: int) -> Branch | None:
-        """The innermost container that ends here and that a comment in this column belongs to."""
+        """Return the innermost container that ends before the next element and contains a comment in this column."""
         for branch in reversed(self.stack):
             if branch.column <= following:
                 return None
@@ -198,7 +210,7 @@ class _Reader:
 
 
 def _comments_in(text: str, at: int, end: int) -> Iterator[tuple[int, int]]:
-    """Start and end of each comment in a stretch without scalars."""
+    """Yield start and end of each comment in a range of the text without scalars."""
     while (at := text.find("#", at, end)) >= 0:
         if at and text[at - 1] not in _BEFORE_COMMENT:
             at += 1
@@ -209,33 +221,34 @@ def _comments_in(text: str, at: int, end: int) -> Iterator[tuple[int, int]]:
 
 
 def _header_comment(text: str, event: Event) -> list[str]:
-    """The comment behind the ``|`` or ``>`` of a block scalar."""
+    """Return the comment after the ``|`` or ``>`` of a block scalar; an empty list if there is none."""
     at = event.start_mark.index
     header = text[at : _line_end(text, at)]
     return [header[header.index("#") :].rstrip()] if "#" in header else []
 
 
 def _line_start(text: str, at: int, end: int) -> int:
-    """Start of the line that ``end`` is in, not before ``at``."""
+    """Return the start of the line of ``end``, or ``at`` if the line begins before it."""
     return max((match.end() for match in _BREAK.finditer(text, at, end)), default=at)
 
 
 def _line_end(text: str, at: int) -> int:
-    found = _BREAK.search(text, at)
-    return found.start() if found else len(text)
+    """Return the end of the line of ``at``, without the line break."""
+    match = _BREAK.search(text, at)
+    return match.start() if match else len(text)
 
 
 def _paragraphs(lines: list[str]) -> list[str]:
-    """Without blank lines at the ends and more than one in a row."""
-    kept: list[str] = []
+    """Return lines without blank lines at the start and the end, and with at most one blank line in a row."""
+    result: list[str] = []
     for line in lines:
-        if line or (kept and kept[-1]):
-            kept.append(line)
-    return kept[:-1] if kept and not kept[-1] else kept
+        if line or (result and result[-1]):
+            result.append(line)
+    return result[:-1] if result and not result[-1] else result
 
 
 def _scalars(value: object) -> Iterator[object]:
-    """The scalar values of a tree in the order of the file."""
+    """Yield the scalar values of a tree in the order of the file."""
     if isinstance(value, Map):
         for item in value.values():
             yield from _scalars(item)

@@ -1,14 +1,14 @@
-"""Tables: mappings on one line each, their columns aligned."""
+"""Tables: mappings on one line each, with aligned columns."""
 
 from __future__ import annotations
 
 from itertools import takewhile
 
-WIDEST = 40  # a wider cell takes no part in the alignment of its column
+WIDEST = 40  # wider cells are ignored in the alignment of their column
 
 
 def aligned(rows: list[dict[str, str]]) -> list[str]:
-    """``{at: 0,  bits: 16, ...}`` of each row. The columns of the keys that all rows begin with are padded."""
+    """Return each row in flow style: ``{at: 0,  bits: 16, ...}``. The leading columns that all rows have are padded."""
     columns = _common_keys(rows)
     widths = [_width(rows, key, position) for position, key in enumerate(columns)]
     lines = []
@@ -22,11 +22,12 @@ def aligned(rows: list[dict[str, str]]) -> list[str]:
 
 
 def _width(rows: list[dict[str, str]], key: str, position: int) -> int:
-    """Width of the column, as far as it matters: where another cell follows."""
+    """Return the width of a column, of the rows in which another cell follows."""
     widths = (len(row[key]) for row in rows if len(row) > position + 1)
     return max((width for width in widths if width <= WIDEST), default=0)
 
 
 def _common_keys(rows: list[dict[str, str]]) -> list[str]:
-    columns = zip(*rows, strict=False)  # as far as the shortest row goes
+    """Return the leading keys that all rows have in common."""
+    columns = zip(*rows, strict=False)  # ends with the shortest row
     return [keys[0] for keys in takewhile(lambda keys: len(set(keys)) == 1, columns)]

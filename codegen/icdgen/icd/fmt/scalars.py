@@ -1,4 +1,4 @@
-"""How a scalar is written: plain where every YAML reader takes it for the same text, else in double quotes."""
+"""Spelling of scalars: unquoted if all readers of YAML interpret it as the same text, else in double quotes."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ WIDTH = 120
 BLOCK_HEADERS = frozenset({"|", "|-", ">"})
 
 _WORDS = frozenset({"y", "yes", "n", "no", "on", "off", "true", "false", "null"})
-# A letter or digit, or a sign that means nothing to YAML; a dash only before a letter or digit. What looks like a
-# number to people (`0b0010 0100`) is quoted too.
+# Start of unquoted text: a letter or digit, or a sign without meaning in YAML; a dash only before a letter or digit.
+# Text that looks like a prefixed number (`0b0010 0100`) is quoted, too.
 _START = re.compile(r"(?!0[xXbBoO])[^\W_]|[(/_$+^;]|\.(?!\.)|-[^\W_]")
 _NOT_IN_BLOCK = re.compile(r":(?: |\Z)| #")
 _NOT_IN_FLOW = re.compile(r"[,\[\]{}:?]| #")
@@ -25,24 +25,24 @@ _SPECIAL = re.compile(r'["\\]')
 
 
 def flow(text: Text) -> str:
-    """The scalar within braces or brackets."""
+    """Return a scalar in flow style, within braces or brackets."""
     return quoted_if_needed(text.value, True) if isinstance(text.value, str) else _number_or_word(text)
 
 
 def key(text: Text, in_flow: bool) -> str:
-    """The scalar as a key."""
+    """Return a scalar as a key."""
     if text.value is None and len(text.spelling) < 40 and _NUMBER_OR_WORD.fullmatch(text.spelling):
         return _number_or_word(text)
     return quoted_if_needed(name(text), in_flow)
 
 
 def name(text: Text) -> str:
-    """What the key is called."""
+    """Return the name of a key."""
     return text.spelling if text.value is None else str(text.value)
 
 
 def block(text: Text, column: int, indent: int) -> list[str]:
-    """The lines of a scalar that begins at ``column``; all but the first already indented."""
+    """Return the lines of a scalar in block style that begins at ``column``; all except the first are indented."""
     if not isinstance(text.value, str):
         return [_number_or_word(text)]
     value = text.value
@@ -57,7 +57,7 @@ def block(text: Text, column: int, indent: int) -> list[str]:
 
 @lru_cache(maxsize=16384)
 def quoted_if_needed(value: str, in_flow: bool) -> str:
-    """The text plain if it can be, else in double quotes."""
+    """Return a text unquoted if that is unambiguous, else in double quotes."""
     if (
         _START.match(value)
         and value.isprintable()
@@ -70,7 +70,7 @@ def quoted_if_needed(value: str, in_flow: bool) -> str:
 
 
 def _reads_as_text(value: str) -> bool:
-    """Whether the loader takes the plain spelling for this very text, and other readers do so too."""
+    """Return whether the loader and other readers of YAML interpret the unquoted spelling as this text."""
     if value[:1].isalpha() and value.isprintable():
         return value.lower() not in _WORDS
     return bool(value) and _loader_reads(value)
@@ -78,6 +78,7 @@ def _reads_as_text(value: str) -> bool:
 
 @lru_cache(maxsize=4096)
 def _loader_reads(value: str) -> bool:
+    """Return whether the loader reads the unquoted spelling as this text."""
     try:
         return source.parse(f"key: {value}\n".encode(), "") == {"key": value}
     except (Findings, UnicodeEncodeError):
@@ -85,6 +86,7 @@ def _loader_reads(value: str) -> bool:
 
 
 def _number_or_word(text: Text) -> str:
+    """Return a number, a truth value or null in its canonical spelling: ``0x5A``, ``null``."""
     spelling = text.spelling
     if spelling.startswith("0x"):
         return "0x" + spelling[2:].upper()
@@ -92,12 +94,14 @@ def _number_or_word(text: Text) -> str:
 
 
 def _quote(value: str) -> str:
+    """Return a text in double quotes."""
     if value.isprintable():
         return '"' + _SPECIAL.sub(r"\\\g<0>", value) + '"'
-    return '"' + "".join(_escape(c) for c in value) + '"'
+    return '"' + "".join(map(_escape, value)) + '"'
 
 
 def _escape(character: str) -> str:
+    """Return a character of a text in double quotes."""
     if character in _ESCAPES:
         return _ESCAPES[character]
     if character.isprintable():
@@ -109,6 +113,7 @@ def _escape(character: str) -> str:
 
 
 def _fits_literal(value: str) -> bool:
+    """Return whether a text with line breaks can be written as a literal block scalar (``|``)."""
     lines = value.removesuffix("\n").split("\n")
     if not lines[0] or lines[0][0] == " " or not lines[-1]:
         return False
@@ -116,7 +121,7 @@ def _fits_literal(value: str) -> bool:
 
 
 def _fold(text: str, column: int, indent: int) -> list[str]:
-    """A plain or quoted scalar over several lines, if it is too long for one."""
+    """Return an unquoted or quoted scalar, folded over several lines if it is longer than `WIDTH`."""
     if column + len(text) <= WIDTH:
         return [text]
     quote = '"' if text[0] == '"' else ""
@@ -127,7 +132,10 @@ def _fold(text: str, column: int, indent: int) -> list[str]:
 
 
 def _fill(text: str, first: int, width: int) -> list[str]:
-    """Breaks at single spaces, where a reader puts one space for the break. ``first``: width of the first line."""
+    """Break a text at single spaces, as a reader of YAML replaces a line break by one space.
+
+    ``first`` is the width of the first line.
+    """
     lines: list[str] = []
     for word in _BREAK.split(text):
         if lines and len(lines[-1]) + 1 + len(word) <= (first if len(lines) == 1 else width):

@@ -1,4 +1,4 @@
-"""Tree -> text in the canonical layout, described in ``docs/reference/icd-format.md``."""
+"""Writer of trees in the canonical layout, which ``docs/reference/icd-format.md`` describes."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from icdgen.icd.fmt.read import SCHEMA_LINE
 from icdgen.icd.fmt.rows import aligned
 from icdgen.icd.fmt.scalars import WIDTH
 
-LONGEST_ROW = 160  # of a table whose rows may also be written in block style
-MOST_ENTRIES = 6  # of a mapping that the schema does not know and that is written on one line
-SHORT_ITEM = 40
+LONGEST_ROW = 160  # of a table whose rows can also be written in block style
+MOST_ENTRIES = 6  # of a mapping on one line that the schema does not define
+SHORT_ITEM = 40  # longest item of a list that is wrapped over several lines
 LONGEST_KEY = 1000  # YAML readers give up looking for the colon after 1024 characters
 
 
 def write(root: Branch, kind: Kind) -> str:
-    """The text of a whole file."""
+    """Return the text of a file."""
     lines = list(root.header)
     if lines and not lines[-1].startswith(SCHEMA_LINE):
         lines.append("")
@@ -29,7 +29,7 @@ def write(root: Branch, kind: Kind) -> str:
 
 
 def _sections(lines: list[str], root: Branch, kind: Kind) -> None:
-    """The top level: a blank line before and after each section in block style; the first belongs to the head."""
+    """Append the top level, with a blank line before and after each section in block style except the first."""
     sections = after_section = 0
     for child in ordered(root, kind):
         is_section = isinstance(child.value, Branch) and _is_block(child, child.value, kind)
@@ -41,22 +41,25 @@ def _sections(lines: list[str], root: Branch, kind: Kind) -> None:
 
 
 def _is_block(child: Child, value: Branch, kind: Kind) -> bool:
+    """Return whether an entry of the top level is written in block style."""
     column = len(scalars.key(child.key, False)) + 2
     inner = kind.child(scalars.name(child.key), value.mapping)
     return _one_line(value, inner, column) is None and _wrapped(value, column) is None
 
 
 def ordered(branch: Branch, kind: Kind) -> list[Child]:
-    """The entries in the order of the schema; those that it does not know come last, as they stood."""
+    """Return the entries in the order of the schema. Unknown keys come last, in the order of the file."""
     order = kind.keys
-    return sorted(branch.children, key=lambda c: order.get(scalars.name(c.key), len(order)))
+    return sorted(branch.children, key=lambda child: order.get(scalars.name(child.key), len(order)))
 
 
 def _comments(lines: list[str], comments: list[str], indent: int) -> None:
+    """Append comments on lines of their own."""
     lines += [" " * indent + comment if comment else "" for comment in comments]
 
 
 def _entry(lines: list[str], child: Child, kind: Kind, indent: int) -> None:
+    """Append an entry of a mapping in block style."""
     key = scalars.key(child.key, False)
     head = " " * indent + key + ":"
     if len(key) > LONGEST_KEY:
@@ -66,17 +69,18 @@ def _entry(lines: list[str], child: Child, kind: Kind, indent: int) -> None:
 
 
 def _value(lines: list[str], child: Child, head: str, kind: Kind, indent: int, in_sequence: bool) -> None:
-    """An entry or an item with its comments. ``head`` is all of its first line that stands before the value."""
+    """Append an entry or an item with its comments. ``head`` is the part of its first line before the value."""
     value = child.value
     column = len(head) - head.rfind("\n")
     trailing = "  " + child.trailing[-1] if child.trailing else ""
     before = [*child.before, *child.trailing[:-1]]
     body: list[str] = []
     if isinstance(value, Text):
-        found = scalars.block(value, column, indent + 2)
-        at = 0 if found[0] in scalars.BLOCK_HEADERS and len(found) > 1 else -1
-        found[at] += trailing
-        body = [head + " " + found[0], *found[1:]]
+        scalar = scalars.block(value, column, indent + 2)
+        # In the lines of a block scalar, a comment would be text; it can only follow the header.
+        at = 0 if scalar[0] in scalars.BLOCK_HEADERS and len(scalar) > 1 else -1
+        scalar[at] += trailing
+        body = [head + " " + scalar[0], *scalar[1:]]
     elif (flow := _one_line(value, kind, column)) is not None:
         before += value.comments()
         body = [head + " " + flow + trailing]
@@ -85,7 +89,8 @@ def _value(lines: list[str], child: Child, head: str, kind: Kind, indent: int, i
         body[-1] += trailing
     else:
         inner = _block(value, kind, indent + 2)
-        if in_sequence:  # the first entry follows the dash on its line
+        # In a sequence, the first entry of a mapping is on the line of the dash.
+        if in_sequence:
             while not inner[0] or inner[0].lstrip().startswith("#"):
                 before.append(inner.pop(0).strip())
             inner[0] = head + inner[0][indent + 1 :]
@@ -98,6 +103,7 @@ def _value(lines: list[str], child: Child, head: str, kind: Kind, indent: int, i
 
 
 def _block(branch: Branch, kind: Kind, indent: int) -> list[str]:
+    """Return the lines of a mapping or sequence in block style."""
     lines: list[str] = []
     if branch.mapping:
         for child in ordered(branch, kind):
@@ -109,6 +115,7 @@ def _block(branch: Branch, kind: Kind, indent: int) -> list[str]:
 
 
 def _items(lines: list[str], branch: Branch, kind: Kind, indent: int) -> None:
+    """Append the items of a sequence, as aligned rows of a table if possible."""
     dash = " " * indent + "-"
     rows = _rows(branch, kind, indent)
     if rows is not None:
@@ -126,8 +133,8 @@ def _items(lines: list[str], branch: Branch, kind: Kind, indent: int) -> None:
 
 
 def _rows(branch: Branch, kind: Kind, indent: int) -> list[str] | None:
-    """The aligned rows of a table; None if the sequence is none or its rows are better read in block style."""
-    items = [one for one in _branches(branch) if one.mapping and one.children]
+    """Return the aligned rows of a table; None if the sequence is not a table, or its rows are too long for one line."""
+    items = [item for item in _branches(branch) if item.mapping and item.children]
     if len(items) < len(branch.children):
         return None
     inner = kind.child(None, True)
@@ -142,17 +149,17 @@ def _rows(branch: Branch, kind: Kind, indent: int) -> list[str] | None:
 
 
 def _simple(branch: Branch) -> bool:
-    """Whether its values are scalars or lists of scalars."""
-    return not any(one.mapping or _branches(one) for one in _branches(branch))
+    """Return whether all values are scalars or lists of scalars."""
+    return not any(inner.mapping or _branches(inner) for inner in _branches(branch))
 
 
 def _branches(branch: Branch) -> list[Branch]:
-    """The mappings and sequences directly in it."""
+    """Return the mappings and sequences directly in a branch."""
     return [child.value for child in branch.children if isinstance(child.value, Branch)]
 
 
 def _one_line(branch: Branch, kind: Kind, column: int) -> str | None:
-    """The value in braces or brackets where it should stand on one line, else None."""
+    """Return a mapping or sequence in flow style if it is to be written on one line, else None."""
     if branch.children:
         if branch.mapping:
             if kind.name in BLOCKS:
@@ -168,17 +175,18 @@ def _one_line(branch: Branch, kind: Kind, column: int) -> str | None:
 
 
 def _small(branch: Branch, kind: Kind) -> bool:
+    """Return whether a mapping is small enough for one line."""
     return _simple(branch) and (bool(kind.name) or len(branch.children) <= MOST_ENTRIES)
 
 
 def _inline(branch: Branch, kind: Kind) -> bool:
-    """Whether a sequence may stand on one line: scalars, lists of scalars, or small mappings of the right kind."""
+    """Return whether a sequence can be on one line: of scalars, lists of scalars, or mappings of a kind in `INLINE`."""
     can_be_mappings = kind.child(None, True).name in INLINE
-    return all(_simple(one) and (can_be_mappings or not one.mapping) for one in _branches(branch))
+    return all(_simple(item) and (can_be_mappings or not item.mapping) for item in _branches(branch))
 
 
 def _wrapped(branch: Branch, column: int) -> list[str] | None:
-    """A list of short scalars over several lines, hanging from its bracket."""
+    """Return a list of short scalars in flow style, wrapped over several lines; None for any other branch."""
     if branch.mapping or branch.commented() or _branches(branch):
         return None
     items = [scalars.flow(child.value) for child in branch.children if isinstance(child.value, Text)]
@@ -196,16 +204,16 @@ def _wrapped(branch: Branch, column: int) -> list[str] | None:
 
 
 def flow(value: Text | Branch, kind: Kind) -> str:
-    """The value on one line."""
+    """Return a value in flow style, on one line."""
     if isinstance(value, Text):
         return scalars.flow(value)
     if value.mapping:
         return "{" + ", ".join(_cells(value, kind).values()) + "}"
-    return "[" + ", ".join(flow(c.value, _kind(kind, c)) for c in value.children) + "]"
+    return "[" + ", ".join(flow(child.value, _kind(kind, child)) for child in value.children) + "]"
 
 
 def _cells(branch: Branch, kind: Kind) -> dict[str, str]:
-    """Key -> ``key: value`` in the order of the schema."""
+    """Return ``key: value`` in flow style for each key, in the order of the schema."""
     cells = {}
     for child in ordered(branch, kind):
         key = scalars.key(child.key, True)
@@ -215,6 +223,7 @@ def _cells(branch: Branch, kind: Kind) -> dict[str, str]:
 
 
 def _kind(kind: Kind, child: Child) -> Kind:
+    """Return the kind of the value of a child of a branch of this kind."""
     if isinstance(child.value, Text):
         return kind
     return kind.child(None if child.key is NOTHING else scalars.name(child.key), child.value.mapping)

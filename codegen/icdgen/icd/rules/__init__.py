@@ -1,7 +1,7 @@
-"""The semantic rules. Each is one function of a theme module; its explanation and examples stand in ``<theme>.md``.
+"""Semantic rules for ICDs. Each rule is a function of a theme module, with explanation and examples in ``<theme>.md``.
 
-The model is built without complaint: what does not fit is None there. The rules go back to the tree and say what is
-wrong, and where.
+`icdgen.icd.build` leaves invalid parts out of the model, or sets them to None, and reports nothing. The rules look at the
+tree of the file, which the objects of the model have as `source`, and report what is wrong, and where.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from icdgen.icd.rules import (  # noqa: F401  (importing a theme registers its r
     limits,
     loggable,
     protocol,
-    protocol_heeded,
+    protocol_effects,
     protocol_limits,
     protocol_meaning,
     protocol_names,
@@ -44,14 +44,16 @@ from icdgen.suggest import close_to
 if TYPE_CHECKING:
     from icdgen.icd.identifiers import Language
 
-elsewhere("reading", "ICD001", "ICD002", "ICD003", "ICD004", "ICD010")  # before there is a model
-elsewhere("errata", "ICD080", "ICD081", "ICD082", "ICD083")  # while overlays are laid over
+# Reported by `icdgen.icd.source`, `schema` and `load`, before there is a model.
+elsewhere("reading", "ICD001", "ICD002", "ICD003", "ICD004", "ICD010")
+# Reported by `icdgen.icd.errata`, while an overlay is applied.
+elsewhere("errata", "ICD080", "ICD081", "ICD082", "ICD083")
 ALL: dict[str, Rule] = dict(sorted(REGISTERED.items()))
-_RUN = sorted(ALL.values(), key=lambda r: r.last)
+_RUN = sorted(ALL.values(), key=lambda rule: rule.runs_last)
 
 
 class UnknownRule(LookupError):
-    """No rule has that code; the message says which was probably meant."""
+    """No rule has this code. The message suggests a similar code."""
 
 
 def check(
@@ -61,15 +63,16 @@ def check(
     languages: Sequence[Language] = (),
     texts: Mapping[str, str] | None = None,
 ) -> list[Finding]:
-    """Everything that breaks a rule and that no erratum accepts, in the order of the files.
+    """Return the violations of all rules that no erratum accepts, in the order of the files.
 
-    Names must do for the ``languages``. ``complete`` is False where broken items were left out of the model: rules about what is
-    absent stay silent then. ``texts`` of the files let findings quote numbers as they are written.
+    The rules about names check the names of the ``languages``. ``complete`` is False if broken items were left out of the
+    model; rules that need a complete model are then skipped. With the ``texts`` of the files, findings quote numbers in the
+    spelling of the file.
     """
     context = Context(icd, applied, complete, languages, texts)
     findings: list[Finding] = []
     for rule in _RUN:
-        if rule.whole and not complete:
+        if rule.needs_complete and not complete:
             continue
         for fault in rule.check(context) if rule.check else ():
             context.raised.append((rule.code, fault))
@@ -79,7 +82,7 @@ def check(
 
 
 def explain(code: str) -> str:
-    """The page of a rule in Markdown: title, reason, a wrong and a right example. Raises `UnknownRule`."""
+    """Return the page of a rule as Markdown: title, reason, a wrong and a right example. Raises `UnknownRule`."""
     rule = ALL.get(code.upper())
     if rule is None:
         close = close_to(code.upper(), ALL)

@@ -1,4 +1,4 @@
-"""Frames that repeat other frames, and list tables that repeat what detail tables say."""
+"""Composite messages, which repeat other frames, and list tables of the manual, which repeat its detail tables."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _IDS = ("id", "set_id", "get_id")
 
 
 def _parts(ctx: Context) -> Iterator[tuple[Message, Node, Part, Map]]:
-    """Every part of every composite frame, with the mapping that declares it."""
+    """Yield each part of each composite message, with the message, its node and the mapping of the part."""
     for message, node in ctx.messages:
         if message.contains:
             entries = [(row.get("message"), row.get("at"), row) for row in mappings(message.source["contains"])]
@@ -31,9 +31,9 @@ def _parts(ctx: Context) -> Iterator[tuple[Message, Node, Part, Map]]:
 
 
 @rule("ICD046")
-def part_exists(ctx: Context) -> Iterator[Fault]:
+def repeated_frames_exist_and_fit(ctx: Context) -> Iterator[Fault]:
     for message, node, part, row in _parts(ctx):
-        frames = {m.name: m for m in ctx.messages_of(node)}
+        frames = {each.name: each for each in ctx.messages_of(node)}
         frame = frames.get(part.message)
         if frame is None:
             if ctx.complete:
@@ -52,99 +52,101 @@ def part_exists(ctx: Context) -> Iterator[Fault]:
 
 
 def _repeated(frame: Message, frames: dict[str, Message]) -> set[str]:
-    """Return the name of a frame and of all frames that it repeats, directly or through others."""
+    """Return the name of a frame and of all frames that it repeats, directly or indirectly."""
     repeated: set[str] = set()
-    left = [frame.name]
-    while left:
-        name = left.pop()
+    queue = [frame.name]
+    while queue:
+        name = queue.pop()
         if name not in repeated and name in frames:
             repeated.add(name)
-            left += [part.message for part in frames[name].contains]
+            queue += [part.message for part in frames[name].contains]
     return repeated
 
 
-@rule("ICD047", whole=True)
-def part_matches(ctx: Context) -> Iterator[Fault]:
+@rule("ICD047", needs_complete=True)
+def composites_match_their_parts(ctx: Context) -> Iterator[Fault]:
     composite: Message | None = None
-    fields: list[NodePlace] = []  # of the composite frame
+    fields: list[NodePlace] = []  # of the composite message
     for message, node, part, row in _parts(ctx):
         if message is not composite:
             composite, fields = message, _fields_with_bits(message)
-        frame = next((m for m in ctx.messages_of(node) if m.name == part.message), None)
+        frame = next((each for each in ctx.messages_of(node) if each.name == part.message), None)
         if frame is None or frame is message or frame.layout.sequence:
             continue  # ICD046 or ICD122 reports it
         start, end = part.at, part.at + frame.length * 8
         if end > message.length * 8:
             continue  # ICD046 reports it
-        wanted = {part.at + field.at: field for field in _fields_with_bits(frame)}
+        missing = {part.at + field.at: field for field in _fields_with_bits(frame)}
         reported = set()
         for field in fields:
             if field.at >= end or field.at + field.bits <= start:
                 continue
             source = field.scalar.source
-            twin = wanted.pop(field.at, None)
+            counterpart = missing.pop(field.at, None)
             if id(source) in reported:
                 continue  # another element of the same array
-            if twin is None:
+            if counterpart is None:
                 reported.add(id(source))
                 text = f"{quote(frame.name)} has no field at bit {field.at - start:,}, where {quote(field.name)} begins"
                 if field.at < start:
                     text = f"{quote(field.name)} crosses bit {start:,}, where {quote(frame.name)} begins"
                 yield Fault.at(source, "at", text, _compare(frame, source.at("at")))
             else:
-                differences = list(_differences(field, twin, frame))
+                differences = list(_differences(field, counterpart, frame))
                 reported |= {id(fault.owner) for fault in differences}
                 yield from differences
-        if wanted:
-            names = [f"{quote(f.name)} at bit {at:,}" for at, f in list(wanted.items())[:3]]
-            more = [f"{len(wanted) - 3} more"] if len(wanted) > 3 else []
+        if missing:
+            names = [f"{quote(field.name)} at bit {at:,}" for at, field in list(missing.items())[:3]]
+            more = [f"{len(missing) - 3} more"] if len(missing) > 3 else []
             text = f"{quote(message.name)} lacks fields of {quote(frame.name)}: {listing(names + more)}"
             yield Fault(message.source, row.at("at"), text, _compare(frame, row.at("at")))
 
 
 def _fields_with_bits(message: Message) -> list[NodePlace]:
-    """Return the fields of the longest frame that have bits of their own."""
+    """Return the fields of the longest frame that own bits."""
     return [field for field in scalars_in(message.layout) if not (field.is_count or field.view)]
 
 
 def _compare(frame: Message, here: Place) -> str:
+    """Return the help that points to the repeated frame."""
     return f"compare with {quote(frame.name)} ({line_of(frame.source.at('name'), here)})"
 
 
 def _quoted_value(source: Map, key: str) -> str:
+    """Return the value of a key in backticks, or ``absent``."""
     return quote(source[key]) if key in source else "absent"
 
 
-def _differences(field: NodePlace, twin: NodePlace, frame: Message) -> Iterator[Fault]:
-    """Yield a fault for the attributes in which a field differs from that of the repeated frame."""
-    mine, other = field.scalar.source, twin.scalar.source
-    keys = [key for key in _KEYS if mine.get(key) != other.get(key)]
-    keys += (key for key in ("byte_order", "bit_order") if getattr(field, key) != getattr(twin, key))
+def _differences(field: NodePlace, counterpart: NodePlace, frame: Message) -> Iterator[Fault]:
+    """Yield a fault with all attributes in which a field differs from its counterpart in the repeated frame."""
+    own, other = field.scalar.source, counterpart.scalar.source
+    keys = [key for key in _KEYS if own.get(key) != other.get(key)]
+    keys += (key for key in ("byte_order", "bit_order") if getattr(field, key) != getattr(counterpart, key))
     scale = field.scalar.scale
-    if scale is not None and scale == twin.scalar.scale and "formula" in keys:
-        keys.remove("formula")  # written differently, and the same
+    if scale is not None and scale == counterpart.scalar.scale and "formula" in keys:
+        keys.remove("formula")  # the formulas differ in spelling only
     if keys:
         key = keys[0]
-        place = mine.at(key) if key in mine else mine.place
-        values = "; ".join(f"{k} {_quoted_value(mine, k)} here, {_quoted_value(other, k)} there" for k in keys)
-        there = f"{quote(twin.name)} in {quote(frame.name)} ({line_of(other.place, place)})"
-        yield Fault(mine, place, f"{quote(field.name)} differs from {there}: {values}", "correct the wrong one")
+        place = own.at(key) if key in own else own.place
+        values = "; ".join(f"{key} {_quoted_value(own, key)} here, {_quoted_value(other, key)} there" for key in keys)
+        reference = f"{quote(counterpart.name)} in {quote(frame.name)} ({line_of(other.place, place)})"
+        yield Fault(own, place, f"{quote(field.name)} differs from {reference}: {values}", "correct the wrong one")
 
 
 @rule("ICD048")
-def list_agrees(ctx: Context) -> Iterator[Fault]:
+def list_tables_match_detail_tables(ctx: Context) -> Iterator[Fault]:
     for message, _ in ctx.messages:
         listed = message.source.get("listed")
         if not isinstance(listed, Map):
             continue
         for key, value in listed.items():
-            held = message.source.get(key)
-            if held != value and not (key in _IDS and held is not None and number(held) == number(value)):
+            own = message.source.get(key)
+            if own != value and not (key in _IDS and own is not None and number(own) == number(value)):
                 sides = (listed, message.source)
                 values = [
                     quote(ctx.written(side, key) if key in _IDS and key in side else side.get(key)) for side in sides
                 ]
-                what = f"the {key.replace('_', ' ')} {values[0]}"
-                text = f"the list table gives {quote(message.name)} {what}, the detail table {values[1]}"
+                listed_value = f"the {key.replace('_', ' ')} {values[0]}"
+                text = f"the list table gives {quote(message.name)} {listed_value}, the detail table {values[1]}"
                 help = f"decide in an erratum: `held` has the other `{key}`, or `listed: null` to ignore the list table"
                 yield Fault(message.source, listed.at(key), text, help)

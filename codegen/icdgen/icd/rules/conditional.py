@@ -1,4 +1,4 @@
-"""Fields that are not always there: what they depend on, and what carries them."""
+"""Optional fields: their conditions, and the messages and links that support them."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import quote
 from icdgen.icd.trees import mappings
 
+# Keys of fields that cannot be optional, with words for messages.
 _NEVER = (
     ("count", "an array"),
     ("size", "of variable length"),
@@ -21,20 +22,20 @@ _NEVER = (
 
 
 @rule("ICD160")
-def depends_on_a_field(ctx: Context) -> Iterator[Fault]:
+def conditions_name_plain_fields(ctx: Context) -> Iterator[Fault]:
     for field, (_, message, _) in ctx.fields_with["when"]:
         yield from conditions.faults_of_names(message.source, field.source)
 
 
 @rule("ICD161")
-def may_hold(ctx: Context) -> Iterator[Fault]:
+def conditions_can_be_met(ctx: Context) -> Iterator[Fault]:
     for field, (_, message, node) in ctx.fields_with["when"]:
-        enums = {enum.name: enum for n in ctx.scope(node) for enum in n.enums}
+        enums = {enum.name: enum for owner in ctx.scope(node) for enum in owner.enums}
         yield from conditions.faults_of_values(message.source, field.source, enums)
 
 
 @rule("ICD162")
-def can_be_absent(ctx: Context) -> Iterator[Fault]:
+def optional_fields_can_be_absent(ctx: Context) -> Iterator[Fault]:
     for field, (_, message, _) in ctx.fields_with["when"]:
         source = field.source
         reason = next((words for key, words in _NEVER if source.get(key)), f"`{field.type}`" if field.is_bytes else "")
@@ -50,8 +51,8 @@ def can_be_absent(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD163")
-def carried(ctx: Context) -> Iterator[Fault]:
-    """Links, logs and composites take every field for one that is there."""
+def optional_fields_are_supported(ctx: Context) -> Iterator[Fault]:
+    """Report optional fields on links and in composite messages, which read every field of a message."""
     optional = {id(line.owner.source) for _, line in ctx.fields_with["when"]}  # messages with optional fields
     for node in filter(ctx.is_linked, ctx.icd.nodes):
         for message in ctx.messages_of(node):

@@ -1,4 +1,4 @@
-"""Model and findings that rules look at; the lines of all layouts are listed once for all rules."""
+"""Input of the rules: the model, its lines listed once for all rules, and the faults of the rules that ran before."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from icdgen.once import cached_property
 if TYPE_CHECKING:
     from icdgen.icd.identifiers import Language
 
+# Keys of a field that only few fields have, so that rules about them need not look at all fields.
 RARE_KEYS = frozenset({"enum", "unit", "formula", "formula_for", "points", "outside", "const", "special", "bitfields",
     "byte_order", "bit_order", "view", "when", "display",
 })  # fmt: skip
-"""Keys of a field that only few fields have."""
 
 Owner = Message | Struct
 
 
 class Line(NamedTuple):
-    """A node of the layout of a message or struct, and what declares it."""
+    """A node of a layout, with the message or struct and the ICD node that declare it."""
 
     node: LayoutNode
     owner: Owner
@@ -40,23 +40,23 @@ class Line(NamedTuple):
 
 
 def is_overlay(node: LayoutNode) -> bool:
-    """Return whether a field or an array of fields has `view: true`. An array cannot be an overlay, but an ICD can say so."""
+    """Return whether a field or an array of fields has `view: true`. For an array, that is an error (ICD029)."""
     return bool(node.source.get("view", False)) and scalar_of(node) is not None
 
 
 def own_fact(node: Node, *path: str) -> Any:
-    """Return what the node's own protocol section has at a path; None if it has nothing there."""
+    """Return the value at a path of the own protocol section of a node; None if it is absent."""
     return at_path(node.source.get("protocol"), path)
 
 
 def section_of(node: Node, *path: str) -> Map | None:
-    """Return a section of the node's own protocol section."""
+    """Return the mapping at a path of the own protocol section of a node; None if it is absent."""
     section = own_fact(node, *path)
     return section if isinstance(section, Map) else None
 
 
 class Context:
-    """The model and the findings so far. The model must have been read from files: rules look at `source`."""
+    """Model and faults so far. The model must have been read from files, because rules look at `source`."""
 
     def __init__(
         self,
@@ -68,7 +68,7 @@ class Context:
     ) -> None:
         self.icd = icd
         self._lines = {file: Lines(text) for file, text in (texts or {}).items()}
-        self.languages = languages  # that names must do for
+        self.languages = languages  # whose names the rules about names check
         self.applied = tuple(applied)
         self._accepted = {(code, id(owner)) for overlay in self.applied for code, _, owner in overlay.accepts}
         self.complete = complete
@@ -77,12 +77,12 @@ class Context:
         self.structs: list[tuple[Struct, Node]] = [(struct, node) for node in icd.nodes for struct in node.structs]
         self.enums: list[Enum] = [enum for node in icd.nodes for enum in node.enums]
         self.owners: list[tuple[Owner, Node]] = [*self.messages, *self.structs]  # of lines
+        # Nodes of all messages and structs, without derived values. The nodes of a struct are listed once, with the struct.
         self.lines: list[Line] = []
-        """The nodes of all messages and structs that have bits of a frame; nodes of a struct once, with the struct."""
+        # Lines with a scalar. For an array it is its element.
         self.fields: list[tuple[Scalar, Line]] = []
-        """The lines that are no struct; of an array its element."""
+        # Fields by key. Fields with the keys `unit` and `display` include derived values.
         self.fields_with: dict[str, list[tuple[Scalar, Line]]] = {key: [] for key in RARE_KEYS}
-        """The fields that have a key; those with a unit or display format include derived values."""
         derived: list[tuple[Scalar, Line]] = []
         for owner, icd_node in self.owners:
             for node in owner.layout.nodes:
@@ -98,29 +98,30 @@ class Context:
                     self.fields_with[key].append((scalar, line))
         for key in ("unit", "display"):
             self.fields_with[key] += (row for row in derived if key in row[0].source)
+        # id() of a layout -> its struct and the node that declares it.
         self.struct_of: dict[int, tuple[Struct, Node]] = {
             id(struct.layout): (struct, node) for struct, node in self.structs
         }
-        """The struct of a layout, by the identity of the layout, and the node that declares it."""
-        self.declared: list[Any] | None = None  # what backends declare; see `declarations`
+        self.declared: list[Any] | None = None  # cache of `declarations.declared`
         self._scopes: dict[int, tuple[Node, ...]] = {}
 
     @cached_property
     def behind_variable_fields(self) -> frozenset[int]:
-        """Fields of fixed size, by the identity of their mappings, that are placed behind a variable-length field: ICD121."""
+        """Set of the id() of mappings of fixed-size fields that are placed after a variable-length field (ICD121)."""
         return frozenset(id(item) for message, _ in self.messages for item in tails.fixed_behind(message.source))
 
     def scope(self, node: Node) -> tuple[Node, ...]:
         """Return the nodes that a node includes, then the node itself; each name once."""
         scope = self._scopes.get(id(node))
         if scope is None:
-            by_name = {n.name: n for n in reversed(self.icd.included(node)) if n.name != node.name}
-            scope = (*(n for n in self.icd.nodes if by_name.get(n.name) is n), node)
+            included = reversed(self.icd.included(node))
+            by_name = {other.name: other for other in included if other.name != node.name}
+            scope = (*(other for other in self.icd.nodes if by_name.get(other.name) is other), node)
             self._scopes[id(node)] = scope
         return scope
 
     def written(self, owner: Map, key: str) -> str:
-        """Return a number as its file writes it, such as ``0x82``, and a list of bytes as ``0x01 0x05``."""
+        """Return a number in the spelling of its file, such as ``0x82``, and a list of bytes as ``0x01 0x05``."""
         value, place = owner[key], owner.at(key)
         if isinstance(value, list):
             return " ".join(f"0x{byte:02X}" for byte in value)
@@ -132,36 +133,39 @@ class Context:
         return (code, id(fault.owner)) in self._accepted
 
     def sections(self, *path: str) -> Iterator[Map]:
-        """Yield the protocol sections at a path, of each node that has one of its own."""
+        """Yield the mappings at a path of the own protocol sections of all nodes."""
         sections = (section_of(node, *path) for node in self.icd.nodes)
         return (section for section in sections if section is not None)
 
     def messages_of(self, node: Node) -> list[Message]:
         """Return the messages of a node and of all nodes that it includes."""
-        return [m for n in self.scope(node) for m in n.messages]
+        return [message for owner in self.scope(node) for message in owner.messages]
 
     def home_of(self, message: Message, node: Node) -> Node:
         """Return the node that declares a message of `messages_of(node)`."""
-        return next(n for n in self.scope(node) if n.name == message.node)
+        return next(owner for owner in self.scope(node) if owner.name == message.node)
 
     def broken_messages(self, node: Node) -> set[str]:
-        """Return the names of messages that cannot be read, of a node and what it includes. Each has a finding."""
-        entries = (item for n in self.scope(node) for item in mappings(n.source.get("messages")))
-        written = {name for item in entries if isinstance(name := item.get("name"), str)}
-        return written - {message.name for message in self.messages_of(node)}
+        """Return the names of invalid messages of a node and of its included nodes. The schema check reports each."""
+        entries = (item for owner in self.scope(node) for item in mappings(owner.source.get("messages")))
+        names = {name for item in entries if isinstance(name := item.get("name"), str)}
+        return names - {message.name for message in self.messages_of(node)}
 
     def protocol_of(self, node: Node) -> dict[str, Any]:
-        """Return the protocol facts in effect for a node: its own, and else those of what it includes."""
+        """Return the protocol facts in effect for a node: the facts of included nodes, overridden by its own."""
         merged: dict[str, Any] = {}
-        for n in self.scope(node):
-            merged.update(n.protocol)
+        for owner in self.scope(node):
+            merged.update(owner.protocol)
         return merged
 
     def fact(self, node: Node, *path: str) -> Any:
-        """Return the protocol fact at a path that is in effect for a node; None if there is none."""
+        """Return the protocol fact in effect for a node at a path; None if it is absent."""
         return at_path(self.protocol_of(node), path)
 
     def is_linked(self, node: Node) -> bool:
-        """Return whether the protocol describes links whose messages have an id and one length; a `stream` needs neither."""
+        """Return whether the protocol describes links on which each message needs an id and one length.
+
+        A `stream` needs neither.
+        """
         protocol = self.protocol_of(node)
         return bool(protocol) and "stream" not in protocol

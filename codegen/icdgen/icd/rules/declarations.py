@@ -1,4 +1,4 @@
-"""Names that languages declare for a model without its errors."""
+"""Identifiers that languages declare for a model, without the parts of the model that have errors."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import REGISTERED
 
-# Rules about names that are there twice.
-TWINS = frozenset({"ICD050", "ICD051", "ICD052", "ICD053", "ICD054", "ICD057", "ICD049"})
+# Rules about names that occur twice.
+DUPLICATE_NAMES = frozenset({"ICD050", "ICD051", "ICD052", "ICD053", "ICD054", "ICD057", "ICD049"})
 
 _TEXT = attrgetter("text")
 
 
 class Declared(NamedTuple):
-    """Names that one language declares. They can be hundreds of thousands, so rules ask for those of some texts only."""
+    """Identifiers that one language declares. There can be hundreds of thousands, so rules select some by text."""
 
     language: str
     reserved: frozenset[str]
     identifiers: list[Identifier]
-    texts: Counter[str]  # in all scopes together
+    texts: Counter[str]  # number of identifiers per text, in all scopes together
 
     def spelled(self, texts: Set[str]) -> list[Identifier]:
         """Return the identifiers that have one of these texts."""
@@ -35,7 +35,7 @@ class Declared(NamedTuple):
 
 
 def declared(ctx: Context) -> list[Declared]:
-    """Return the names that each language declares; computed once for all rules."""
+    """Return the identifiers that each language declares; computed once for all rules."""
     if ctx.declared is None:
         icd = _sound_icd(ctx)
         ctx.declared = []
@@ -50,16 +50,17 @@ def _sound_icd(ctx: Context) -> Icd:
     """Return the ICDs without fields that have errors, and without the second of two equal names."""
     errors = ((code, fault) for code, fault in ctx.raised if REGISTERED[code].severity == "error")
     bad = {id(fault.owner) for code, fault in errors if not ctx.accepts(code, fault)}
-    twins = {id(fault.owner) for code, fault in ctx.raised if code in TWINS}
-    bad_layouts: set[int] = set()  # of structs, by identity
+    duplicates = {id(fault.owner) for code, fault in ctx.raised if code in DUPLICATE_NAMES}
+    bad_layouts: set[int] = set()  # id() of layouts of structs
 
     def is_bad(node: LayoutNode) -> bool:
         scalar = scalar_of(node)
         lacks_enum = scalar is not None and scalar.type == "enum" and scalar.enum is None
         return id(node.source) in bad or lacks_enum or id(struct_layout_of(node)) in bad_layouts
 
-    for struct, _ in ctx.structs:  # each stands behind those that it refers to
-        if id(struct.source) in bad | twins or any(map(is_bad, struct.layout.nodes)):
+    # Each struct comes after the structs that it contains.
+    for struct, _ in ctx.structs:
+        if id(struct.source) in bad | duplicates or any(map(is_bad, struct.layout.nodes)):
             bad_layouts.add(id(struct.layout))
 
     def sound_message(message: Message) -> Message:
@@ -67,9 +68,10 @@ def _sound_icd(ctx: Context) -> Icd:
         return message if layout is message.layout else replace(message, layout=layout)
 
     def sound_node(node: Node) -> Node:
-        messages = tuple(sound_message(message) for message in node.messages if id(message.source) not in twins)
+        messages = tuple(sound_message(message) for message in node.messages if id(message.source) not in duplicates)
         sound_structs = tuple(struct for struct in node.structs if id(struct.layout) not in bad_layouts)
-        enums = tuple({enum.name: enum for enum in node.enums}.values())  # fields refer to the last of a name
+        # Fields refer to the last enumeration of a name.
+        enums = tuple({enum.name: enum for enum in node.enums}.values())
         includes = tuple(name for name in node.includes if name != node.name)
         if (messages, sound_structs, enums, includes) == (node.messages, node.structs, node.enums, node.includes):
             return node
@@ -77,5 +79,5 @@ def _sound_icd(ctx: Context) -> Icd:
 
     first = {node.name: node for node in reversed(ctx.icd.nodes)}
     nodes = tuple(sound_node(node) for node in ctx.icd.nodes if first[node.name] is node)
-    # What is described of a sound model for its names is described for its code too.
+    # If nothing was removed, return the same object: descriptions are cached per ICD, and the backends reuse them.
     return ctx.icd if all(map(is_, nodes, ctx.icd.nodes)) and len(nodes) == len(ctx.icd.nodes) else Icd(nodes)

@@ -1,4 +1,4 @@
-"""Values that are derived from fields."""
+"""Derived values: their formulas and operands."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _HELP = "a formula is made of numbers, the names of fields, + - * / and powers: 
 
 
 @rule("ICD180")
-def derived_computes(ctx: Context) -> Iterator[Fault]:
+def values_can_be_derived(ctx: Context) -> Iterator[Fault]:
     for message, _ in ctx.messages:
         if "derived" in message.source and is_read(message):
             yield from _faults(message)
@@ -29,10 +29,11 @@ def derived_computes(ctx: Context) -> Iterator[Fault]:
 
 def _faults(message: Message) -> Iterator[Fault]:
     """Yield a fault for each derived value that is not in the layout."""
-    nodes: list[LayoutNode] = [*message.layout.fixed, *message.layout.sequence]  # and the values in front of an item
+    # Possible operands: all fields, and the derived values before an item.
+    nodes: list[LayoutNode] = [*message.layout.fixed, *message.layout.sequence]
     derived_nodes = {id(node.source): node for node in message.layout.derived}
     items = [item for item in mappings(message.source["derived"]) if _has_formula(item)]
-    failed: set[str] = set()  # names of values that have a finding
+    failed: set[str] = set()  # names of values with a fault
     for index, item in enumerate(items):
         if id(item) in derived_nodes:
             nodes.append(derived_nodes[id(item)])
@@ -43,8 +44,8 @@ def _faults(message: Message) -> Iterator[Fault]:
             if failed.isdisjoint(derivation.fields):
                 check_operands(derivation, nodes)
         except FormulaError as error:
-            what = f"{quote(item['name'])} cannot be derived by {quote(text)}: {error}"
-            yield Fault.at(item, "formula", what, _HELP)
+            message_text = f"{quote(item['name'])} cannot be derived by {quote(text)}: {error}"
+            yield Fault.at(item, "formula", message_text, _HELP)
         failed.add(item["name"])
 
 

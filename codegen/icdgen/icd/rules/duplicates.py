@@ -1,4 +1,4 @@
-"""Names and values that must be there once."""
+"""Names and values that must be unique."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ PRINTED_TWICE = "rename one; if the manual prints both under this name, rename o
 
 
 def _twice(items: Iterable[T], key: Callable[[T], Hashable]) -> Iterator[tuple[T, T]]:
-    """(first, later) for every item whose key was there before."""
+    """Yield (first, later) for every item whose key an earlier item has."""
     seen: dict[Hashable, T] = {}
     for item in items:
         value = key(item)
@@ -35,49 +35,51 @@ def _twice(items: Iterable[T], key: Callable[[T], Hashable]) -> Iterator[tuple[T
 
 
 def in_scope(ctx: Context, node: Node, items: Callable[[Node], Iterable[T]]) -> list[tuple[Node, T]]:
-    """Items of the node and of what it includes, with the node that declares them."""
-    return [(n, item) for n in ctx.scope(node) for item in items(n)]
+    """Return the items of a node and of its included nodes, each with the node that declares it."""
+    return [(owner, item) for owner in ctx.scope(node) for item in items(owner)]
 
 
 def is_news(ctx: Context, node: Node, first: Node, second: Node) -> bool:
-    """Whether ``node`` is the first to bring the two together; else the clash is reported where that happened."""
+    """Return whether ``node`` is the first that has both nodes in its scope, so that a clash is reported once."""
     return second is node or (first is not second and first not in ctx.scope(second))
 
 
 def together(node: Node, second: Node) -> str:
-    """Why a clash of two included nodes matters."""
+    """Return the end of a message about a clash of two included nodes; empty if ``node`` itself declares the second item."""
     return "" if second is node else f", and `{node.name}` includes both"
 
 
 def names_twice(
     ctx: Context, what: str, items: Callable[[Node], Iterable[Message | Enum | Struct]], help: str
 ) -> Iterator[Fault]:
+    """Yield a fault for each name that two items in the scope of a node have."""
     for node in ctx.icd.nodes:
-        for (n1, first), (n2, second) in _twice(in_scope(ctx, node, items), lambda pair: pair[1].name):
-            if is_news(ctx, node, n1, n2):
-                there = line_of(first.source.at("name"), second.source.at("name"))
-                message = f"there is already {what} named {quote(second.name)}, in {there}{together(node, n2)}"
+        pairs = _twice(in_scope(ctx, node, items), lambda pair: pair[1].name)
+        for (first_node, first), (second_node, second) in pairs:
+            if is_news(ctx, node, first_node, second_node):
+                line = line_of(first.source.at("name"), second.source.at("name"))
+                message = f"there is already {what} named {quote(second.name)}, in {line}{together(node, second_node)}"
                 related = Related(first.source.at("name"), "the first of this name")
                 yield Fault.at(second.source, "name", message, help, related=related)
 
 
 @rule("ICD050")
-def message_names(ctx: Context) -> Iterator[Fault]:
-    yield from names_twice(ctx, "a message", lambda n: n.messages, PRINTED_TWICE)
+def message_names_are_unique(ctx: Context) -> Iterator[Fault]:
+    yield from names_twice(ctx, "a message", lambda node: node.messages, PRINTED_TWICE)
 
 
 @rule("ICD051")
-def field_names(ctx: Context) -> Iterator[Fault]:
+def field_names_are_unique(ctx: Context) -> Iterator[Fault]:
     for owner, _ in ctx.owners:
         nodes = owner.layout.nodes
         names = {node.name for node in nodes}
-        # A name can also be equal to that of an element, such as `Satellites[0].GNSS`, or of a counter.
+        # A name can also equal the name of an element, such as `Satellites[0].GNSS`, or of a counter.
         is_path = any("[" in name or "." in name for name in names)
         if len(names) == len(nodes) and not owner.layout.sequence and not is_path:
             continue
         places = places_in(owner.layout)
         fields = [element for place in places for element in place.elements()]
-        # If two structs or arrays have one name, all their fields have equal names, too: report only the former.
+        # If two structs or arrays have the same name, so have all their fields: report only the structs or arrays.
         if len({field.name for field in fields}) == len(fields):
             fields = list(scalars_in(owner.layout))
         reported = set()
@@ -85,63 +87,66 @@ def field_names(ctx: Context) -> Iterator[Fault]:
             if id(second.source) in reported:
                 continue  # another element of the same array
             reported.add(id(second.source))
-            there = line_of(first.source.at("name"), second.source.at("name"))
-            text = f"{quote(owner.name)} already has a field {quote(second.name)}, in {there}"
+            line = line_of(first.source.at("name"), second.source.at("name"))
+            text = f"{quote(owner.name)} already has a field {quote(second.name)}, in {line}"
             related = Related(first.source.at("name"), "the first of this name")
             yield Fault.at(second.source, "name", text, PRINTED_TWICE, related=related)
 
 
 @rule("ICD052")
-def enum_names(ctx: Context) -> Iterator[Fault]:
-    yield from names_twice(ctx, "an enumeration", lambda n: n.enums, "rename one, or use the other")
+def enumeration_names_are_unique(ctx: Context) -> Iterator[Fault]:
+    yield from names_twice(ctx, "an enumeration", lambda node: node.enums, "rename one, or use the other")
 
 
 @rule("ICD053")
-def member_values(ctx: Context) -> Iterator[Fault]:
+def enumeration_values_are_unique(ctx: Context) -> Iterator[Fault]:
     for enum in ctx.enums:
-        for first, second in _sharing(enum):
-            there = f"{quote(first.name)} ({line_of(first.source.at('value'), second.source.at('value'))})"
-            what = f"the value {max(first.value, second.value)}"
+        for first, second in _members_with_common_values(enum):
+            owner = f"{quote(first.name)} ({line_of(first.source.at('value'), second.source.at('value'))})"
             related = Related(first.source.at("value"), f"the value of {quote(first.name)}")
-            text = f"{there} already has {what}"
+            text = f"{owner} already has the value {max(first.value, second.value)}"
             yield Fault.at(second.source, "value", text, "correct one of them", related=related)
 
 
-def _sharing(enum: Enum) -> Iterator[tuple[Member, Member]]:
-    """Members that have values in common with one before them, in their order; ranges are taken as far as they are some."""
-    place = {id(one): number for number, one in enumerate(enum.members)}
-    reaching: Member | None = None
-    found = []
-    for one in sorted(enum.members, key=lambda m: m.value):
-        if reaching is not None and one.value <= reaching.last:
-            found.append(sorted((reaching, one), key=lambda m: place[id(m)]))
-        if reaching is None or one.last > reaching.last:
-            reaching = one
-    yield from ((first, second) for first, second in sorted(found, key=lambda pair: place[id(pair[1])]))
+def _members_with_common_values(enum: Enum) -> Iterator[tuple[Member, Member]]:
+    """Yield pairs of members that have a value in common, sorted by the order of the second in the file."""
+    order = {id(member): index for index, member in enumerate(enum.members)}
+    furthest: Member | None = None  # of the members with smaller values, the one with the largest last value
+    pairs = []
+    for member in sorted(enum.members, key=lambda member: member.value):
+        if furthest is not None and member.value <= furthest.last:
+            pairs.append(sorted((furthest, member), key=lambda each: order[id(each)]))
+        if furthest is None or member.last > furthest.last:
+            furthest = member
+    yield from ((first, second) for first, second in sorted(pairs, key=lambda pair: order[id(pair[1])]))
 
 
 @rule("ICD054")
-def member_names(ctx: Context) -> Iterator[Fault]:
+def member_names_are_unique(ctx: Context) -> Iterator[Fault]:
     for enum in ctx.enums:
-        for first, second in _twice(enum.members, lambda m: (m.name, m.identifier)):
-            there = f"{first.value} ({line_of(first.source.at('name'), second.source.at('name'))})"
-            message = f"{quote(second.name)} is already the name of {there}"
+        for first, second in _twice(enum.members, lambda member: (member.name, member.identifier)):
+            value = f"{first.value} ({line_of(first.source.at('name'), second.source.at('name'))})"
+            message = f"{quote(second.name)} is already the name of {value}"
             help = "if the manual prints it so, give each its own `identifier:`"
             related = Related(first.source.at("name"), "the first of this name")
             yield Fault.at(second.source, "name", message, help, related=related)
 
 
 @rule("ICD074")
-def aliases(ctx: Context) -> Iterator[Fault]:
-    """Report aliases by which a look-up by name would not know what is meant."""
+def aliases_are_unambiguous(ctx: Context) -> Iterator[Fault]:
+    """Report aliases that do not identify one message, type, field or member."""
     reported = set()
     for node in ctx.icd.nodes:
-        scope = ctx.scope(node)
-        messages: list[Aliased] = [m for n in scope for m in n.messages]
-        types: list[Aliased] = [*(one for n in scope for one in n.enums), *(one for n in scope for one in n.structs)]
-        for items in (messages, types):
+        messages: list[Aliased] = []
+        enums: list[Aliased] = []
+        structs: list[Aliased] = []
+        for declaring in ctx.scope(node):
+            messages += declaring.messages
+            enums += declaring.enums
+            structs += declaring.structs
+        for items in (messages, enums + structs):
             for fault in _ambiguous_aliases(items, node.vocabulary):
-                # A node that includes another meets the same aliases again.
+                # A node that includes another node has the same aliases.
                 if (key := (id(fault.owner), fault.message)) not in reported:
                     reported.add(key)
                     yield fault
@@ -154,51 +159,54 @@ def aliases(ctx: Context) -> Iterator[Fault]:
 
 
 def _ambiguous_aliases(items: Sequence[Aliased], vocabulary: tuple[str, ...]) -> Iterator[Fault]:
+    """Yield a fault for each alias that equals a name, or another alias, of the items."""
     if not any(item.aliases for item in items):
         return
 
     def words(text: str) -> str:
+        """Return the form in which a search compares names."""
         return "".join(naming.words(text, vocabulary)) or text.casefold()
 
     names = {words(text): item for item in reversed(items) for text in (item.name, item.identifier) if text}
-    before: dict[str, Aliased] = {}  # the things whose aliases were read already
+    by_alias: dict[str, Aliased] = {}  # the first item of each alias
     for item in items:
         for index, alias in enumerate(item.aliases):
             key, place = words(alias), item.source["aliases"].item_at(index)
-            other = names.get(key) or before.get(key)
-            before.setdefault(key, item)
+            other = names.get(key) or by_alias.get(key)
+            by_alias.setdefault(key, item)
             if other is None:
                 continue
             text = f"the alias {quote(alias)} of {quote(item.name)} is "
             if key in names and other is item:
                 text, help = f"{text}its own name", "remove the alias"
             elif key in names:
-                there = line_of(other.source.at("name"), place)
-                text, help = f"{text}the name of something else, in {there}", "choose another alias"
+                line = line_of(other.source.at("name"), place)
+                text, help = f"{text}the name of something else, in {line}", "choose another alias"
             elif other is item:
                 text, help = f"{text}listed twice", "remove one of them"
             else:
-                there = line_of(other.source.at("aliases"), place)
-                text, help = f"{text}also an alias of {quote(other.name)}, in {there}", "keep one of them"
+                line = line_of(other.source.at("aliases"), place)
+                text, help = f"{text}also an alias of {quote(other.name)}, in {line}", "keep one of them"
             yield Fault(item.source, place, text, help)
 
 
 @rule("ICD057")
-def node_names(ctx: Context) -> Iterator[Fault]:
-    for first, second in _twice(ctx.icd.nodes, lambda n: n.name):
+def node_names_are_unique(ctx: Context) -> Iterator[Fault]:
+    for first, second in _twice(ctx.icd.nodes, lambda node: node.name):
         head = second.source["node"]
         message = f"another file has declared the node `{second.name}`: {first.file}"
         yield Fault.at(head, "name", message, "name one of them differently, or leave one file out")
 
 
 @rule("ICD058")
-def unit_symbols(ctx: Context) -> Iterator[Fault]:
+def unit_symbols_are_unique(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         pairs = in_scope(ctx, node, _declared_units)
-        for (n1, first), (n2, second) in _twice(pairs, lambda pair: pair[1]["symbol"]):
-            if is_news(ctx, node, n1, n2):
-                there = line_of(first.at("symbol"), second.at("symbol"))
-                message = f"the unit {quote(second['symbol'])} is already declared, in {there}{together(node, n2)}"
+        for (first_node, first), (second_node, second) in _twice(pairs, lambda pair: pair[1]["symbol"]):
+            if is_news(ctx, node, first_node, second_node):
+                line = line_of(first.at("symbol"), second.at("symbol"))
+                included = together(node, second_node)
+                message = f"the unit {quote(second['symbol'])} is already declared, in {line}{included}"
                 related = Related(first.at("symbol"), "the first declaration")
                 yield Fault.at(second, "symbol", message, "remove one of the declarations", related=related)
         for unit in _declared_units(node):
@@ -208,7 +216,8 @@ def unit_symbols(ctx: Context) -> Iterator[Fault]:
 
 
 def _declared_units(node: Node) -> Iterator[Map]:
-    known = {u.symbol for u in node.units}
+    """Yield the valid entries of `units` of a node."""
+    symbols = {unit.symbol for unit in node.units}
     for item in mappings(node.source.get("units")):
-        if isinstance(item.get("symbol"), str) and item["symbol"] in known:
+        if isinstance(item.get("symbol"), str) and item["symbol"] in symbols:
             yield item

@@ -1,4 +1,4 @@
-"""Links that are described as an envelope of fields with roles."""
+"""Protocol section `stream`: links whose frames have header and trailer fields with roles."""
 
 from __future__ import annotations
 
@@ -17,51 +17,54 @@ from icdgen.icd.trees import at_path, mappings
 DIRECTIONS = (TELECOMMAND, TELEMETRY)
 PARTS = ("header", "trailer")
 FIXED = ("sync", "constant")
-WORD = 32  # bits of a field, at most
+WORD = 32  # largest width of a field in bits
 MOST_SEQUENCE_BITS = 31
-MOST_SPAN = 4  # bytes that a field may have part in
+MOST_SPAN = 4  # largest number of bytes that a field can be in
 DATA = "data"
-ONLY_WITH = {"counts": "length", "plus": "length", "per": "sequence", "checksum": "checksum"}  # keys of one role
-BESIDE = ("stream", "checksums", "client", "uart", "boot")  # what else may be said of such a link
+# Keys that only fields of one role can have.
+ONLY_WITH = {"counts": "length", "plus": "length", "per": "sequence", "checksum": "checksum"}
+# Keys of a protocol section with `stream`.
+ALLOWED_WITH_STREAM = ("stream", "checksums", "client", "uart", "boot")
 BITS_OF = {"fletcher": 16, "fletcher_255": 16, "xor": 8}
 
 
 class Link(NamedTuple):
-    """The envelope of a node."""
+    """Framing of the link of a node."""
 
     node: Node
     section: Map
-    rows: list[tuple[str, Map]]  # in which part, in order
+    rows: list[tuple[str, Map]]  # header or trailer, and a field, in order
 
     def of(self, *roles: str) -> list[Map]:
-        """The fields of these roles."""
+        """Return the fields of these roles."""
         return [row for _, row in self.rows if row.get("role") in roles]
 
 
 def links(ctx: Context) -> Iterator[Link]:
-    """The envelopes, of the nodes that describe one themselves."""
+    """Yield the links of the nodes that declare a valid `stream` themselves."""
     for node in ctx.icd.nodes:
         section = section_of(node, "stream")
         if section is not None:
             rows = [(part, row) for part in PARTS for row in mappings(section.get(part))]
-            if all(_is_sound(row) for _, row in rows):  # else the schema has told of it
+            # Otherwise the schema check reports the fields.
+            if all(_is_sound(row) for _, row in rows):
                 yield Link(node, section, rows)
 
 
 def _is_sound(row: Map) -> bool:
-    """Whether the schema has nothing to say of what is looked at here."""
+    """Return whether the values of a field that these rules use conform to the schema."""
     numbers: list[Any] = [row.get("at"), row.get("bits"), row.get("plus", 0)]
-    if not all(type(one) is int for one in numbers) or numbers[0] < 0 or not 0 < numbers[1] <= WORD:
+    if not all(type(number) is int for number in numbers) or numbers[0] < 0 or not 0 < numbers[1] <= WORD:
         return False
     return isinstance(row.get("role"), str) and isinstance(row.get("checksum", ""), str)
 
 
 @rule("ICD170")
-def described_once(ctx: Context) -> Iterator[Fault]:
+def links_are_described_once(ctx: Context) -> Iterator[Fault]:
     for link in links(ctx):
         protocol = link.node.source["protocol"]
         for key in protocol:
-            if key not in BESIDE:
+            if key not in ALLOWED_WITH_STREAM:
                 message = f"`{key}` belongs to another kind of link than `stream` and has no effect"
                 yield Fault.at_key(protocol, key, message, f"remove `{key}` or `stream`")
         uart = protocol.get("uart")
@@ -83,7 +86,7 @@ def described_once(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD171")
-def roles_that_are_needed(ctx: Context) -> Iterator[Fault]:
+def roles_are_complete(ctx: Context) -> Iterator[Fault]:
     for link in links(ctx):
         seen: set[str] = set()
         for _, row in link.rows:
@@ -105,6 +108,7 @@ def roles_that_are_needed(ctx: Context) -> Iterator[Fault]:
 
 
 def _missing(ctx: Context, link: Link) -> Iterator[Fault]:
+    """Yield the faults of roles that a link needs and no field has."""
     lengths = link.of("length")
     if link.section.get("delimited_by") == "length":
         if not lengths:
@@ -124,13 +128,13 @@ def _missing(ctx: Context, link: Link) -> Iterator[Fault]:
 
 
 def _ids(ctx: Context, node: Node, direction: str) -> list[tuple[int, Message]]:
-    """The messages of a direction by id."""
-    found = [(getattr(one, f"{direction}_id"), one) for one in ctx.messages_of(node)]
-    return [(id, one) for id, one in found if id is not None]
+    """Return the messages of a node in a direction, with their ids."""
+    messages = [(getattr(message, f"{direction}_id"), message) for message in ctx.messages_of(node)]
+    return [(id, message) for id, message in messages if id is not None]
 
 
 @rule("ICD172")
-def fields_that_fit(ctx: Context) -> Iterator[Fault]:
+def frame_fields_fit(ctx: Context) -> Iterator[Fault]:
     for link in links(ctx):
         yield from _places(link)
         yield from _values(link)
@@ -138,7 +142,8 @@ def fields_that_fit(ctx: Context) -> Iterator[Fault]:
 
 
 def _places(link: Link) -> Iterator[Fault]:
-    for _, row in link.rows:  # ICD092 sees to overlaps
+    """Yield the faults of fields that are in too many bytes, or not contiguous. ICD092 reports overlaps."""
+    for _, row in link.rows:
         bits = range(row["at"], row["at"] + row["bits"])
         size = bits[-1] // 8 - bits[0] // 8 + 1
         if size > MOST_SPAN:
@@ -153,52 +158,54 @@ def _places(link: Link) -> Iterator[Fault]:
 
 
 def _values(link: Link) -> Iterator[Fault]:
+    """Yield the faults of constant values that do not have the width of their field."""
     for _, row in link.rows:
-        value = row.get("value")
-        for one in value.values() if isinstance(value, Map) else [value]:
-            if isinstance(one, Seq | list) and len(one) * 8 != row["bits"]:
-                message = f"{count(len(one), 'byte')} are given for {count(row['bits'], 'bit')}"
-                yield Fault.at(row, "value", message, "correct `bits` or `value`")
-            elif isinstance(one, int) and one >> row["bits"] > 0:
-                message = f"{one} does not fit {count(row['bits'], 'bit')}"
-                yield Fault.at(row, "value", message, "correct `bits` or `value`")
+        values = row.get("value")
+        for value in values.values() if isinstance(values, Map) else [values]:
+            if isinstance(value, Seq | list) and len(value) * 8 != row["bits"]:
+                text = f"{count(len(value), 'byte')} are given for {count(row['bits'], 'bit')}"
+                yield Fault.at(row, "value", text, "correct `bits` or `value`")
+            elif isinstance(value, int) and value >> row["bits"] > 0:
+                text = f"{value} does not fit {count(row['bits'], 'bit')}"
+                yield Fault.at(row, "value", text, "correct `bits` or `value`")
 
 
 def _contents(ctx: Context, link: Link) -> Iterator[Fault]:
+    """Yield the faults of fields that are too narrow for the ids and lengths of the messages."""
     messages = [pair for direction in DIRECTIONS for pair in _ids(ctx, link.node, direction)]
     for row in link.of("id"):
-        id, one = max(messages, key=lambda pair: pair[0], default=(0, None))
-        if one is not None and id >> row["bits"]:
-            message = f"an id of {count(row['bits'], 'bit')} cannot represent 0x{id:X}, that of {quote(one.name)}"
-            yield Fault.at(row, "bits", message, "make the field wider, or correct the id")
-    around = sum(
-        -(-max((row["at"] + row["bits"] for where, row in link.rows if where == part), default=0) // 8)
-        for part in PARTS
-    )
-    empty = next((one for _, one in messages if one.layout.shortest == 0 and around == 0), None)
+        id, message = max(messages, key=lambda pair: pair[0], default=(0, None))
+        if message is not None and id >> row["bits"]:
+            text = f"an id of {count(row['bits'], 'bit')} cannot represent 0x{id:X}, that of {quote(message.name)}"
+            yield Fault.at(row, "bits", text, "make the field wider, or correct the id")
+    overhead = 0  # bytes of header and trailer
+    for part in PARTS:
+        ends = (row["at"] + row["bits"] for part_of_row, row in link.rows if part_of_row == part)
+        overhead += -(-max(ends, default=0) // 8)
+    empty = next((message for _, message in messages if message.layout.shortest == 0 and overhead == 0), None)
     if empty is not None:
-        message = f"no byte is sent for {quote(empty.name)}, which can have no data"
-        yield Fault.at(link.section, "delimited_by", message, "add a field to `header`, such as an id")
+        text = f"no byte is sent for {quote(empty.name)}, which can have no data"
+        yield Fault.at(link.section, "delimited_by", text, "add a field to `header`, such as an id")
     for row in link.of("length"):
-        plus = row.get("plus", 0) + (around if row.get("counts") == "message" else 0)
-        for _, one in messages:
-            least, most = one.layout.shortest + plus, one.length + plus
-            if most >= 1 << row["bits"]:
-                message = f"a length of {count(row['bits'], 'bit')} does not hold {most}, that of {quote(one.name)}"
-                yield Fault.at(row, "bits", message, "make the field wider, or the message shorter")
+        plus = row.get("plus", 0) + (overhead if row.get("counts") == "message" else 0)
+        for _, message in messages:
+            shortest, longest = message.layout.shortest + plus, message.length + plus
+            if longest >= 1 << row["bits"]:
+                text = f"a length of {count(row['bits'], 'bit')} does not hold {longest}, that of {quote(message.name)}"
+                yield Fault.at(row, "bits", text, "make the field wider, or the message shorter")
                 break
-            if least < 0:
-                message = f"the length of {quote(one.name)} would be {least}"
-                yield Fault.at(row, "plus", message, "correct `plus`, or let the message have more bytes")
+            if shortest < 0:
+                text = f"the length of {quote(message.name)} would be {shortest}"
+                yield Fault.at(row, "plus", text, "correct `plus`, or let the message have more bytes")
                 break
     for row in link.of("sequence"):
         if row["bits"] > MOST_SEQUENCE_BITS:
-            message = f"a sequence number has at most {MOST_SEQUENCE_BITS} bits"
-            yield Fault.at(row, "bits", message, "make it narrower, and the rest a `constant`")
+            text = f"a sequence number has at most {MOST_SEQUENCE_BITS} bits"
+            yield Fault.at(row, "bits", text, "make it narrower, and the rest a `constant`")
 
 
 @rule("ICD173")
-def checksums_of_links(ctx: Context) -> Iterator[Fault]:
+def checksums_can_be_computed(ctx: Context) -> Iterator[Fault]:
     for link in links(ctx):
         checksums = section_of(link.node, "checksums") or unread()
         used: set[str] = set()
@@ -207,13 +214,13 @@ def checksums_of_links(ctx: Context) -> Iterator[Fault]:
                 continue
             name = row.get("checksum", "")
             used.add(name)
-            known = checksums.get(name)
-            if known is None:
+            declared = checksums.get(name)
+            if declared is None:
                 message = f"no checksum is called {quote(name)}" if name else "the field names no checksum"
                 names = listing(f"`{key}`" for key in checksums) if checksums else "there are none"
                 yield Fault.at(row, "role", message, f"name one of `checksums` in `checksum:`: {names}")
-            elif _is_known(known):
-                yield from _checksum(ctx, link, part, row, known)
+            elif _is_valid(declared):
+                yield from _checksum(ctx, link, part, row, declared)
         for name in checksums:
             if name not in used:
                 message = f"no field of the frame has the checksum {quote(name)}"
@@ -221,61 +228,62 @@ def checksums_of_links(ctx: Context) -> Iterator[Fault]:
                 yield Fault(section_of(link.node), checksums.key_at(name), message, help)
 
 
-def _is_known(known: object) -> bool:
-    """Whether the schema has nothing to say of it."""
-    if not isinstance(known, Map) or type(known.get("width")) is not int or not 0 < known["width"] <= 32:
+def _is_valid(checksum: object) -> bool:
+    """Return whether the values of a checksum that these rules use conform to the schema."""
+    if not isinstance(checksum, Map) or type(checksum.get("width")) is not int or not 0 < checksum["width"] <= 32:
         return False
-    covers = known.get("covers")
+    covers = checksum.get("covers")
     bounds = [covers.get(key) for key in ("from", "to")] if isinstance(covers, Map) else [None]
-    return isinstance(known.get("kind"), str) and all(isinstance(one, str) for one in bounds)
+    return isinstance(checksum.get("kind"), str) and all(isinstance(bound, str) for bound in bounds)
 
 
-def _checksum(ctx: Context, link: Link, part: str, row: Map, known: Map) -> Iterator[Fault]:
-    width: int = known["width"]
-    demanded = BITS_OF.get(known["kind"])
-    if demanded and width != demanded:
-        message = f"a checksum of kind `{known['kind']}` has {demanded} bits, not {width}"
-        yield Fault.at(known, "width", message, f"write `width: {demanded}`, or correct `kind`", str(demanded))
-        width = demanded  # the values below are checked against the right width
+def _checksum(ctx: Context, link: Link, part: str, row: Map, checksum: Map) -> Iterator[Fault]:
+    """Yield the faults of a checksum and of the field that it is sent in."""
+    width: int = checksum["width"]
+    required = BITS_OF.get(checksum["kind"])
+    if required and width != required:
+        message = f"a checksum of kind `{checksum['kind']}` has {required} bits, not {width}"
+        yield Fault.at(checksum, "width", message, f"write `width: {required}`, or correct `kind`", str(required))
+        width = required  # the values below are checked against the right width
     elif width != row["bits"]:
         message = f"the checksum has {width} bits, its field {row['bits']}"
         yield Fault.at(
             row,
             "bits",
             message,
-            f"correct `bits` of the field, or `width` ({line_of(known.at('width'), row.at('bits'))})",
+            f"correct `bits` of the field, or `width` ({line_of(checksum.at('width'), row.at('bits'))})",
         )
     for key in ("polynomial", "init", "xor_out", "empty", "check"):
-        if isinstance(known.get(key), int) and known[key] >> width > 0:
+        if isinstance(checksum.get(key), int) and checksum[key] >> width > 0:
             yield Fault.at(
-                known, key, f"`{key}` does not fit {count(width, 'bit')}", *of_wide_value(key, known[key], width)
+                checksum, key, f"`{key}` does not fit {count(width, 'bit')}", *of_wide_value(key, checksum[key], width)
             )
-    if known["kind"] != "crc":
+    if checksum["kind"] != "crc":
         for key in ("polynomial", "reflect_in", "reflect_out", "empty"):
-            if key in known:
-                message = f"`{key}` applies to a CRC, not to a checksum of kind `{known['kind']}`"
-                yield Fault.at_key(known, key, message, "remove it, or correct `kind`")
-    yield from _covered(link, part, row, known)
-    yield from _seeds(ctx, link, known)
+            if key in checksum:
+                message = f"`{key}` applies to a CRC, not to a checksum of kind `{checksum['kind']}`"
+                yield Fault.at_key(checksum, key, message, "remove it, or correct `kind`")
+    yield from _covered(link, part, row, checksum)
+    yield from _seeds(ctx, link, checksum)
 
 
-def _covered(link: Link, part: str, row: Map, known: Map) -> Iterator[Fault]:
-    """The fields that it covers: in one piece, from the header through the data, and without itself."""
-    covers = known["covers"]
+def _covered(link: Link, part: str, row: Map, checksum: Map) -> Iterator[Fault]:
+    """Yield the faults of `covers`, which must include the data but not the checksum itself."""
+    covers = checksum["covers"]
     bounds: dict[str, Map | None] = {}
     for key, where in (("from", "header"), ("to", "trailer")):
         role = covers[key]
-        found = [one for one in link.rows if one[1]["role"] == role]
-        if role != DATA and not found:
+        matches = [(part_of_row, field) for part_of_row, field in link.rows if field["role"] == role]
+        if role != DATA and not matches:
             message = f"no field has the role `{role}`"
             yield Fault.at(covers, key, message, "name the role of a field of the frame, or `data`")
             return
-        if role != DATA and found[0][0] != where:
-            message = f"a checksum covers the data, but `{key}: {role}` names a field of the {found[0][0]}"
+        if role != DATA and matches[0][0] != where:
+            message = f"a checksum covers the data, but `{key}: {role}` names a field of the {matches[0][0]}"
             help = "`from` names a field of the header or `data`, `to` one of the trailer or `data`"
             yield Fault.at(covers, key, message, help)
             return
-        bounds[key] = None if role == DATA else found[0 if key == "from" else -1][1]
+        bounds[key] = None if role == DATA else matches[0 if key == "from" else -1][1]
     first, last = bounds["from"], bounds["to"]
     begin = first["at"] if first else None
     end = last["at"] + last["bits"] if last else 0
@@ -288,53 +296,62 @@ def _covered(link: Link, part: str, row: Map, known: Map) -> Iterator[Fault]:
         yield Fault.at(covers, "from" if inside else "to", message, help)
 
 
-def _seeds(ctx: Context, link: Link, known: Map) -> Iterator[Fault]:
-    seeds = known.get("seeds")
+def _seeds(ctx: Context, link: Link, checksum: Map) -> Iterator[Fault]:
+    """Yield the faults of `seeds`, the start value of a checksum for each message."""
+    seeds = checksum.get("seeds")
     if not isinstance(seeds, Map):
         return
-    names, broken = {one.name: one for one in ctx.messages_of(link.node)}, ctx.broken_messages(link.node)
+    names, broken = [message.name for message in ctx.messages_of(link.node)], ctx.broken_messages(link.node)
     for name in seeds:
         if name not in names and name not in broken:
             help = suggestion(name, names, "correct the name")
             yield Fault.at_key(seeds, name, f"there is no message {quote(name)}", *help)
-    lacking = [name for name in names if name not in seeds]
-    if lacking:
-        message = f"{quote(lacking[0])} has no seed" + (f", nor have {len(lacking) - 1} others" if lacking[1:] else "")
-        yield Fault.at_key(known, "seeds", message, "give every message a seed, or remove `seeds`")
+    without_seed = [name for name in names if name not in seeds]
+    if without_seed:
+        message = f"{quote(without_seed[0])} has no seed" + (
+            f", nor have {len(without_seed) - 1} others" if without_seed[1:] else ""
+        )
+        yield Fault.at_key(checksum, "seeds", message, "give every message a seed, or remove `seeds`")
 
 
 @rule("ICD174")
-def alike_under_an_id(ctx: Context) -> Iterator[Fault]:
-    """Messages that share an id are told apart by their data, which the envelope is around."""
+def messages_of_one_id_have_one_seed(ctx: Context) -> Iterator[Fault]:
+    """Report messages that share an id and differ in seed or `may_end_early`.
+
+    A receiver can distinguish them only by their data, after it has checked and removed the framing.
+    """
     for link in links(ctx):
         checksums = section_of(link.node, "checksums") or unread()
-        seeds = [found for one in checksums.values() if isinstance(found := at_path(one, ["seeds"]), Map)]
+        all_seeds = [at_path(checksum, ["seeds"]) for checksum in checksums.values()]
         for direction in DIRECTIONS:
-            first: dict[int, Message] = {}
-            for id, one in _ids(ctx, link.node, direction):
-                other = first.setdefault(id, one)
-                if bool(one.may_end_early) != bool(other.may_end_early):
-                    whose = one if one.may_end_early else other
-                    message = (
-                        f"zeros of {quote(whose.name)} may be omitted, but not the zeros of another message with its id"
+            first_of_id: dict[int, Message] = {}
+            for id, message in _ids(ctx, link.node, direction):
+                first = first_of_id.setdefault(id, message)
+                if bool(message.may_end_early) != bool(first.may_end_early):
+                    early = message if message.may_end_early else first
+                    text = (
+                        f"zeros of {quote(early.name)} may be omitted, but not the zeros of another message with its id"
                     )
-                    yield Fault.at(whose.source, "may_end_early", message, "add `may_end_early` to both, or to neither")
-                for known in seeds:
-                    if one.name in known and other.name in known and known[one.name] != known[other.name]:
-                        message = f"{quote(one.name)} has a seed different from that of {quote(other.name)}, which has the same id"
-                        yield Fault.at(known, one.name, message, "give both the same seed, or other ids")
+                    yield Fault.at(early.source, "may_end_early", text, "add `may_end_early` to both, or to neither")
+                for seeds in all_seeds:
+                    if not isinstance(seeds, Map) or not {message.name, first.name} <= seeds.keys():
+                        continue
+                    if seeds[message.name] != seeds[first.name]:
+                        names = f"{quote(message.name)} has a seed different from that of {quote(first.name)}"
+                        text = f"{names}, which has the same id"
+                        yield Fault.at(seeds, message.name, text, "give both the same seed, or other ids")
 
 
 @rule("ICD176")
-def replies_that_can_come(ctx: Context) -> Iterator[Fault]:
+def replies_exist(ctx: Context) -> Iterator[Fault]:
     for link in links(ctx):
         replies = link.section.get("replies")
         if not isinstance(replies, Map):
             continue
         broken = ctx.broken_messages(link.node)
-        for sent, came in replies.items():
-            for direction, name, fault in ((TELECOMMAND, sent, Fault.at_key), (TELEMETRY, came, Fault.at)):
-                names = {one.name for _, one in _ids(ctx, link.node, direction)}
+        for request, response in replies.items():
+            for direction, name, fault in ((TELECOMMAND, request, Fault.at_key), (TELEMETRY, response, Fault.at)):
+                names = {message.name for _, message in _ids(ctx, link.node, direction)}
                 if isinstance(name, str) and name not in names and name not in broken:
                     help = suggestion(name, names, "correct the name")
-                    yield fault(replies, sent, f"there is no {direction} {quote(name)}", *help)
+                    yield fault(replies, request, f"there is no {direction} {quote(name)}", *help)

@@ -1,4 +1,4 @@
-"""Errata overlays: what their `accept` keys say."""
+"""Errata overlays: the codes in their `accept` keys."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from icdgen.icd.rules.wording import count, line_of
 from icdgen.icd.suggestions import suggestion
 
 
-@rule("ICD084", whole=True, last=True)
-def accept_answers(ctx: Context) -> Iterator[Fault]:
+@rule("ICD084", needs_complete=True, runs_last=True)
+def accepted_findings_exist(ctx: Context) -> Iterator[Fault]:
     raised = {(code, id(fault.owner)) for code, fault in ctx.raised}
-    idle: dict[tuple[str, Place], list[Place]] = {}
+    unmatched: dict[tuple[str, Place], list[Place]] = {}
     for applied in ctx.applied:
         for code, place, owner in applied.accepts:
             if code in REGISTERED and (code, id(owner)) not in raised:
-                idle.setdefault((code, place), []).append(owner.place)
-    for (code, place), targets in idle.items():
+                unmatched.setdefault((code, place), []).append(owner.place)
+    for (code, place), targets in unmatched.items():
         more = f" and {count(len(targets) - 1, 'other place')}" if len(targets) > 1 else ""
         message = f"there is no finding {code} to accept in {line_of(targets[0], place)}{more}"
         yield Fault(None, place, message, f"remove {code} here: the finding no longer exists")
 
 
 @rule("ICD085")
-def accept_known(ctx: Context) -> Iterator[Fault]:
+def accepted_rules_exist(ctx: Context) -> Iterator[Fault]:
     for applied in ctx.applied:
         for code, place, _ in applied.accepts:
             if code not in REGISTERED:

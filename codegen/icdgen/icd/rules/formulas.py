@@ -1,4 +1,4 @@
-"""Formulas, and the units that their results have."""
+"""Formulas, lookup tables and units."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _ONLY_RAW = "nothing to do if setting the raw value is enough; else correct the 
 
 
 @rule("ICD060")
-def formula_reads(ctx: Context) -> Iterator[Fault]:
+def formulas_are_valid(ctx: Context) -> Iterator[Fault]:
     for field, _ in ctx.fields_with["formula"]:
         if not field.has_formula and field.type in SCALED and "points" not in field.source:
             text = field.source["formula"]
@@ -37,7 +37,7 @@ def formula_reads(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD061")
-def formula_has_number(ctx: Context) -> Iterator[Fault]:
+def only_numbers_have_formulas(ctx: Context) -> Iterator[Fault]:
     for key, what in (("formula", "formula"), ("points", "table of points")):
         for field, _ in ctx.fields_with[key]:
             if field.type not in SCALED:
@@ -46,7 +46,7 @@ def formula_has_number(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD067")
-def points_read(ctx: Context) -> Iterator[Fault]:
+def points_form_a_table(ctx: Context) -> Iterator[Fault]:
     for field, _ in ctx.fields_with["points"]:
         source = field.source
         if "formula" in source:
@@ -61,14 +61,14 @@ def points_read(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD068")
-def outside_is_said(ctx: Context) -> Iterator[Fault]:
+def tables_declare_outside(ctx: Context) -> Iterator[Fault]:
     for field, _ in ctx.fields_with["points"]:
-        line, source = field.curve, field.source
-        if line is None or not line.points or "outside" in source:
+        table, source = field.curve, field.source
+        if table is None or not table.points or "outside" in source:
             continue
-        if field.type == "float" or not line.holds(field.raw_min, field.raw_max):
+        if field.type == "float" or not table.holds(field.raw_min, field.raw_max):
             ends = "any number" if field.type == "float" else f"{field.raw_min:,} to {field.raw_max:,}"
-            extent = " to ".join(f"{raw:g}" for raw in (line.points[0][0], line.points[-1][0]))
+            extent = " to ".join(f"{raw:g}" for raw in (table.points[0][0], table.points[-1][0]))
             message = (
                 f"raw values of {quote(field.name)} are {ends}, its points go from {extent}, and `outside` is missing"
             )
@@ -80,14 +80,14 @@ def outside_is_said(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD069", severity="warning")
-def points_are_in_reach(ctx: Context) -> Iterator[Fault]:
+def raw_values_reach_the_table(ctx: Context) -> Iterator[Fault]:
     for field, _ in ctx.fields_with["points"]:
-        line, source = field.curve, field.source
-        if line is None or line.outside not in (curve.CLAMP, curve.REFUSE) or field.type == "float":
+        table, source = field.curve, field.source
+        if table is None or table.outside not in (curve.CLAMP, curve.REFUSE) or field.type == "float":
             continue
-        first, last = line.points[0][0], line.points[-1][0]
+        first, last = table.points[0][0], table.points[-1][0]
         if last < field.raw_min or field.raw_max < first:
-            what = "the same physical value" if line.outside == curve.CLAMP else "no physical value"
+            what = "the same physical value" if table.outside == curve.CLAMP else "no physical value"
             values = f"its raw values from {field.raw_min:,} to {field.raw_max:,}"
             message = (
                 f"the points of {quote(field.name)} go from {first:g} to {last:g}, {values}: each of them has {what}"
@@ -96,7 +96,7 @@ def points_are_in_reach(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD062")
-def formula_direction(ctx: Context) -> Iterator[Fault]:
+def formulas_have_the_stated_direction(ctx: Context) -> Iterator[Fault]:
     for field, _ in ctx.fields_with["formula_for"]:
         source, stated = field.source, field.source["formula_for"]
         if "formula" not in source or "points" in source:
@@ -119,9 +119,9 @@ def formula_direction(ctx: Context) -> Iterator[Fault]:
 
 
 def _stated(stated: Map, node: Node) -> Iterator[Fault]:
-    """Yield the faults of what the ICD states once for all messages of a kind."""
+    """Yield the faults of `formula_for` of the ICD, which applies to all messages of a kind."""
     for kind, stated_for in stated.items():
-        against = [
+        contrary = [
             field
             for message in node.messages
             if message.kind == kind
@@ -130,10 +130,9 @@ def _stated(stated: Map, node: Node) -> Iterator[Fault]:
             and "formula_for" not in field.scalar.source
             and _gives(field.scalar) != stated_for
         ]
-        if against:
-            other = (
-                f"that of {quote(against[0].name)} gives the other one, as in {count(len(against), 'field')} altogether"
-            )
+        if contrary:
+            fields = count(len(contrary), "field")
+            other = f"that of {quote(contrary[0].name)} gives the other one, as in {fields} altogether"
             message = f"the formulas of {kind} messages should give the {stated_for} value according to the manual, but {other}"
             help = f"decide in an erratum: `held` has `{kind}: null` if the formulas are right"
         else:
@@ -145,11 +144,12 @@ def _stated(stated: Map, node: Node) -> Iterator[Fault]:
 
 
 def _gives(field: Scalar) -> str:
+    """Return which value the formula of a field computes: ``raw`` or ``physical``."""
     return "raw" if formula.is_inverse(field.source["formula"]) else "physical"
 
 
 @rule("ICD063")
-def unit_has_number(ctx: Context) -> Iterator[Fault]:
+def only_numbers_have_units(ctx: Context) -> Iterator[Fault]:
     for field, _ in ctx.fields_with["unit"]:
         if field.type in ("bool", "enum") or field.is_bytes:
             message = f"{quote(field.name)} is `{field.type}`, which has no unit"
@@ -157,12 +157,11 @@ def unit_has_number(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD064")
-def formula_computable(ctx: Context) -> Iterator[Fault]:
+def formulas_are_computable(ctx: Context) -> Iterator[Fault]:
     checked: dict[str, bool] = {}
     for field, _ in (*ctx.fields_with["formula"], *ctx.fields_with["points"]):
-        scale = field.scale
-        line = field.curve
-        if line is not None and field.type != "float" and not curve.is_finite(line, field.raw_min, field.raw_max):
+        scale, own = field.scale, field.curve
+        if own is not None and field.type != "float" and not curve.is_finite(own, field.raw_min, field.raw_max):
             key, what = _calibration(field)
             message = f"the {what} of {quote(field.name)} exceeds the range of a double"
             yield Fault.at(field.source, key, message, "correct an exponent, or `bits`")
@@ -171,14 +170,14 @@ def formula_computable(ctx: Context) -> Iterator[Fault]:
         if field.formula not in checked:
             checked[field.formula] = exact.is_too_large(scale)
         if checked[field.formula]:
-            p, c, q = (_shown(n) for n in exact.terms(scale))
+            p, c, q = map(_shown, exact.terms(scale))
             message = f"the formula of {quote(field.name)} needs numbers that are too large: (raw*{p} + {c}) / {q}"
             help = "factor and divisor go up to 2^180, the offset up to 2^240, over their common denominator"
             yield Fault.at(field.source, "formula", message, help)
 
 
 @rule("ICD066", severity="warning")
-def formula_leads_back(ctx: Context) -> Iterator[Fault]:
+def sent_formulas_are_invertible(ctx: Context) -> Iterator[Fault]:
     fields = [
         (field, line)
         for field, line in (*ctx.fields_with["formula"], *ctx.fields_with["points"])
@@ -204,7 +203,7 @@ def formula_leads_back(ctx: Context) -> Iterator[Fault]:
 
 
 def _senders(ctx: Context) -> dict[int, Message]:
-    """Return the first message that is sent with a layout in it, by the identity of the layout."""
+    """Return the first sent message that contains each layout, by the id() of the layout."""
     senders: dict[int, Message] = {}
     for message, node in ctx.messages:
         if message.telecommand_id is not None:
@@ -217,11 +216,12 @@ def _senders(ctx: Context) -> dict[int, Message]:
 
 
 def _calibration(field: Scalar) -> tuple[str, str]:
-    """The key that says how its physical value is computed, and what it is called."""
+    """Return the key for the calibration of a field, and a word for messages."""
     return ("points", "table") if field.curve is not None and field.curve.points else ("formula", "formula")
 
 
 def _shown(number: int) -> str:
+    """Return a number in words that do not grow with its size."""
     if abs(number) < 1 << 64:
         return f"{number:,}"
     return f"{number:.2e}" if abs(number) < 1 << 1000 else f"(a number of {number.bit_length():,} bits)"

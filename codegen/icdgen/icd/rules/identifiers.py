@@ -1,4 +1,4 @@
-"""Names after mapping: what generated code would declare, in every language at once."""
+"""Identifiers of generated code: reserved words, clashes and invalid names, in all languages at once."""
 
 from __future__ import annotations
 
@@ -10,22 +10,24 @@ from icdgen.icd.fault import Fault
 from icdgen.icd.identifiers import Identifier
 from icdgen.icd.located import Map
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.declarations import TWINS, declared
+from icdgen.icd.rules.declarations import DUPLICATE_NAMES, declared
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, listing, quote
 
 
 def _place(ctx: Context, identifier: Identifier) -> Place:
-    """The name that the identifier was made from."""
+    """Return the place of the name that an identifier is made from."""
     source = identifier.source
     if source is None:
         return ctx.icd.nodes[0].source.place
+    # The source of a node is its complete file.
     if isinstance(source.get("node"), Map):
-        source = source["node"]  # a node is known by its whole file
+        source = source["node"]
     return source.at(next((key for key in ("identifier", "name", "symbol") if key in source), ""))
 
 
 def _help(identifier: Identifier) -> str:
+    """Return the help for a name that gives no usable identifier."""
     if identifier.source is not None and "node" in identifier.source:
         return "give the node another name"
     another = "another" if identifier.source and "identifier" in identifier.source else "an"
@@ -33,79 +35,87 @@ def _help(identifier: Identifier) -> str:
 
 
 class _Clashes:
-    """Joins what several languages say of the same things into one finding."""
+    """Faults of identifiers, joined so that each line of the ICD has one finding for all languages."""
 
     def __init__(self) -> None:
-        self.found: dict[tuple[int, ...], tuple[Identifier, Identifier | None, dict[str, list[str]]]] = {}
+        # Each value has an identifier, the other identifier of a clash, and the languages by the text of the identifier.
+        self.entries: dict[tuple[int, ...], tuple[Identifier, Identifier | None, dict[str, list[str]]]] = {}
 
-    def add(self, language: str, one: Identifier, other: Identifier | None = None) -> None:
-        """``other`` is what ``one`` clashes with. The first of several names that a language makes of it is kept."""
-        key = tuple(sorted((id(i.source) if i.source is not None else hash(i.owner)) for i in (one, other) if i))
-        texts = self.found.setdefault(key, (one, other, {}))[2]
+    def add(self, language: str, identifier: Identifier, other: Identifier | None = None) -> None:
+        """Add a fault in a language; ``other`` is the identifier of a clash. Only the first text per language is stored."""
+        identifiers = (identifier, other) if other else (identifier,)
+        key = tuple(sorted(id(each.source) if each.source is not None else hash(each.owner) for each in identifiers))
+        texts = self.entries.setdefault(key, (identifier, other, {}))[2]
         if not any(language in languages for languages in texts.values()):
-            texts.setdefault(one.text, []).append(language)
+            texts.setdefault(identifier.text, []).append(language)
 
     def __iter__(self) -> Iterator[tuple[Identifier, Identifier | None, dict[str, list[str]]]]:
-        yield from self.found.values()
+        yield from self.entries.values()
 
 
 @rule("ICD070")
-def not_reserved(ctx: Context) -> Iterator[Fault]:
-    found = _Clashes()
+def names_are_not_reserved(ctx: Context) -> Iterator[Fault]:
+    clashes = _Clashes()
     for names in declared(ctx):
-        for one in names.spelled(names.reserved.intersection(names.texts)):
-            found.add(names.language, one)
-    for one, _, texts in found:
+        for identifier in names.spelled(names.reserved.intersection(names.texts)):
+            clashes.add(names.language, identifier)
+    for identifier, _, texts in clashes:
         words = " and ".join(
-            f"{quote(text)}, a {'header' if _is_file(text) else 'reserved word'} in {listing(langs)}"
-            for text, langs in texts.items()
+            f"{quote(text)}, a {'header' if _is_file(text) else 'reserved word'} in {listing(languages)}"
+            for text, languages in texts.items()
         )
-        yield Fault(one.source, _place(ctx, one), f"{one.owner} becomes {words}", _help(one))
+        message = f"{identifier.owner} becomes {words}"
+        yield Fault(identifier.source, _place(ctx, identifier), message, _help(identifier))
 
 
 @rule("ICD071")
-def no_clash(ctx: Context) -> Iterator[Fault]:
-    reported = {id(fault.owner) for code, fault in ctx.raised if code in TWINS}
-    found = _Clashes()
+def identifiers_do_not_clash(ctx: Context) -> Iterator[Fault]:
+    reported = {id(fault.owner) for code, fault in ctx.raised if code in DUPLICATE_NAMES}
+    clashes = _Clashes()
     for names in declared(ctx):
         seen: dict[tuple[str, str], Identifier] = {}
-        for one in names.spelled({text for text, times in names.texts.items() if times > 1}):
-            first = seen.setdefault((one.scope, one.text), one)
-            if first is one or (first.source is None and one.source is None):
+        for identifier in names.spelled({text for text, times in names.texts.items() if times > 1}):
+            first = seen.setdefault((identifier.scope, identifier.text), identifier)
+            if first is identifier or (first.source is None and identifier.source is None):
                 continue
-            if not (reported and reported & {id(first.source), id(one.source)}):
-                found.add(names.language, one, first)
-    for one, other, texts in found:
+            if not (reported and reported & {id(first.source), id(identifier.source)}):
+                clashes.add(names.language, identifier, first)
+    for identifier, other, texts in clashes:
         if other is None:
             continue
-        if other.source is not None and (one.source is None or _place(ctx, other) > _place(ctx, one)):
-            one, other = other, one
-        place = _place(ctx, one)
-        there = f" ({line_of(_place(ctx, other), place)})" if other.source is not None else ""
-        words = listing(f"{quote(text)} in {listing(langs)}" for text, langs in texts.items())
-        message = f"{one.owner} and {other.owner}{there} both become {words}"
-        yield Fault(one.source, place, message, "give one of them an `identifier:`, words to build the name from")
+        # Report the clash at the later line; generated names without a line have no place.
+        is_earlier = other.source is not None and (
+            identifier.source is None or _place(ctx, other) > _place(ctx, identifier)
+        )
+        later, earlier = (other, identifier) if is_earlier else (identifier, other)
+        place = _place(ctx, later)
+        line = f" ({line_of(_place(ctx, earlier), place)})" if earlier.source is not None else ""
+        words = listing(f"{quote(text)} in {listing(languages)}" for text, languages in texts.items())
+        message = f"{later.owner} and {earlier.owner}{line} both become {words}"
+        yield Fault(later.source, place, message, "give one of them an `identifier:`, words to build the name from")
 
 
 def _is_name(text: str) -> bool:
-    text = text.removeprefix("r#")  # which makes a name of a keyword of Rust
+    """Return whether a text is an ASCII identifier or the name of a file."""
+    text = text.removeprefix("r#")  # a raw identifier of Rust, such as `r#type`
     return (text.isidentifier() and text.isascii()) or _is_file(text)
 
 
 def _is_file(text: str) -> bool:
-    """Backends also declare the files that they write, so that two of one name are found."""
+    """Return whether a name is a file: backends also declare the files that they write, so that clashes are reported."""
     return "." in text or "/" in text
 
 
 @rule("ICD072")
-def is_identifier(ctx: Context) -> Iterator[Fault]:
-    found = _Clashes()
+def names_give_identifiers(ctx: Context) -> Iterator[Fault]:
+    clashes = _Clashes()
     for names in declared(ctx):
-        odd = chain(filterfalse(str.isidentifier, names.texts), filterfalse(str.isascii, names.texts))
-        for one in names.spelled(set(filterfalse(_is_name, odd))):
-            found.add(names.language, one)
-    for one, _, texts in found:
-        each = ((quote(text) if text else "nothing", listing(langs)) for text, langs in texts.items())
-        becomes = listing(f"{what} in {languages}" for what, languages in each)
-        message = f"{one.owner} becomes {becomes}, which is not a valid name"
-        yield Fault(one.source, _place(ctx, one), message, _help(one))
+        # Two passes of C functions over hundreds of thousands of texts; the few that remain are checked in Python.
+        suspects = chain(filterfalse(str.isidentifier, names.texts), filterfalse(str.isascii, names.texts))
+        for identifier in names.spelled(set(filterfalse(_is_name, suspects))):
+            clashes.add(names.language, identifier)
+    for identifier, _, texts in clashes:
+        quoted = ((quote(text) if text else "nothing", listing(languages)) for text, languages in texts.items())
+        becomes = listing(f"{text} in {languages}" for text, languages in quoted)
+        message = f"{identifier.owner} becomes {becomes}, which is not a valid name"
+        yield Fault(identifier.source, _place(ctx, identifier), message, _help(identifier))

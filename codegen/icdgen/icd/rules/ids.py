@@ -1,4 +1,4 @@
-"""The ids of messages on the wire."""
+"""Message ids: ranges, widths, and messages that share an id."""
 
 from __future__ import annotations
 
@@ -17,52 +17,53 @@ from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, line_of, listing, quote
 from icdgen.icd.trees import mappings
 
-LINKED_BITS = 8  # of an id in every frame that a protocol section can describe, but for those of `stream`
+LINKED_BITS = 8  # width of ids on the links of a protocol section, other than `stream`
 
 
 class Use(NamedTuple):
-    """One id in one direction."""
+    """Use of an id in one direction, by a message or an entry of `missing`."""
 
     node: Node
     direction: str
     id: int
     source: Map
     key: str
-    message: Message | None = None  # None: it is said to be missing
+    message: Message | None = None  # None for an entry of `missing`
 
 
-def _used(node: Node) -> Iterator[Use]:
-    """The ids of its messages."""
+def _message_ids(node: Node) -> Iterator[Use]:
+    """Yield the ids of the messages of a node."""
     for message in node.messages:
         for key, direction in KEYS_OF_IDS[message.kind]:
             yield Use(node, direction, wire_ids.number(message.source[key]), message.source, key, message)
 
 
 def _uses(node: Node) -> Iterator[Use]:
-    """Those, and the ids of messages that are said to be missing."""
-    yield from _used(node)
+    """Yield the ids of the messages of a node, and of its entries of `missing`."""
+    yield from _message_ids(node)
     for item in mappings(node.source.get("missing")):
         if item.get("kind") in (TELECOMMAND, TELEMETRY) and _is_id(item.get("id")):
             yield Use(node, item["kind"], wire_ids.number(item["id"]), item, "id")
 
 
 def _is_id(value: object) -> bool:
-    """Whether it is a number or bytes: the entry may be broken."""
+    """Return whether a value is a valid id; an entry of `missing` may violate the schema."""
     if isinstance(value, list):
         most = wire_ids.size(wire_ids.MOST_BITS)
-        return 0 < len(value) <= most and all(isinstance(one, int) and 0 <= one <= 255 for one in value)
+        return 0 < len(value) <= most and all(isinstance(byte, int) and 0 <= byte <= 255 for byte in value)
     return isinstance(value, int) and 0 <= value < 1 << wire_ids.MOST_BITS
 
 
 @rule("ICD055")
-def ids_told_apart(ctx: Context) -> Iterator[Fault]:
+def messages_of_one_id_are_distinguishable(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
-        is_linked = ctx.is_linked(node)  # an envelope tells an id and the data
+        # On a link other than `stream`, only the id identifies a message.
+        is_linked = ctx.is_linked(node)
         seen: dict[tuple[str, int], list[Use]] = {}
         for use in (u for n in ctx.scope(node) for u in _uses(n)):
             before = seen.setdefault((use.direction, use.id), [])
             for first in before:
-                if not is_linked and _are_told_apart(first, use):
+                if not is_linked and _are_distinguishable(first, use):
                     continue
                 if is_news(ctx, node, first.node, use.node) or (is_linked and not ctx.is_linked(use.node)):
                     yield _same_id(ctx, node, first, use, is_linked)
@@ -71,41 +72,38 @@ def ids_told_apart(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD181")
-def ids_shared_on_purpose(ctx: Context) -> Iterator[Fault]:
-    """Report messages that share an id, and can be told apart, if they do not both have the key `shares_id`.
+def shared_ids_are_confirmed(ctx: Context) -> Iterator[Fault]:
+    """Report distinguishable messages with the same id that do not both have the key `shares_id`.
 
-    Copying a message and forgetting to change its id also gives two messages that differ in length or in a constant, so
-    the difference alone is no evidence of an intention.
+    Copying a message and forgetting to change its id also gives two messages that differ in length or in a constant.
+    Therefore a difference does not show that the id is shared on purpose.
     """
     for node in filter(lambda node: not ctx.is_linked(node), ctx.icd.nodes):
         seen: dict[tuple[str, int], Use] = {}
         for use in (u for n in ctx.scope(node) for u in _uses(n) if u.message is not None):
             first = seen.setdefault((use.direction, use.id), use)
-            if first is use or not is_news(ctx, node, first.node, use.node) or not _are_told_apart(first, use):
+            if first is use or not is_news(ctx, node, first.node, use.node) or not _are_distinguishable(first, use):
                 continue
-            silent = [one for one in (first, use) if not _confirms(one)]
-            if silent:
-                yield _unconfirmed(ctx, node, first, use, silent)
+            unconfirmed = [each for each in (first, use) if each.source.get("shares_id") is not True]
+            if unconfirmed:
+                yield _unconfirmed(ctx, node, first, use, unconfirmed)
 
 
-def _confirms(use: Use) -> bool:
-    return use.source.get("shares_id") is True
-
-
-def _unconfirmed(ctx: Context, node: Node, first: Use, use: Use, silent: list[Use]) -> Fault:
-    there = line_of(first.source.at(first.key), use.source.at(use.key))
-    names = [quote(one.source.get("name")) for one in (first, use)]
-    message = f"{_id(ctx, use)} already belongs to {names[0]} ({there}){together(node, use.node)}"
-    if len(silent) == 1:
+def _unconfirmed(ctx: Context, node: Node, first: Use, use: Use, unconfirmed: list[Use]) -> Fault:
+    """Return the fault of two uses of an id, of which one or both lack `shares_id`."""
+    line = line_of(first.source.at(first.key), use.source.at(use.key))
+    first_name = quote(first.source.get("name"))
+    message = f"{_id(ctx, use)} already belongs to {first_name} ({line}){together(node, use.node)}"
+    if len(unconfirmed) == 1:
         message += ", and only one of the two has `shares_id`"
-    to = "each of the two" if len(silent) == 2 else quote(silent[0].source.get("name"))
+    to = "each of the two" if len(unconfirmed) == 2 else quote(unconfirmed[0].source.get("name"))
     help = f"correct one `{use.key}`; or, if they share the id on purpose, add `shares_id: true` to {to}"
     return Fault.at(use.source, use.key, message, help, related=_first_use(first))
 
 
-@rule("ICD182", severity="warning", whole=True)
-def ids_that_are_shared(ctx: Context) -> Iterator[Fault]:
-    """Report the key `shares_id` of a message whose id no other message has: it would confirm a copied id later."""
+@rule("ICD182", severity="warning", needs_complete=True)
+def confirmed_ids_are_shared(ctx: Context) -> Iterator[Fault]:
+    """Report `shares_id` of a message whose id no other message has: the key would later confirm an id that was copied."""
     shared: set[int] = set()
     for node in ctx.icd.nodes:
         users: dict[tuple[str, int], list[Use]] = {}
@@ -118,14 +116,15 @@ def ids_that_are_shared(ctx: Context) -> Iterator[Fault]:
             yield Fault.at(message.source, "shares_id", text, "remove the key, or correct the id")
 
 
-def _are_told_apart(one: Use, other: Use) -> bool:
-    """Whether a frame shows which of the two it is. What is said to be missing has nothing to show."""
-    if one.message is None or other.message is None:
+def _are_distinguishable(first: Use, second: Use) -> bool:
+    """Return whether frames of two uses of an id are distinguishable. Entries of `missing` never are."""
+    if first.message is None or second.message is None:
         return False
-    return variants.are_distinguishable((one.message, one.node), (other.message, other.node))
+    return variants.are_distinguishable((first.message, first.node), (second.message, second.node))
 
 
 def _same_id(ctx: Context, node: Node, first: Use, use: Use, is_linked: bool) -> Fault:
+    """Return the fault of two uses of an id that cannot be distinguished."""
     other = f"{quote(first.source.get('name'))} ({line_of(first.source.at(first.key), use.source.at(use.key))})"
     message = f"{_id(ctx, use)} already belongs to {other}{together(node, use.node)}"
     help = f"correct one `{use.key}`"
@@ -133,23 +132,23 @@ def _same_id(ctx: Context, node: Node, first: Use, use: Use, is_linked: bool) ->
         if not is_linked:
             message += ", and the two cannot be distinguished"
             help += ", or give each a field with another `const` at the same place"
-        elif _are_told_apart(first, use):
+        elif _are_distinguishable(first, use):
             message += ", and the links that `protocol` describes distinguish messages only by id"
     return Fault.at(use.source, use.key, message, help, related=_first_use(first))
 
 
 def _id(ctx: Context, use: Use) -> str:
-    """``telemetry id 0x82``: the id as the file writes it."""
+    """Return direction and id in the spelling of the file: ``telemetry id 0x82``."""
     return f"{use.direction} id {ctx.written(use.source, use.key)}"
 
 
 def _first_use(use: Use) -> Related:
-    """The place where an id is used first."""
+    """Return the place of the first use of an id."""
     return Related(use.source.at(use.key), f"the id of {quote(use.source.get('name'))}")
 
 
 @rule("ICD056")
-def ids_in_range(ctx: Context) -> Iterator[Fault]:
+def ids_are_in_range(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         ranges = _ranges(ctx, node)
         for use in (u for n in ctx.scope(node) for u in _uses(n)):
@@ -161,7 +160,7 @@ def ids_in_range(ctx: Context) -> Iterator[Fault]:
 
 
 def _range_text(ctx: Context, node: Node, use: Use, ranges: dict[str, tuple[int, int]]) -> str:
-    """``0x80 to 0xFF``: the range as the protocol section writes it, or that of the width of ids."""
+    """Return the range of the protocol section in its spelling, ``0x80 to 0xFF``, or else the range of `id_bits`."""
     if use.direction not in ranges:
         return f"0 to {(1 << node.id_bits) - 1}"
     section = in_force(ctx, node, "message_id", use.direction)
@@ -170,25 +169,26 @@ def _range_text(ctx: Context, node: Node, use: Use, ranges: dict[str, tuple[int,
 
 
 def _remedy(ctx: Context, node: Node, use: Use, ranges: dict[str, tuple[int, int]]) -> str:
+    """Return the help for an id that is out of range."""
     if not ranges and ctx.is_linked(node):
         return f"correct `{use.key}`: the links that `protocol` describes carry ids of one byte, except a `stream`"
     if not ranges:
         needed = next(bits for bits in (8, 16, 24, 32) if use.id < 1 << bits)
         return f"correct `{use.key}`, or give the width of all ids in `node`: `id_bits: {needed}`"
-    other = next((d for d, (first, last) in ranges.items() if first <= use.id <= last), None)
+    other = next((direction for direction, (first, last) in ranges.items() if first <= use.id <= last), None)
     written = ctx.written(use.source, use.key)
     wrong = f"{written} is a {other} id: correct `{use.key}` or `kind`" if other else f"correct `{use.key}`"
     return f"{wrong}, or the range in `protocol: message_id`"
 
 
 def _has_its_bytes(use: Use) -> bool:
-    """Whether the id is a number, or as many bytes as ids have."""
+    """Return whether an id is a number, or a list of the right number of bytes."""
     written = use.source[use.key]
     return not isinstance(written, list) or len(written) == wire_ids.size(use.node.id_bits)
 
 
 @rule("ICD111")
-def bytes_of_ids(ctx: Context) -> Iterator[Fault]:
+def ids_have_the_declared_bytes(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         size = wire_ids.size(node.id_bits)
         for use in _uses(node):
@@ -201,7 +201,7 @@ def bytes_of_ids(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD112")
-def ids_that_links_carry(ctx: Context) -> Iterator[Fault]:
+def links_can_carry_ids(ctx: Context) -> Iterator[Fault]:
     for node in filter(ctx.is_linked, ctx.icd.nodes):
         if node.id_bits > LINKED_BITS:
             message = f"ids have {node.id_bits} bits, but the links that `protocol` describes carry ids of one byte"
@@ -210,18 +210,19 @@ def ids_that_links_carry(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD114")
-def ids_that_tell_the_direction(ctx: Context) -> Iterator[Fault]:
-    told: set[int] = set()
+def uart_ids_determine_the_direction(ctx: Context) -> Iterator[Fault]:
+    reported: set[int] = set()
     for node in ctx.icd.nodes:
         declared = _ranges(ctx, node)
-        if ctx.fact(node, "uart", "framing") is None or len(declared) == 2:  # ICD056 and ICD103 see to ranges
+        # ICD056 and ICD103 check declared ranges.
+        if ctx.fact(node, "uart", "framing") is None or len(declared) == 2:
             continue
-        uses = [use for one in ctx.scope(node) for use in _used(one)]
+        uses = [use for owner in ctx.scope(node) for use in _message_ids(owner)]
         ids = [use.id for use in uses if use.direction == TELEMETRY]
         first, last = declared.get(TELEMETRY, (min(ids, default=0), max(ids, default=-1)))
         for use in uses:
-            if use.direction == TELECOMMAND and first <= use.id <= last and id(use.source) not in told:
-                told.add(id(use.source))  # once, though other nodes may include it
+            if use.direction == TELECOMMAND and first <= use.id <= last and id(use.source) not in reported:
+                reported.add(id(use.source))  # once, although several nodes can include the message
                 among = f"{_id(ctx, use)} is in the range of telemetry ids, {first} to {last}"
                 message = f"{among}: on a UART only the id tells the direction, so an acknowledge is taken for a reply"
                 help = "give each direction ids of its own, one range before the other; or leave `uart: framing` out"
@@ -229,18 +230,18 @@ def ids_that_tell_the_direction(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD059")
-def ids_of_kind(ctx: Context) -> Iterator[Fault]:
+def id_keys_match_the_kind(ctx: Context) -> Iterator[Fault]:
     for message, _ in ctx.messages:
         own = [key for key, _ in KEYS_OF_IDS[message.kind]]
         for key in ("id", "set_id", "get_id"):
             if key in message.source and key not in own:
                 text = f"a {message.kind} message has no `{key}`"
-                names = listing(f"`{k}`" for k in own)
+                names = listing(f"`{name}`" for name in own)
                 yield Fault.at(message.source, key, text, f"remove it: {message.kind} has {names}")
 
 
 @rule("ICD065")
-def only_what_is_sent(ctx: Context) -> Iterator[Fault]:
+def telemetry_has_no_keys_of_telecommands(ctx: Context) -> Iterator[Fault]:
     for message, _ in ctx.messages:
         if message.kind == TELEMETRY:
             for key in ("acknowledge", "hazard"):
@@ -250,10 +251,10 @@ def only_what_is_sent(ctx: Context) -> Iterator[Fault]:
 
 
 def _ranges(ctx: Context, node: Node) -> dict[str, tuple[int, int]]:
-    """First and last id of each direction, where the protocol section `message_id` gives them."""
-    found = {}
+    """Return the first and last id of each direction that the protocol section `message_id` declares."""
+    ranges = {}
     for direction in (TELECOMMAND, TELEMETRY):
         first, last = (ctx.fact(node, "message_id", direction, key) for key in ("first", "last"))
         if isinstance(first, int) and isinstance(last, int):
-            found[direction] = first, last
-    return found
+            ranges[direction] = first, last
+    return ranges

@@ -1,4 +1,4 @@
-"""Where fields lie: inside their message, apart from each other, as wide as their type allows."""
+"""Layout of messages and structs: positions and widths of fields, overlaps, and bytes without a field."""
 
 from __future__ import annotations
 
@@ -33,15 +33,15 @@ _ORDERLY = {"bytes": "bytes", "text": "characters"}
 
 
 class Overlap(NamedTuple):
-    """Two places that have bits in common, in the order of the ICD."""
+    """Two places with common bits, in the order of the ICD."""
 
     first: NodePlace
     second: NodePlace
-    bits: str = ""  # in words; empty for those between the later begin and the earlier end
+    bits: str = ""  # in words; empty if they are the bits from the later start to the earlier end
 
 
 @rule("ICD020")
-def past_the_end(ctx: Context) -> Iterator[Fault]:
+def fields_end_within_the_message(ctx: Context) -> Iterator[Fault]:
     for node, owner, _ in ctx.lines:
         source, room = node.source, owner.length * 8
         end = node.at + _fixed_bits(node)
@@ -55,36 +55,38 @@ def past_the_end(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD021")
-def overlap(ctx: Context) -> Iterator[Fault]:
+def fields_do_not_overlap(ctx: Context) -> Iterator[Fault]:
     reported = set()
-    for overlap in chain(_overlaps(ctx), _overlaps_within_structs(ctx)):
-        pair = id(overlap.first.source), id(overlap.second.source)
-        if pair not in reported and ctx.behind_variable_fields.isdisjoint(pair):  # each element of an array may overlap
+    for fields_do_not_overlap in chain(_overlaps(ctx), _overlaps_within_structs(ctx)):
+        pair = id(fields_do_not_overlap.first.source), id(fields_do_not_overlap.second.source)
+        # Report a pair once, although many elements of an array can overlap.
+        if pair not in reported and ctx.behind_variable_fields.isdisjoint(pair):
             reported.add(pair)
-            yield _fault(overlap)
+            yield _fault(fields_do_not_overlap)
 
 
 def _overlaps(ctx: Context) -> Iterator[Overlap]:
-    """Yield the overlaps within each message and struct; structs count as a whole."""
+    """Yield the overlaps within each message and struct. A struct in it counts as one field."""
     for owner, icd_node in ctx.owners:
         if _are_apart(owner.layout):
             continue
         own = [place for place in places_in(owner.layout) if _has_own_bits(place)]
         elements = [element for place in own for element in (place.elements() if place.count else (place,))]
         if any("when" in place.source or place.bit_order not in ("", icd_node.bit_order) for place in own):
-            yield from _overlaps_among(owner, icd_node, (one for one in elements if are_understood(one.node)))
+            understood = (element for element in elements if are_understood(element.node))
+            yield from _overlaps_among(owner, icd_node, understood)
             continue
-        end, widest = -1, -1  # end of the place that reaches farthest, and its index
-        for index in sorted(range(len(elements)), key=lambda i: elements[i].at):
+        end, furthest = -1, -1  # of the elements before: the largest end, and the index of that element
+        for index in sorted(range(len(elements)), key=lambda index: elements[index].at):
             element = elements[index]
             if element.at < end:
-                yield Overlap(elements[min(index, widest)], elements[max(index, widest)])
+                yield Overlap(elements[min(index, furthest)], elements[max(index, furthest)])
             if element.at + element.bits > end:
-                end, widest = element.at + element.bits, index
+                end, furthest = element.at + element.bits, index
 
 
 def _are_apart(layout: Layout) -> bool:
-    """Return whether it is plain that no two nodes have bits in common: true of most layouts, and quickly decided."""
+    """Return whether no two nodes have common bits, by a fast check that succeeds for most layouts."""
     end = 0
     for node in sorted(layout.fixed, key=attrgetter("at")):
         if node.at < end or node.orders.bit:
@@ -94,30 +96,31 @@ def _are_apart(layout: Layout) -> bool:
 
 
 def _fixed_bits(node: LayoutNode) -> int:
-    """Return the bits of a node of fixed size; of a variable-length one those of an element."""
+    """Return the bits of a node of fixed size, or of one element of a variable-length node."""
     return stride(node) * (node.size if isinstance(node, Array) and isinstance(node.size, int) else 1)
 
 
 def _has_own_bits(place: NodePlace) -> bool:
-    """Return whether a place has bits that are no other field's."""
+    """Return whether a place has its own bits: it is not an overlay field, a derived value or a count without bits."""
     return not (place.is_count or isinstance(place.node, Derived) or is_overlay(place.node))
 
 
 def _overlaps_within_structs(ctx: Context) -> Iterator[Overlap]:
-    """Yield the overlaps in structs that stand where bits are counted in another way than where they are declared."""
+    """Yield the overlaps in structs that are used with another bit order than the one they are declared with."""
     for owner, icd_node in ctx.owners:
         if not any(map(struct_layout_of, owner.layout.nodes)):
             continue
         for place in places_in(owner.layout):
             _, home = ctx.struct_of.get(id(place.struct), (None, None))
             if home is not None and place.orders_in_effect(icd_node.orders).bit != home.bit_order:
-                yield from _overlaps_among(owner, icd_node, place.elements()[0].scalars())  # all elements are alike
+                # All elements have the same layout.
+                yield from _overlaps_among(owner, icd_node, place.elements()[0].scalars())
 
 
 def _overlaps_among(owner: Owner, icd_node: Node, fields: Iterable[NodePlace]) -> Iterator[Overlap]:
-    """Yield the overlaps where fields count bits in different ways, or where fields are optional.
+    """Yield the overlaps of fields with different bit orders or conditions.
 
-    Fields that are never in the same frame may have the same bits.
+    Fields that are never present in the same frame can have the same bits.
     """
     before: list[tuple[NodePlace, int]] = []
     for field in fields:
@@ -133,22 +136,22 @@ def _overlaps_among(owner: Owner, icd_node: Node, fields: Iterable[NodePlace]) -
 
 
 def _bits_of(mask: int) -> str:
-    """``2 bits of byte 1``"""
+    """Return the bits of a mask in words: ``2 bits of byte 1``."""
     low = (mask & -mask).bit_length() - 1
     size = count(mask.bit_count(), "bit")
     return f"{size} of byte {low // 8}" if mask >> low // 8 * 8 < 256 else size
 
 
 def _mask(begin: int, bits: int, bit_order: str) -> int:
-    """Return which bits of the frame a field has; bit w of byte b is bit 8 * b + w."""
+    """Return a mask of the bits of a field in the frame; bit w of byte b is bit 8 * b + w."""
     if bit_order == "lsb0" or begin % 8 == 0 == bits % 8:
         return ((1 << bits) - 1) << begin
     return sum(1 << (at // 8 * 8 + 7 - at % 8) for at in range(begin, begin + bits))
 
 
-def _fault(overlap: Overlap) -> Fault:
+def _fault(fields_do_not_overlap: Overlap) -> Fault:
     """Return the fault of an overlap, at its second field."""
-    first, second, bits = overlap
+    first, second, bits = fields_do_not_overlap
     start, end = max(first.at, second.at), min(first.at + first.bits, second.at + second.bits)
     bits = bits or (f"bit {start:,}" if end - start == 1 else f"bits {start:,} to {end - 1:,}")
     other = f"{quote(first.name)} ({line_of(first.source.place, second.source.at('at'))})"
@@ -159,12 +162,13 @@ def _fault(overlap: Overlap) -> Fault:
 
 
 def _help(first: NodePlace, second: NodePlace) -> str:
-    """Return how two places can be kept apart."""
+    """Return the help for an overlap."""
     if first.when and second.when:
         return _ALTERNATIVES
     help = "correct `at`, or the `length` of the struct" if second.struct else _OVERLAPPING
     for place in (first, second):
-        if place.index and type(place.source.get("count")) is int:  # not the first of its elements
+        # If an element other than the first overlaps, the array may be too long.
+        if place.index and type(place.source.get("count")) is int:
             help += f", or the `count` of {quote(place.node.name)}"
     is_field = second.struct is None and second.index is None and len(second.steps) == 1
     view = f"; if {quote(second.node.name)} reads the same bits in another way, give it `view: true`"
@@ -172,7 +176,7 @@ def _help(first: NodePlace, second: NodePlace) -> str:
 
 
 @rule("ICD022")
-def width(ctx: Context) -> Iterator[Fault]:
+def widths_suit_the_types(ctx: Context) -> Iterator[Fault]:
     for field, _ in ctx.fields:
         if field.is_bytes:
             fits, words = field.bits % 8 == 0, "whole bytes: a multiple of 8 bits"
@@ -187,7 +191,7 @@ def width(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD023")
-def bytes_boundary(ctx: Context) -> Iterator[Fault]:
+def bytes_begin_at_a_byte(ctx: Context) -> Iterator[Fault]:
     for field, line in ctx.fields:
         at = line.node.at
         if field.is_bytes and at % 8:
@@ -197,7 +201,7 @@ def bytes_boundary(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD026")
-def order_of_nothing(ctx: Context) -> Iterator[Fault]:
+def orders_have_an_effect(ctx: Context) -> Iterator[Fault]:
     for key in ("byte_order", "bit_order"):
         for field, _ in ctx.fields_with[key]:
             if field.is_bytes or (field.type == "bool" and key == "byte_order"):
@@ -207,7 +211,7 @@ def order_of_nothing(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD029")
-def view_of_fields(ctx: Context) -> Iterator[Fault]:
+def overlay_fields_are_valid(ctx: Context) -> Iterator[Fault]:
     for field, line in ctx.fields_with["view"]:
         node, message, icd_node = line
         if not isinstance(message, Message):
@@ -227,55 +231,61 @@ def view_of_fields(ctx: Context) -> Iterator[Fault]:
             text = f"{name} is an overlay field, whose value is never set, so it cannot have `const`"
             yield Fault.at(source, "const", text, "give `const` to the field that has the bits")
         free = _mask(node.at, field.bits, line.orders.bit)
-        for owner in scalars_in(message.layout):
-            if _has_own_bits(owner) and not owner.when:
-                free &= ~_mask(owner.at, owner.bits, owner.orders_in_effect(icd_node.orders).bit)
+        for other in scalars_in(message.layout):
+            if _has_own_bits(other) and not other.when:
+                free &= ~_mask(other.at, other.bits, other.orders_in_effect(icd_node.orders).bit)
         if free and is_read(message):
-            always = "always " if any(other.present_if for other in message.layout.nodes) else ""
+            always = "always " if message.has_conditions else ""
             text = f"{name} is an overlay of {_bits_of(free)} that no field {always}has"
             yield Fault.at(source, "at", text, "describe these bits as a field, or correct `at` or `bits`")
 
 
 def is_read(message: Message) -> bool:
-    """Return whether the layout has all fields of the ICD. A field with a finding may have the bits that others lack."""
-    read = {id(node.source) for node in message.layout.nodes}
-    return all(id(entry) in read or "bitfields" in entry for entry in message.source.get("fields", ()))
+    """Return whether the layout has all fields of the ICD.
+
+    If it does not, bits without a field may belong to a field with errors.
+    """
+    sources = {id(node.source) for node in message.layout.nodes}
+    return all(id(item) in sources or "bitfields" in item for item in message.source.get("fields", ()))
 
 
 def covered_bytes(message: Message) -> int:
-    """Return the bytes up to the end of the last field, in the longest frame."""
+    """Return the number of bytes up to the end of the last field of the longest frame."""
     if message.layout.sequence:
         return message.layout.longest
     return max((node.at + _fixed_bits(node) + 7 for node in message.layout.fixed), default=0) // 8
 
 
-@rule("ICD027", whole=True)
-def reserved_end(ctx: Context) -> Iterator[Fault]:
+@rule("ICD027", needs_complete=True)
+def reserved_bytes_have_no_field(ctx: Context) -> Iterator[Fault]:
     for message, _ in ctx.messages:
         free = max(message.length - covered_bytes(message), 0) if message.reserved else 0
-        if message.reserved > free and not tails.open_parts(message.source):  # else ICD121
+        # ICD121 reports `reserved` of messages of variable length.
+        if message.reserved > free and not tails.open_parts(message.source):
             text = f"{quote(message.name)} has {count(free, 'byte')} after its last field, but `reserved` is {message.reserved}"
             yield Fault.at(message.source, "reserved", text, "correct `reserved` or `length`, or the fields")
 
 
-@rule("ICD024", whole=True)
-def undescribed_end(ctx: Context) -> Iterator[Fault]:
+@rule("ICD024", needs_complete=True)
+def all_bytes_are_described(ctx: Context) -> Iterator[Fault]:
     for message, _ in ctx.messages:
         covered = covered_bytes(message)
         if covered + message.reserved < message.length and is_read(message):
-            left = message.length - covered - message.reserved
+            undescribed = message.length - covered - message.reserved
             described = f"its fields describe {covered:,}" if message.layout.nodes else "no field describes them"
             text = f"{quote(message.name)} has {count(message.length, 'byte')}, but {described}"
-            missing = "the last byte" if left == 1 and not message.reserved else f"the last {count(left, 'byte')}"
-            missing = f"{count(left, 'byte')} before those" if message.reserved else missing
-            pronoun = "it" if left + message.reserved == 1 else "them"
-            reserve = (
-                f"write `reserved: {left + message.reserved}` beside `length` if the manual calls {pronoun} reserved"
+            missing = (
+                "the last byte"
+                if undescribed == 1 and not message.reserved
+                else f"the last {count(undescribed, 'byte')}"
             )
+            missing = f"{count(undescribed, 'byte')} before those" if message.reserved else missing
+            pronoun = "it" if undescribed + message.reserved == 1 else "them"
+            reserve = f"write `reserved: {undescribed + message.reserved}` beside `length` if the manual calls {pronoun} reserved"
             yield Fault.at(message.source, "length", text, f"describe {missing}, or correct `length`; {reserve}")
 
 
 @rule("ICD025")
-def bitfields(ctx: Context) -> Iterator[Fault]:
+def split_fields_are_valid(ctx: Context) -> Iterator[Fault]:
     for field, line in ctx.fields_with["bitfields"]:
         yield from obstacles(field.source, line.orders.byte, line.orders.bit)

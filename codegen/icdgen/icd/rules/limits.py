@@ -1,4 +1,4 @@
-"""Limits of physical values, and whether a field can keep them."""
+"""Limits of physical values: their order, and the range of the field."""
 
 from __future__ import annotations
 
@@ -18,45 +18,51 @@ LIMITS = ("min", "above", "max", "below")
 
 
 class Bounds(NamedTuple):
-    """An interval; None where it is open-ended, and whether each end itself is left out."""
+    """An interval of physical values."""
 
-    low: Fraction | None
+    low: Fraction | None  # None without a lower limit
     high: Fraction | None
-    above: bool
-    below: bool
+    above: bool  # the interval excludes `low`
+    below: bool  # the interval excludes `high`
 
     @property
     def is_empty(self) -> bool:
+        """Whether no value is in the interval."""
         if self.low is None or self.high is None:
             return False
         return self.low > self.high or (self.low == self.high and (self.above or self.below))
 
 
 def bounds(field: Scalar) -> Bounds:
-    """The narrowest interval that the limits of the field describe."""
+    """Return the interval that satisfies all limits of a field."""
     limits = field.limits or Limits()
-    lows = ((v, is_open) for v, is_open in ((limits.min, False), (limits.above, True)) if v is not None)
-    highs = ((v, is_closed) for v, is_closed in ((limits.max, True), (limits.below, False)) if v is not None)
+    # Of equal limits, the tuples sort the open one as the higher lower limit and as the lower upper limit.
+    lows = ((value, is_open) for value, is_open in ((limits.min, False), (limits.above, True)) if value is not None)
+    highs = (
+        (value, is_closed) for value, is_closed in ((limits.max, True), (limits.below, False)) if value is not None
+    )
     low, above = max(lows, default=(None, False))
     high, inside = min(highs, default=(None, True))
     return Bounds(low, high, above, not inside)
 
 
 def _limited(ctx: Context) -> Iterator[Scalar]:
-    """Fields with limits."""
+    """Return the fields with limits."""
     return (field for field, _ in ctx.fields if field.limits is not None)
 
 
 def _shown(field: Scalar, *keys: str) -> str:
+    """Return the limits of a field with these keys, as the ICD declares them."""
     return " and ".join(f"`{key}: {field.source[key]}`" for key in keys if key in field.source)
 
 
 def _first(field: Scalar, *keys: str) -> str:
+    """Return the first of these keys that a field has."""
     return next(key for key in keys if key in field.source)
 
 
 @rule("ICD033")
-def limits_in_order(ctx: Context) -> Iterator[Fault]:
+def limits_leave_a_value(ctx: Context) -> Iterator[Fault]:
     for field in _limited(ctx):
         source = field.source
         if field.type == "bool" or field.is_bytes:
@@ -69,20 +75,21 @@ def limits_in_order(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD034")
-def limits_in_range(ctx: Context) -> Iterator[Fault]:
+def limits_are_in_the_range_of_the_field(ctx: Context) -> Iterator[Fault]:
     for field in _limited(ctx):
+        # Floats and curves are not checked. Other rules report invalid formulas.
         if field.type not in NUMBERS or (("points" in field.source or field.formula) and field.scale is None):
-            continue  # a float holds anything, a curve may; a bad formula has its own finding
+            continue
         within, source = bounds(field), field.source
         if within.is_empty:
             continue
-        held = _raw_values(field, within)
-        if not held:
+        allowed = _raw_values(field, within)
+        if not allowed:
             key = _first(field, *(("min", "above") if within.low is not None else ("max", "below")))
             message = f"no value of {quote(field.name)} is within {_shown(field, *LIMITS)}"
             low, high = sorted(_physical(field, raw) for raw in (field.raw_min, field.raw_max))
             yield Fault.at(source, key, message, f"its values go from {_number(low)} to {_number(high)}")
-        elif field.const is not None and field.raw_min <= field.const <= field.raw_max and field.const not in held:
+        elif field.const is not None and field.raw_min <= field.const <= field.raw_max and field.const not in allowed:
             message = f"`const: {field.const}` of {quote(field.name)} is outside {_shown(field, *LIMITS)}"
             value = _number(_physical(field, field.const))
             help = f"its physical value is {value}" if field.scale else "correct one of them"
@@ -90,15 +97,17 @@ def limits_in_range(ctx: Context) -> Iterator[Fault]:
 
 
 def _physical(field: Scalar, raw: int) -> Fraction:
+    """Return the physical value of a raw value; without a formula the raw value."""
     return field.scale.physical(raw) if field.scale else Fraction(raw)
 
 
 def _raw_values(field: Scalar, within: Bounds) -> range:
-    """The raw values of the field that lie within the (physical) bounds."""
+    """Return the raw values of a field whose physical values are within the bounds."""
     low, high, above, below = within
     if field.scale:
         low = None if low is None else field.scale.raw(low)
         high = None if high is None else field.scale.raw(high)
+        # A negative factor exchanges the lower and the upper limit.
         if field.scale.factor < 0:
             low, high, above, below = high, low, below, above
     first = field.raw_min if low is None else max(field.raw_min, floor(low) + 1 if above else ceil(low))

@@ -1,4 +1,4 @@
-"""The table of loggable frames: its ids, its mask bits, and the frames that they select."""
+"""Table of loggable frames: ids, mask bits and the frames that they select."""
 
 from __future__ import annotations
 
@@ -15,20 +15,21 @@ from icdgen.suggest import close_to
 
 
 def _telemetry(ctx: Context, node: Node) -> dict[int, Message]:
-    return {m.telemetry_id: m for m in ctx.messages_of(node) if m.telemetry_id is not None}
+    """Return the telemetry messages of a node by id."""
+    return {message.telemetry_id: message for message in ctx.messages_of(node) if message.telemetry_id is not None}
 
 
 def _id_key(message: Message) -> str:
-    """The key of a message's telemetry id."""
+    """Return the key of the telemetry id of a message: `id` or `get_id`."""
     return next(key for key, direction in KEYS_OF_IDS[message.kind] if direction == TELEMETRY)
 
 
-@rule("ICD043", whole=True)
-def frame_exists(ctx: Context) -> Iterator[Fault]:
+@rule("ICD043", needs_complete=True)
+def loggable_frames_exist(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         frames = _telemetry(ctx, node)
-        missing = {m.id for n in ctx.scope(node) for m in n.missing if m.kind != "telecommand"}
-        by_name = {m.name: (m.source, _id_key(m)) for m in frames.values()}
+        missing = {entry.id for owner in ctx.scope(node) for entry in owner.missing if entry.kind != "telecommand"}
+        by_name = {frame.name: (frame.source, _id_key(frame)) for frame in frames.values()}
         for row in node.loggable:
             if row.id not in frames and row.id not in missing:
                 close = close_to(row.name, by_name) if row.name else ""
@@ -43,7 +44,7 @@ def frame_exists(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD044")
-def bits_distinct(ctx: Context) -> Iterator[Fault]:
+def loggable_entries_are_unique(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         size = ctx.fact(node, "log_mask", "bytes")
         bits: dict[int, Map] = {}
@@ -64,7 +65,7 @@ def bits_distinct(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD045")
-def frame_fits(ctx: Context) -> Iterator[Fault]:
+def loggable_entries_match_the_messages(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         frames, size = _telemetry(ctx, node), ctx.fact(node, "log_mask", "frame_bytes")
         for row in node.loggable:

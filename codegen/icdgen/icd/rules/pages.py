@@ -1,4 +1,4 @@
-"""The words of the rules: ``<theme>.md`` beside ``<theme>.py``, read only when somebody asks."""
+"""Pages of the rules in ``<theme>.md``, which are read only for `icdgen rule` and the documentation."""
 
 from __future__ import annotations
 
@@ -18,20 +18,17 @@ _EXAMPLES = re.compile(
 
 
 class Page(NamedTuple):
-    """``wrong`` breaks the rule and no other, ``right`` none; both leave out the head of the file.
-
-    For a rule of the diff they are the ICD before and after the change.
-    """
+    """Page of a rule. The examples omit the head of the ICD."""
 
     title: str
     why: str
-    wrong: str
-    right: str
+    wrong: str  # violates the rule and no other; for a rule of the diff: the ICD before the change
+    right: str  # violates no rule; for a rule of the diff: the ICD after the change
 
 
 @cache
 def of(theme: str, folder: Path = FOLDER) -> dict[str, Page]:
-    """The pages of a theme by code. Raises `ValueError` where one does not have the usual form."""
+    """Return the pages of a theme by code. Raises `ValueError` if a page does not have the usual form."""
     pages = {}
     _, *parts = _SECTION.split((folder / f"{theme}.md").read_text(encoding="utf-8"))
     for code, title, text in zip(parts[0::3], parts[1::3], parts[2::3], strict=True):
@@ -43,7 +40,7 @@ def of(theme: str, folder: Path = FOLDER) -> dict[str, Page]:
 
 
 def text(code: str, severity: str, page: Page, labels: tuple[str, str] = ("Wrong", "Right")) -> str:
-    """A page as Markdown, for people."""
+    """Return a page as Markdown."""
     wrong, right = labels
     return (
         f"# {code}: {page.title} ({severity})\n\n{page.why}\n\n"

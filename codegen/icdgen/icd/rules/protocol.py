@@ -1,4 +1,4 @@
-"""Protocol facts that can be checked against each other. Every key is optional."""
+"""Protocol section: I2C addresses, check values of checksums, and rows of layouts. Every key is optional."""
 
 from __future__ import annotations
 
@@ -14,12 +14,13 @@ from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, quote
 from icdgen.icd.trees import at_path, mappings
 
-CHECKED = b"123456789"  # what the check value of a CRC is computed over
+# Input of the check value of a CRC, in the Rocksoft model and the catalogues that follow it.
+CHECKED = b"123456789"
 MAX_WIDTH = 64
 
 
 def sections(node: Node) -> Iterator[Map]:
-    """The protocol section and every mapping in it."""
+    """Yield the protocol section of a node and every mapping in it, at any depth."""
     queue: list[object] = [node.source.get("protocol")]
     while queue:
         item = queue.pop()
@@ -31,20 +32,21 @@ def sections(node: Node) -> Iterator[Map]:
 
 
 @rule("ICD090")
-def i2c_addresses(ctx: Context) -> Iterator[Fault]:
+def i2c_address_forms_agree(ctx: Context) -> Iterator[Fault]:
     for i2c in ctx.sections("i2c"):
         for key, bit in (("write", 0), ("read", 1)):
             if isinstance(i2c.get(key), Map):
                 yield from _forms_agree(i2c[key], key, bit)
-        one, other = (at_path(i2c, (key, "address_8bit")) for key in ("write", "read"))
-        if _is_byte(one) and _is_byte(other) and not one & 1 and other != one | 1:
-            message = f"the read address {_hex(other)} does not follow the write address {_hex(one)}"
-            read = _hex(one | 1)
-            yield Fault.at(i2c["read"], "address_8bit", message, f"the read address is {read}", read)
+        write, read = (at_path(i2c, (key, "address_8bit")) for key in ("write", "read"))
+        if _is_byte(write) and _is_byte(read) and not write & 1 and read != write | 1:
+            message = f"the read address {_hex(read)} does not follow the write address {_hex(write)}"
+            correct = _hex(write | 1)
+            yield Fault.at(i2c["read"], "address_8bit", message, f"the read address is {correct}", correct)
 
 
 def _forms_agree(address: Map, key: str, bit: int) -> Iterator[Fault]:
-    eight, seven, binary = (address.get(k) for k in ("address_8bit", "address_7bit", "binary"))
+    """Yield the faults of an address whose 8-bit, 7-bit and binary forms differ; ``bit`` is its lowest bit."""
+    eight, seven, binary = (address.get(form) for form in ("address_8bit", "address_7bit", "binary"))
     if not _is_byte(eight):
         return
     if eight & 1 != bit:
@@ -66,6 +68,7 @@ def _is_byte(value: object) -> TypeGuard[int]:
 
 
 def _binary(text: str) -> int | None:
+    """Return the value of a binary number such as ``0b1010 0001``; None if the text is not one."""
     digits = text.removeprefix("0b").replace(" ", "")
     return int(digits, 2) if digits and not digits.strip("01") else None
 
@@ -75,24 +78,24 @@ def _hex(value: int) -> str:
 
 
 @rule("ICD091")
-def check_values(ctx: Context) -> Iterator[Fault]:
+def checksum_parameters_give_the_check_value(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         for section in sections(node):
-            wanted, got = section.get("check"), _check_value(section)
-            if type(wanted) is int and got is not None and got != wanted and 0 <= wanted < 1 << section["width"]:
-                message = f"these parameters give {_hex(got)} over 123456789, not the check value {_hex(wanted)}"
+            stated, actual = section.get("check"), _check_value(section)
+            if type(stated) is int and actual not in (None, stated) and 0 <= stated < 1 << section["width"]:
+                message = f"these parameters give {_hex(actual)} over 123456789, not the check value {_hex(stated)}"
                 yield Fault.at(section, "check", message, "correct the parameters or `check`")
 
 
 def _check_value(section: Map) -> int | None:
-    """The checksum of `CHECKED` by the parameters of a section; None if they are incomplete, or do not fit the width."""
+    """Return the checksum of `CHECKED` with the parameters of a section; None if they are incomplete or out of range."""
     kind = section.get("kind", checksum.CRC)
-    given = [section.get("width"), section.get("init", 0), section.get("xor_out", 0), section.get("polynomial")]
-    numbers = [one for one in (given if kind == checksum.CRC else given[:3]) if type(one) is int]
+    values = [section.get("width"), section.get("init", 0), section.get("xor_out", 0), section.get("polynomial")]
+    numbers = [value for value in (values if kind == checksum.CRC else values[:3]) if type(value) is int]
     if kind not in checksum.KINDS or len(numbers) != (4 if kind == checksum.CRC else 3):
         return None
     width, init, xor_out, *polynomial = numbers
-    if not 1 <= width <= MAX_WIDTH or not all(0 <= one < 1 << width for one in numbers[1:]):
+    if not 1 <= width <= MAX_WIDTH or not all(0 <= number < 1 << width for number in numbers[1:]):
         return None
     if kind != checksum.CRC:
         return checksum.plain(kind, CHECKED, width, init, xor_out)
@@ -101,7 +104,7 @@ def _check_value(section: Map) -> int | None:
 
 
 @rule("ICD092")
-def rows_apart(ctx: Context) -> Iterator[Fault]:
+def rows_do_not_overlap(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         for section in sections(node):
             for key, rows in section.items():
@@ -110,22 +113,23 @@ def rows_apart(ctx: Context) -> Iterator[Fault]:
                     yield from _rows(section, key, rows, "at", "bits")
 
 
-def _called(row: Map, otherwise: str) -> str:
-    """What a row is known by: its name, or else its role."""
-    known = row.get("name", row.get("role"))
-    return quote(known) if isinstance(known, str) else otherwise
+def _name_of_row(row: Map, otherwise: str) -> str:
+    """Return the name of a row for a message: its name, or else its role."""
+    name = row.get("name", row.get("role"))
+    return quote(name) if isinstance(name, str) else otherwise
 
 
 def _rows(section: Map, key: str, rows: Seq, at: str, size: str) -> Iterator[Fault]:
+    """Yield the faults of rows that overlap or end outside of the section. ``at`` and ``size`` are their keys."""
     named = f"{key}_{size}" if f"{key}_{size}" in section else size
     room = section.get(named)
-    placed = [r for r in mappings(rows) if isinstance(r.get(at), int) and isinstance(r.get(size), int)]
-    last: Map | None = None
-    for row in sorted(placed, key=lambda r: r[at]):
+    placed = [row for row in mappings(rows) if isinstance(row.get(at), int) and isinstance(row.get(size), int)]
+    last: Map | None = None  # the row that ends last, of those before
+    for row in sorted(placed, key=lambda row: row[at]):
         end = row[at] + row[size]
-        name = _called(row, "this row")
+        name = _name_of_row(row, "this row")
         if last is not None and row[at] < last[at] + last[size]:
-            other = f"{_called(last, 'another row')} ({line_of(last.place, row.place)})"
+            other = f"{_name_of_row(last, 'another row')} ({line_of(last.place, row.place)})"
             message = f"{name} overlaps {other} in {size[:-1]} {row[at]}"
             yield Fault.at(row, at, message, f"correct `{at}` or `{size}`")
         if isinstance(room, int) and end > room:

@@ -1,4 +1,4 @@
-"""Numbers that have to fit the bits and bytes in which the protocol sends them."""
+"""Protocol section: numbers that must fit their bits and bytes, and lists that need certain parts."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ ROLES = ("type", "channel", "source", "destination")  # parts of a CAN identifie
 
 
 def in_force(ctx: Context, node: Node, *path: str) -> Map | None:
-    """The section that holds for the node: its own, or that of what it includes."""
-    for one in reversed(ctx.scope(node)):
-        if section_of(one, path[0]) is not None:
-            return section_of(one, *path)
+    """Return the mapping at a path of the protocol section in effect for a node: its own, or that of an included node."""
+    for owner in reversed(ctx.scope(node)):
+        if section_of(owner, path[0]) is not None:
+            return section_of(owner, *path)
     return None
 
 
 @rule("ICD099")
-def packets_can_be_counted(ctx: Context) -> Iterator[Fault]:
+def packet_counter_fits_a_byte(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         can, extended = in_force(ctx, node, "can"), in_force(ctx, node, "can", "extended")
         size = extended.get("data_bytes") if extended is not None else None
@@ -38,6 +38,7 @@ def packets_can_be_counted(ctx: Context) -> Iterator[Fault]:
         most = extended.get("max_packets", CAN_PACKETS)
         if not isinstance(last, int) or not isinstance(most, int):
             continue
+        # Without `max_packets`, only the messages below show how many packets there are.
         if ("max_packets" in extended or last > BYTE) and last + most - 1 > BYTE:
             key = "max_packets" if "max_packets" in extended else "packets_left_in_last"
             text = f"the first of {count(most, 'packet')} would count {last + most - 1} left, a byte holds {BYTE}"
@@ -54,17 +55,17 @@ def packets_can_be_counted(ctx: Context) -> Iterator[Fault]:
 
 
 def _extended(ctx: Context, node: Node, can: Map) -> Iterator[Message]:
-    """Messages that are sent as several packets."""
+    """Yield the messages that are sent as several packets."""
     room = can.get("max_data_bytes", CAN_DATA_BYTES)
     types = (("telecommand", "extended_request"), ("telemetry", "extended_response"))
-    able = {direction for direction, key in types if at_path(can, (direction, key)) is not None}
+    directions = {direction for direction, key in types if at_path(can, (direction, key)) is not None}
     for message in ctx.messages_of(node) if isinstance(room, int) else ():
-        if message.length > room and any(direction in able for _, direction in KEYS_OF_IDS[message.kind]):
+        if message.length > room and any(direction in directions for _, direction in KEYS_OF_IDS[message.kind]):
             yield message
 
 
 @rule("ICD100")
-def numbers_fit(ctx: Context) -> Iterator[Fault]:
+def numbers_fit_their_bits(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         yield from _on_can(ctx, node)
     for errors in ctx.sections("errors"):
@@ -77,6 +78,7 @@ def numbers_fit(ctx: Context) -> Iterator[Fault]:
 
 
 def _on_can(ctx: Context, node: Node) -> Iterator[Fault]:
+    """Yield the faults of numbers that do not fit their part of a CAN identifier."""
     own = section_of(node, "can")
     can = in_force(ctx, node, "can")
     bits = _widths(can) if can is not None else {}
@@ -91,11 +93,13 @@ def _on_can(ctx: Context, node: Node) -> Iterator[Fault]:
 
 
 def _widths(can: Map) -> dict[str, int]:
+    """Return the bits of each part of a CAN identifier, by role or name."""
     rows = [row for row in mappings(can.get("identifier")) if isinstance(row.get("bits"), int)]
     return {str(row.get("role", row.get("name"))): row["bits"] for row in rows}
 
 
 def _fits(ctx: Context, owner: Map, key: str, bits: int | None, what: str) -> Iterator[Fault]:
+    """Yield a fault if the number of a key has more than ``bits`` bits."""
     value = owner.get(key)
     if bits is not None and isinstance(value, int) and value >= 1 << bits:
         message = f"{what} has {count(bits, 'bit')}: 0 to {(1 << bits) - 1}, not {ctx.written(owner, key)}"
@@ -103,14 +107,16 @@ def _fits(ctx: Context, owner: Map, key: str, bits: int | None, what: str) -> It
 
 
 def _codes(errors: Map) -> Iterator[Fault]:
+    """Yield a fault for each error code that has two meanings."""
     for first, role, code in of_one_number(errors, "none", "unknown_id", "length", "parameter", "checksum"):
         yield Fault.at(errors, role, f"{code} stands for both `{first}` and `{role}`", "give each its own code")
 
 
 def _checksum(crc: Map) -> Iterator[Fault]:
+    """Yield the faults of parameters of a CRC that have more bits than its width."""
     width = crc.get("width")
     if not isinstance(width, int) or width < 1:
-        return  # the schema's business
+        return  # the schema check reports it
     for key in ("polynomial", "init", "xor_out", "empty", "check"):
         value = crc.get(key)
         if isinstance(value, int) and value >= 1 << width:
@@ -123,30 +129,35 @@ def _checksum(crc: Map) -> Iterator[Fault]:
 
 
 def _counter(files: Map) -> Iterator[Fault]:
-    found, first = numbers(files, "packet_counter_bytes", "block_packets"), files.get("first_packet", 0)
-    if found is None or not isinstance(first, int):
+    """Yield a fault if the packet counter of a file transfer cannot number all packets of a block."""
+    sizes, first = numbers(files, "packet_counter_bytes", "block_packets"), files.get("first_packet", 0)
+    if sizes is None or not isinstance(first, int):
         return
-    size, packets = found
+    size, packets = sizes
     if first + packets > 256**size:
         last = f"the last packet of a block has number {first + packets - 1}"
         message = f"{last}, which does not fit {count(size, 'byte')}"
         yield Fault.at(files, "packet_counter_bytes", message, "correct it, `block_packets` or `first_packet`")
 
 
-def roles_stand_once(
+def roles_occur_once(
     section: Map, key: str, roles: Sequence[str], lacks: str, help: str = "give the parts their `role`"
 ) -> Iterator[Fault]:
-    """Faults of a list of parts, if there is one, of which each has a role, or the name of one."""
+    """Yield the faults of a list of parts that must have each of the ``roles`` once.
+
+    A part without the key `role` has its name as role. The list can be absent.
+    """
     if not isinstance(section.get(key), Seq):
         return
     seen: set[str] = set()
     for row in mappings(section[key]):
-        named = "role" if "role" in row else "name"
-        role = row.get(named)
-        if not isinstance(role, str):  # it was refused, and nobody knows which one it is
+        key_of_role = "role" if "role" in row else "name"
+        role = row.get(key_of_role)
+        # The schema check reports the part. It may be the one that is missing, so nothing else is reported.
+        if not isinstance(role, str):
             return
         if role in roles and role in seen:
-            yield Fault.at(row, named, f"a second {role}", "remove one of them, or correct its role")
+            yield Fault.at(row, key_of_role, f"a second {role}", "remove one of them, or correct its role")
         seen.add(role)
     missing = [f"`{role}`" for role in roles if role not in seen]
     if missing:
@@ -154,14 +165,14 @@ def roles_stand_once(
 
 
 @rule("ICD101")
-def identifier_is_whole(ctx: Context) -> Iterator[Fault]:
+def can_identifier_has_all_parts(ctx: Context) -> Iterator[Fault]:
     for can in ctx.sections("can"):
         if {"message_types", "telecommand", "telemetry"} & can.keys():
-            yield from roles_stand_once(can, "identifier", ROLES, "the identifier has no part for")
+            yield from roles_occur_once(can, "identifier", ROLES, "the identifier has no part for")
 
 
 @rule("ICD102")
-def times_are_whole(ctx: Context) -> Iterator[Fault]:
+def packed_time_has_all_parts(ctx: Context) -> Iterator[Fault]:
     for time in ctx.sections("msdos_time"):
         help = "add all parts from `year` to `second`"
-        yield from roles_stand_once(time, "parts", TIME_PARTS, "the packed time lacks", help)
+        yield from roles_occur_once(time, "parts", TIME_PARTS, "the packed time lacks", help)

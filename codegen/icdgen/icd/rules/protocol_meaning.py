@@ -1,4 +1,4 @@
-"""What a receiver could not tell apart, not find, or never get."""
+"""Protocol section: directions, message types, acknowledges, buses and packets that a receiver could not interpret."""
 
 from __future__ import annotations
 
@@ -10,38 +10,38 @@ from icdgen.icd.located import Map
 from icdgen.icd.model import CAN_DATA_BYTES, KEYS_OF_IDS, TELECOMMAND, TELEMETRY
 from icdgen.icd.rules.context import Context, own_fact, section_of
 from icdgen.icd.rules.protocol import sections
-from icdgen.icd.rules.protocol_limits import in_force, roles_stand_once
+from icdgen.icd.rules.protocol_limits import in_force, roles_occur_once
 from icdgen.icd.rules.protocol_sizes import numbers
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, line_of, quote
 from icdgen.icd.trees import at_path, mappings
 
 ACKNOWLEDGE_ROLES = ("id", "error")
-# what is sent in each direction with data -> the keys of its message types, and those of messages of several packets
+# Keys of the CAN message types for data in each direction, in one packet and in several packets.
 CAN_TYPES = {TELECOMMAND: ("request", "extended_request"), TELEMETRY: ("response", "extended_response")}
 
 
 @rule("ICD103")
-def directions_differ(ctx: Context) -> Iterator[Fault]:
+def id_ranges_determine_the_direction(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         ranges = {}
         for direction in (TELECOMMAND, TELEMETRY):
             section = section_of(node, "message_id", direction)
-            found = numbers(section, "first", "last")
-            if section is None or found is None:
+            ends = numbers(section, "first", "last")
+            if section is None or ends is None:
                 continue
             ranges[direction] = section
-            if found[0] > found[1]:
+            if ends[0] > ends[1]:
                 last, first = (ctx.written(section, key) for key in ("last", "first"))
                 message = f"the last id, {last}, comes before the first, {first}"
                 yield Fault.at(section, "last", message, "correct `first` or `last`")
-            yield from _bit(own_fact(node, "message_id", "direction_bit"), section, direction, *found)
+            yield from _bit(own_fact(node, "message_id", "direction_bit"), section, direction, *ends)
         if len(ranges) == 2:
             yield from _overlap(ranges[TELECOMMAND], ranges[TELEMETRY])
 
 
 def _bit(bit: object, section: Map, direction: str, first: int, last: int) -> Iterator[Fault]:
-    """An id of the range whose direction bit is that of the other direction."""
+    """Yield a fault if a range has an id with the direction bit of the other direction."""
     wanted = section.get("direction")
     if not isinstance(bit, int) or bit < 0 or wanted not in (0, 1) or not 0 <= first <= last <= 255:
         return
@@ -52,16 +52,17 @@ def _bit(bit: object, section: Map, direction: str, first: int, last: int) -> It
         yield Fault.at(section, key, message, "correct the range, `direction` or `direction_bit`")
 
 
-def _overlap(one: Map, other: Map) -> Iterator[Fault]:
-    least, most = max(one["first"], other["first"]), min(one["last"], other["last"])
-    if least <= most:
-        which = f"ids {least} to {most} are" if least < most else f"id {least} is"
-        message = f"{which} in the range of telecommands, too"
-        yield Fault.at(other, "first", message, "correct the ranges: they must not overlap")
+def _overlap(telecommands: Map, telemetry: Map) -> Iterator[Fault]:
+    """Yield a fault if the ranges of ids of the two directions overlap."""
+    first, last = max(telecommands["first"], telemetry["first"]), min(telecommands["last"], telemetry["last"])
+    if first <= last:
+        ids = f"ids {first} to {last} are" if first < last else f"id {first} is"
+        message = f"{ids} in the range of telecommands, too"
+        yield Fault.at(telemetry, "first", message, "correct the ranges: they must not overlap")
 
 
 @rule("ICD104")
-def message_types_differ(ctx: Context) -> Iterator[Fault]:
+def can_message_types_are_unique(ctx: Context) -> Iterator[Fault]:
     for types in ctx.sections("can", "message_types"):
         seen: dict[tuple[str, object], Map] = {}
         for row in mappings(types.get("values")):
@@ -76,9 +77,9 @@ def message_types_differ(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD105")
-def acknowledge_is_whole(ctx: Context) -> Iterator[Fault]:
+def acknowledges_have_all_parts(ctx: Context) -> Iterator[Fault]:
     for section in ctx.sections("uart", "acknowledge"):
-        yield from roles_stand_once(section, "data", ACKNOWLEDGE_ROLES, "the acknowledge has no part for")
+        yield from roles_occur_once(section, "data", ACKNOWLEDGE_ROLES, "the acknowledge has no part for")
         for row in mappings(section.get("data")):
             role, size = row.get("role"), row.get("bytes")
             if role in ACKNOWLEDGE_ROLES and isinstance(size, int) and size > 1:
@@ -86,24 +87,24 @@ def acknowledge_is_whole(ctx: Context) -> Iterator[Fault]:
                 yield Fault.at(row, "bytes", message, "correct `bytes`, or leave the section out")
 
 
-@rule("ICD106", whole=True)
+@rule("ICD106", needs_complete=True)
 def named_buses_exist(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
-        users = [one for one in ctx.icd.nodes if node in ctx.scope(one)]
+        users = [user for user in ctx.icd.nodes if node in ctx.scope(user)]
         for path in (("crc8", TELECOMMAND), ("crc8", TELEMETRY), ("unsolicited_log",)):
             buses = own_fact(node, *path, "buses")
             for bus, place in buses.placed() if buses is not None else ():
-                if not any(bus in ctx.protocol_of(one) for one in users):
+                if not any(bus in ctx.protocol_of(user) for user in users):
                     text, help = f"the protocol has no section `{bus}`", f"add it, or remove `{bus}`"
                     yield Fault(section_of(node, *path), place, text, help)
 
 
-@rule("ICD107", whole=True)
-def messages_can_be_sent(ctx: Context) -> Iterator[Fault]:
+@rule("ICD107", needs_complete=True)
+def messages_fit_their_can_packets(ctx: Context) -> Iterator[Fault]:
     seen: set[int] = set()
     for node in ctx.icd.nodes:
         can = in_force(ctx, node, "can")
-        # What does not go over CAN may go over another bus.
+        # Messages that are too long for CAN can be sent over another bus.
         if can is None or not {"uart", "i2c"}.isdisjoint(ctx.protocol_of(node)):
             continue
         room = can.get("max_data_bytes", CAN_DATA_BYTES)
@@ -118,7 +119,7 @@ def messages_can_be_sent(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD110")
-def progress_comes_to_an_end(ctx: Context) -> Iterator[Fault]:
+def progress_has_a_field_for_the_end(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         for section in sections(node):
             fields = at_path(section, ("progress", "fields"))
@@ -129,9 +130,9 @@ def progress_comes_to_an_end(ctx: Context) -> Iterator[Fault]:
 
 
 def _is_short(can: Map, direction: str) -> bool:
-    """Whether messages of the direction are one packet each."""
+    """Return whether messages of a direction are sent in one packet each."""
     section = can.get(direction)
-    plain, several = CAN_TYPES[direction]
-    if not isinstance(section, Map) or plain not in section:
+    single, several = CAN_TYPES[direction]
+    if not isinstance(section, Map) or single not in section:
         return False
     return several not in section or not isinstance(can.get("extended"), Map)

@@ -1,4 +1,4 @@
-"""Numbers of the protocol section that follow from one another, and what is assumed."""
+"""Protocol section: numbers that depend on each other, and the keys of assumptions."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ CAN_IDENTIFIER_BITS = 29  # of an extended CAN frame
 
 
 def numbers(section: Map | None, *keys: str) -> tuple[int, ...] | None:
-    """The numbers under the keys, if all of them are there."""
-    found = tuple(at_path(section, [key]) for key in keys)
-    return found if all(isinstance(value, int) for value in found) else None
+    """Return the numbers of several keys; None if one of them is absent or not a number."""
+    values = tuple(at_path(section, [key]) for key in keys)
+    return values if all(isinstance(value, int) for value in values) else None
 
 
 def of_one_number(section: Map, *keys: str) -> Iterator[tuple[str, str, int]]:
-    """Each key that has the number of one before it: that one, itself, and the number."""
+    """Yield (earlier key, key, number) for each key with the same number as an earlier key."""
     seen: dict[int, str] = {}
     for key in keys:
         value = section.get(key)
@@ -62,25 +62,28 @@ def sizes_agree(ctx: Context) -> Iterator[Fault]:
         yield from _log_mask(ctx, node)
 
 
-def _product(section: Map, whole: str, count: str, part: str) -> Iterator[Fault]:
-    found = numbers(section, whole, count, part)
-    if found and found[0] != found[1] * found[2]:
-        message = f"`{whole}` is {found[0]}, but `{count}` times `{part}` is {found[1] * found[2]}"
-        yield Fault.at(section, whole, message, f"correct `{whole}`, `{count}` or `{part}`")
+def _product(section: Map, total: str, count: str, part: str) -> Iterator[Fault]:
+    """Yield a fault if the number of the key ``total`` is not the product of the other two."""
+    values = numbers(section, total, count, part)
+    if values and values[0] != values[1] * values[2]:
+        message = f"`{total}` is {values[0]}, but `{count}` times `{part}` is {values[1] * values[2]}"
+        yield Fault.at(section, total, message, f"correct `{total}`, `{count}` or `{part}`")
 
 
 def _identifier(can: Map) -> Iterator[Fault]:
+    """Yield a fault if the parts of a CAN identifier do not have 29 bits together."""
     parts = can.get("identifier")
     if not isinstance(parts, Seq):
         return
     widths = [part.get("bits") for part in mappings(parts)]
-    known = [width for width in widths if isinstance(width, int)]
-    if len(known) == len(widths) and sum(known) != CAN_IDENTIFIER_BITS:
-        message = f"the parts of the identifier have {sum(known)} bits in all, not {CAN_IDENTIFIER_BITS}"
+    valid = [width for width in widths if isinstance(width, int)]
+    if len(valid) == len(widths) and sum(valid) != CAN_IDENTIFIER_BITS:
+        message = f"the parts of the identifier have {sum(valid)} bits in all, not {CAN_IDENTIFIER_BITS}"
         yield Fault.at(can, "identifier", message, "correct `bits` of a part")
 
 
 def _packets_left(can: Map, extended: Map) -> Iterator[Fault]:
+    """Yield a fault if the byte that counts the packets left is in the data, or outside of the packet."""
     data, left, room = extended.get("data_bytes"), extended.get("packets_left_byte"), can.get("max_data_bytes")
     if isinstance(data, int) and isinstance(left, int) and left < data:
         message = f"byte {left} counts packets, but the data take bytes 0 to {data - 1}"
@@ -91,7 +94,7 @@ def _packets_left(can: Map, extended: Map) -> Iterator[Fault]:
 
 
 def _log_mask(ctx: Context, node: Node) -> Iterator[Fault]:
-    """Where logs carry their mask it has the mask's size: readers take so many bytes of it."""
+    """Yield a fault if the mask in a log does not have the size of `log_mask`, which readers of logs use."""
     size = ctx.fact(node, "log_mask", "bytes")
     for path in (("telemetry_log", "header"), ("unsolicited_log", "message")):
         for row in mappings(own_fact(node, *path)) if isinstance(size, int) else ():
@@ -102,6 +105,7 @@ def _log_mask(ctx: Context, node: Node) -> Iterator[Fault]:
 
 
 def _hole_map(files: Map, hole_map: Map) -> Iterator[Fault]:
+    """Yield the faults of a hole map that has too few bits or names."""
     size, packets = hole_map.get("bytes"), files.get("block_packets")
     if isinstance(size, int) and isinstance(packets, int) and packets > size * 8:
         message = f"a hole map of {size} bytes has {size * 8} bits, a block {packets} packets"
@@ -113,7 +117,7 @@ def _hole_map(files: Map, hole_map: Map) -> Iterator[Fault]:
 
 
 @rule("ICD098")
-def assumptions_are_about_something(ctx: Context) -> Iterator[Fault]:
+def assumptions_name_existing_keys(ctx: Context) -> Iterator[Fault]:
     owners = [section for node in ctx.icd.nodes for section in sections(node)]
     owners += [message.source for message, _ in ctx.messages]
     for owner in owners:

@@ -1,4 +1,4 @@
-"""Enumerations and units that fields name."""
+"""References of fields and of the protocol section to enumerations and units."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from icdgen.suggest import close_to
 
 
 @rule("ICD040")
-def enum_known(ctx: Context) -> Iterator[Fault]:
+def enumerations_exist(ctx: Context) -> Iterator[Fault]:
     for field, (_, _, node) in ctx.fields:
         source = field.source
         if field.type != "enum":
@@ -31,37 +31,38 @@ def enum_known(ctx: Context) -> Iterator[Fault]:
             yield Fault.at(source, "enum", *undeclared(ctx, node, "enumeration", "enums", source["enum"]))
     if ctx.complete:
         for node in ctx.icd.nodes:
-            known = {e.name for n in ctx.scope(node) for e in n.enums}
+            names = {enum.name for declaring in ctx.scope(node) for enum in declaring.enums}
             for owner, key in _protocol_enums(node):
-                if owner[key] not in known:
+                if owner[key] not in names:
                     yield Fault.at(owner, key, *undeclared(ctx, node, "enumeration", "enums", owner[key]))
 
 
 def undeclared(ctx: Context, node: Node, what: str, section: str, name: str) -> tuple[str, str, str]:
-    """Message, help and fix for a name that no ``section`` of the node or of its includes declares."""
-    elsewhere = next((n for n in ctx.icd.nodes for one in getattr(n, section) if one.name == name), None)
-    if elsewhere is not None:
-        help, fix = f"`{elsewhere.name}` declares it: include {elsewhere.file}", ""
+    """Return message, help and fix for a name that no ``section`` in the scope of a node declares."""
+    declaring = next((other for other in ctx.icd.nodes for item in getattr(other, section) if item.name == name), None)
+    if declaring is not None:
+        help, fix = f"`{declaring.name}` declares it: include {declaring.file}", ""
     else:
-        known = (one.name for n in ctx.scope(node) for one in getattr(n, section))
-        help, fix = suggestion(name, known, f"declare it in `{section}:`")
+        names = (item.name for other in ctx.scope(node) for item in getattr(other, section))
+        help, fix = suggestion(name, names, f"declare it in `{section}:`")
     return f"there is no {what} {quote(name)}", help, fix
 
 
-@rule("ICD041", severity="warning", whole=True)
-def enum_used(ctx: Context) -> Iterator[Fault]:
+@rule("ICD041", severity="warning", needs_complete=True)
+def enumerations_are_used(ctx: Context) -> Iterator[Fault]:
     used = {id(field.enum) for field, _ in ctx.fields_with["enum"]}
     named = set()
     for field, (_, _, node) in ctx.fields_with["enum"]:
-        if field.enum is None:  # a slip of the pen; the one that is meant is used
+        # A misspelt name counts as a use of the similar enumeration, which ICD040 suggests.
+        if field.enum is None:
             scope = ctx.scope(node)
-            close = close_to(field.source["enum"], (e.name for n in scope for e in n.enums))
-            named |= {(id(n), close) for n in scope}
+            close = close_to(field.source["enum"], (enum.name for owner in scope for enum in owner.enums))
+            named |= {(id(owner), close) for owner in scope}
     for node in ctx.icd.nodes:
-        for owner, key in _protocol_enums(node):
-            named |= {(id(n), owner[key]) for n in ctx.scope(node)}
+        for section, key in _protocol_enums(node):
+            named |= {(id(owner), section[key]) for owner in ctx.scope(node)}
     for node in ctx.icd.nodes:
-        names = [e.name for e in node.enums]
+        names = [enum.name for enum in node.enums]
         for enum in node.enums:
             if id(enum) not in used and (id(node), enum.name) not in named and names.count(enum.name) == 1:
                 text = f"no field uses the enumeration {quote(enum.name)}"
@@ -69,20 +70,21 @@ def enum_used(ctx: Context) -> Iterator[Fault]:
 
 
 def _protocol_enums(node: Node) -> Iterator[tuple[Map, str]]:
-    """Mappings in the protocol section that name an enumeration, with the key that does."""
+    """Yield each mapping of the protocol section that names an enumeration, with the key of the name."""
     for section in sections(node):
         for key, value in section.items():
             if (key == "enum" or key.endswith("_enum")) and isinstance(value, str):
                 yield section, key
 
 
-@rule("ICD042", whole=True)
-def unit_known(ctx: Context) -> Iterator[Fault]:
+@rule("ICD042", needs_complete=True)
+def units_exist(ctx: Context) -> Iterator[Fault]:
     for field, (_, _, node) in ctx.fields_with["unit"]:
         if field.unit is None:
             unit = field.source["unit"]
             help, fix = "declare it in `units:`; `icdgen units` lists the built-in units", ""
-            if close := meant(unit, (u.symbol for n in ctx.scope(node) for u in n.units)):
+            symbols = (declared.symbol for owner in ctx.scope(node) for declared in owner.units)
+            if close := meant(unit, symbols):
                 otherwise = "" if unit in SPELLINGS else " If not, declare it in `units:`"
                 help, fix = f"did you mean {quote(close)}?{otherwise}", yaml_text(close)
             yield Fault.at(field.source, "unit", f"the unit {quote(unit)} is unknown", help, fix)

@@ -1,4 +1,4 @@
-"""What a rule is, and how the modules of this package register theirs."""
+"""Class of the rules, and the decorator that registers them."""
 
 from __future__ import annotations
 
@@ -16,49 +16,51 @@ Check = Callable[["Context"], Iterator[Fault]]
 
 
 class Rule(NamedTuple):
-    """A rule. ``check`` is None where the finding is raised while reading. Its words stand in ``<theme>.md``."""
+    """A rule. Its title, reason and examples are in ``<theme>.md``."""
 
     code: str
-    theme: str
-    check: Check | None = None
+    theme: str  # name of its module
+    check: Check | None = None  # None if its findings are raised while files are read
     severity: str = "error"  # "error" | "warning"
-    whole: bool = False  # speaks of what is absent, so it needs a model from which nothing was left out
-    last: bool = False  # speaks of what the other rules found
+    needs_complete: bool = False  # reports what is absent, so it needs a model from which nothing was left out
+    runs_last: bool = False  # depends on the findings of other rules
 
     @property
     def page(self) -> Page:
-        """Title, reason, wrong and right example."""
+        """Title, reason, wrong and right example of the rule."""
         from icdgen.icd.rules import pages
 
         return pages.of(self.theme)[self.code]
 
     @property
     def title(self) -> str:
-        """The rule in one line."""
+        """Title of the rule."""
         return self.page.title
 
 
 REGISTERED: dict[str, Rule] = {}
 
 
-def rule(code: str, *, severity: str = "error", whole: bool = False, last: bool = False) -> Callable[[Check], Check]:
-    """Registers the decorated function under ``code``; its module's name is the theme."""
+def rule(
+    code: str, *, severity: str = "error", needs_complete: bool = False, runs_last: bool = False
+) -> Callable[[Check], Check]:
+    """Register the decorated function as the rule ``code``; the name of its module is the theme."""
 
     def register(check: Check) -> Check:
-        add(Rule(code, check.__module__.rpartition(".")[2], check, severity, whole, last))
+        add(Rule(code, check.__module__.rpartition(".")[2], check, severity, needs_complete, runs_last))
         return check
 
     return register
 
 
 def elsewhere(theme: str, *codes: str) -> None:
-    """Registers codes whose findings are raised while reading files or applying overlays."""
+    """Register codes whose findings are raised while files are read or overlays are applied."""
     for code in codes:
         add(Rule(code, theme))
 
 
 def add(new: Rule) -> None:
-    """Raises `ValueError` for a code that is taken."""
+    """Register a rule. Raises `ValueError` if its code is already registered."""
     if new.code in REGISTERED:
         raise ValueError(f"two rules are called {new.code}")
     REGISTERED[new.code] = new

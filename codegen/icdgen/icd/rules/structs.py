@@ -1,4 +1,4 @@
-"""Structs: what messages and other structs name, and what may stand in them."""
+"""Structs: their uses in messages and other structs, and the keys of their fields."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from icdgen.icd.rules.wording import line_of, quote
 from icdgen.icd.trees import mappings
 from icdgen.suggest import close_to
 
-_OF_MEMBERS = frozenset({"at", "name", "identifier", "struct", "count", "after", "up_to", "summary", "aliases"})
-"""Keys of a struct where it stands."""
+# Keys of a line that uses a struct.
+_KEYS_OF_USES = frozenset({"at", "name", "identifier", "struct", "count", "after", "up_to", "summary", "aliases"})
 
 
 def _uses(ctx: Context) -> Iterator[tuple[Map, Map, Node]]:
-    """The entries that name a struct, each with the message or struct that it stands in."""
+    """Yield the lines that use a struct, each with the message or struct that contains it, and the node."""
     for node in ctx.icd.nodes:
         for key in ("structs", "messages"):
             for owner in mappings(node.source.get(key)):
@@ -32,46 +32,45 @@ def _uses(ctx: Context) -> Iterator[tuple[Map, Map, Node]]:
 
 
 @rule("ICD140")
-def struct_known(ctx: Context) -> Iterator[Fault]:
+def structs_exist(ctx: Context) -> Iterator[Fault]:
     for row, _, node in _uses(ctx) if ctx.complete else ():
-        if all(one.name != row["struct"] for n in ctx.scope(node) for one in n.structs):
+        if all(struct.name != row["struct"] for declaring in ctx.scope(node) for struct in declaring.structs):
             yield Fault.at(row, "struct", *undeclared(ctx, node, "struct", "structs", row["struct"]))
 
 
 @rule("ICD141")
-def struct_in_itself(ctx: Context) -> Iterator[Fault]:
+def structs_do_not_contain_themselves(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
-        within = {
-            one["name"]: [row for row in mappings(one.get("fields")) if isinstance(row.get("struct"), str)]
-            for one in mappings(node.source.get("structs"))
-            if isinstance(one.get("name"), str)
+        uses = {
+            struct["name"]: [row for row in mappings(struct.get("fields")) if isinstance(row.get("struct"), str)]
+            for struct in mappings(node.source.get("structs"))
+            if isinstance(struct.get("name"), str)
         }
-        for name, rows in within.items():
+        for name, rows in uses.items():
             for row in rows:
-                way = _way(row["struct"], name, within)
-                if way is not None:
-                    there = " -> ".join((name, *way))
-                    message = f"the struct {quote(name)} contains itself: {there}"
+                path = _shortest_path(row["struct"], name, uses)
+                if path is not None:
+                    message = f"the struct {quote(name)} contains itself: {' -> '.join((name, *path))}"
                     help = "write the inner fields directly into the struct"
                     yield Fault.at(row, "struct", message, help)
 
 
-def _way(first: str, last: str, within: dict[str, list[Map]]) -> list[str] | None:
-    """The structs from one to another, each of which has the next in it; None if there is no such way."""
-    ways, seen = [[first]], {first}
-    while ways:
-        way = ways.pop(0)
-        if way[-1] == last:
-            return way
-        for row in within.get(way[-1], ()):
+def _shortest_path(first: str, last: str, uses: dict[str, list[Map]]) -> list[str] | None:
+    """Return the structs from ``first`` to ``last``, each of which contains the next; None if there is no path."""
+    paths, seen = [[first]], {first}
+    while paths:
+        path = paths.pop(0)
+        if path[-1] == last:
+            return path
+        for row in uses.get(path[-1], ()):
             if row["struct"] not in seen:
                 seen.add(row["struct"])
-                ways.append([*way, row["struct"]])
+                paths.append([*path, row["struct"]])
     return None
 
 
 @rule("ICD142")
-def struct_at_byte(ctx: Context) -> Iterator[Fault]:
+def structs_begin_at_a_byte(ctx: Context) -> Iterator[Fault]:
     for line in ctx.lines:
         node, at = line.node, line.node.at
         if struct_layout_of(node) is not None and at % 8:
@@ -81,10 +80,10 @@ def struct_at_byte(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD143")
-def struct_says(ctx: Context) -> Iterator[Fault]:
+def uses_have_no_keys_of_fields(ctx: Context) -> Iterator[Fault]:
     for row, _, _ in _uses(ctx):
         for key in row:
-            if key not in _OF_MEMBERS:
+            if key not in _KEYS_OF_USES:
                 message = f"{quote(row['name'])} is a struct, which cannot have `{key}`; its fields can"
                 yield Fault.at(row, key, message, f"move it to the fields of {quote(row['struct'])}, or remove it")
     for struct, _ in ctx.structs:
@@ -99,25 +98,27 @@ def struct_says(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD049")
-def struct_names(ctx: Context) -> Iterator[Fault]:
-    yield from names_twice(ctx, "a struct", lambda n: n.structs, "rename one, or use the other")
+def struct_names_are_unique(ctx: Context) -> Iterator[Fault]:
+    yield from names_twice(ctx, "a struct", lambda node: node.structs, "rename one, or use the other")
 
 
-@rule("ICD144", severity="warning", whole=True)
-def struct_used(ctx: Context) -> Iterator[Fault]:
+@rule("ICD144", severity="warning", needs_complete=True)
+def structs_are_used(ctx: Context) -> Iterator[Fault]:
     names = [struct.name for struct, _ in ctx.structs]
-    structs = {id(one) for node in ctx.icd.nodes for one in mappings(node.source.get("structs"))}
-    named: dict[str, set[str]] = {}  # by each struct; by a message: ""
+    # Look at the tree and not at the model: a message with errors uses its structs, too.
+    structs = {id(item) for node in ctx.icd.nodes for item in mappings(node.source.get("structs"))}
+    used_by: dict[str, set[str]] = {}  # structs that each struct uses; under "" those that messages use
     for row, owner, node in _uses(ctx):
-        known = [struct.name for n in ctx.scope(node) for struct in n.structs]
-        name = row["struct"] if row["struct"] in known else close_to(row["struct"], known)  # a slip of the pen
-        named.setdefault(str(owner.get("name")) if id(owner) in structs else "", set()).add(name)
-    used: set[str] = set()  # by what is written: whatever else is wrong with a message, it uses what it names
-    left = [""]
-    while left:
-        new = named.get(left.pop(), set()) - used
+        declared = [struct.name for declaring in ctx.scope(node) for struct in declaring.structs]
+        # A misspelt name counts as a use of the similar struct, which ICD140 suggests.
+        name = row["struct"] if row["struct"] in declared else close_to(row["struct"], declared)
+        used_by.setdefault(str(owner.get("name")) if id(owner) in structs else "", set()).add(name)
+    used: set[str] = set()
+    queue = [""]
+    while queue:
+        new = used_by.get(queue.pop(), set()) - used
         used |= new
-        left += new
+        queue += new
     for struct, _ in ctx.structs:
         if struct.name not in used and names.count(struct.name) == 1:
             message = f"no message uses the struct {quote(struct.name)}"
@@ -125,7 +126,7 @@ def struct_used(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD145")
-def struct_divided(ctx: Context) -> Iterator[Fault]:
+def split_fields_have_the_same_orders(ctx: Context) -> Iterator[Fault]:
     for line in ctx.lines:
         node = line.node
         struct, home = ctx.struct_of.get(id(struct_layout_of(node)), (None, None))
@@ -133,8 +134,8 @@ def struct_divided(ctx: Context) -> Iterator[Fault]:
             continue
         for split in _split_fields(struct.source):
             if "byte_order" not in split or "bit_order" not in split:
-                there = line_of(split.at("bitfields"), node.source.place)
-                bits = f"the bits of {quote(split['name'])} ({there}), which is divided, would lie elsewhere"
+                line_of_split = line_of(split.at("bitfields"), node.source.place)
+                bits = f"the bits of {quote(split['name'])} ({line_of_split}), which is divided, would lie elsewhere"
                 message = f"{quote(node.name)} has other orders than `{home.name}`, so {bits}"
                 help = f"give {quote(split['name'])} a `byte_order` and a `bit_order`, or make its parts fields"
                 yield Fault.at(node.source, "struct", message, help)

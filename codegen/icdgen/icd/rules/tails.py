@@ -1,4 +1,4 @@
-"""Messages of variable length: counters, places, and links that carry them; frames that may end early."""
+"""Messages of variable length: counters, positions and links; frames that may end early."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from icdgen.icd.trees import mappings, named
 
 
 @rule("ICD120")
-def counted(ctx: Context) -> Iterator[Fault]:
+def counts_are_determined(ctx: Context) -> Iterator[Fault]:
     for message, _ in ctx.messages:
         for item in tails.open_parts(message.source):
             yield from tails.faults_of_count(message.source, item)
@@ -31,11 +31,12 @@ def counted(ctx: Context) -> Iterator[Fault]:
 
 
 def _lengths(ctx: Context, node: Node) -> dict[str, int]:
-    return {struct.name: struct.length for one in ctx.scope(node) for struct in one.structs}
+    """Return the lengths in bytes of the structs that messages of a node can use, by name."""
+    return {struct.name: struct.length for owner in ctx.scope(node) for struct in owner.structs}
 
 
 @rule("ICD121")
-def at_the_end(ctx: Context) -> Iterator[Fault]:
+def variable_parts_are_at_the_end(ctx: Context) -> Iterator[Fault]:
     for line in ctx.lines:
         source = line.node.source
         if "after" in source and not tails.is_open(source):
@@ -58,7 +59,7 @@ def at_the_end(ctx: Context) -> Iterator[Fault]:
             yield Fault.at(item, "at", text, help, related=related)
         layout = message.layout
         for overlay in layout.fixed if layout.sequence else ():
-            # The place of the second part depends on the size of the first, so only the fixed part is in all frames.
+            # The position of the second part depends on the size of the first, so an overlay can only read the fixed part.
             always = layout.length if len(layout.sequence) > 1 else layout.shortest
             end = overlay.at + stride(overlay)
             if isinstance(overlay, Overlay) and end > 8 * always:
@@ -68,8 +69,8 @@ def at_the_end(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD122")
-def carried(ctx: Context) -> Iterator[Fault]:
-    """Links, logs and composites know each message by one length."""
+def variable_lengths_are_supported(ctx: Context) -> Iterator[Fault]:
+    """Report variable-length messages on links, and in composite messages: both need one length per message."""
     for node in filter(ctx.is_linked, ctx.icd.nodes):
         for message in ctx.messages_of(node):
             if message.layout.sequence:
@@ -77,31 +78,31 @@ def carried(ctx: Context) -> Iterator[Fault]:
                 text = f"{quote(message.name)} has {lengths}, but the links in `protocol` need one length per message"
                 help = "leave `protocol` out of this ICD, or give the message a fixed `count`"
                 yield Fault.at(message.source, "length", text, help)
-    longer = {message.name: message for message, _ in ctx.messages if message.layout.sequence}
+    variable = {message.name: message for message, _ in ctx.messages if message.layout.sequence}
     for message, node in ctx.messages:
         for part in mappings(message.source.get("contains")):
-            known = named(longer, part.get("message"))
-            if known is not None and known in ctx.messages_of(node):
-                text = f"{quote(known.name)} has no fixed length, so {quote(message.name)} cannot repeat it"
+            inner = named(variable, part.get("message"))
+            if inner is not None and inner in ctx.messages_of(node):
+                text = f"{quote(inner.name)} has no fixed length, so {quote(message.name)} cannot repeat it"
                 yield Fault(message.source, part.at("message"), text, "remove it from `contains`")
 
 
 @rule("ICD150")
-def ends_early(ctx: Context) -> Iterator[Fault]:
+def messages_can_end_early(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         for message in ctx.messages_of(node):
-            why = _never_early(message, ctx.is_linked(node)) if message.may_end_early else ""
+            why = _reason_against_early_end(message, ctx.is_linked(node)) if message.may_end_early else ""
             if why:
                 text = f"{quote(message.name)} {why}"
                 yield Fault.at(message.source, "may_end_early", text, "remove `may_end_early`")
 
 
-def _never_early(message: Message, linked: bool) -> str:
-    """Why no frame of a message can lack its zeros; empty if one can."""
+def _reason_against_early_end(message: Message, is_linked: bool) -> str:
+    """Return why no frame of a message can omit trailing zeros, as the end of a sentence; empty if a frame can."""
     if tails.open_parts(message.source):
         return "has a variable-length field, and the zeros at the end of a frame belong to it"
     if message.length < 2:
         return f"has {count(message.length, 'byte')}, and the first byte is always sent"
-    if linked:
+    if is_linked:
         return "may end early, but the links in `protocol` need one length per message"
     return ""

@@ -1,4 +1,4 @@
-"""Values that a field must be able to hold: enumeration members, constants, special values."""
+"""Values of a field: enumeration members, constants and special values must be in its range."""
 
 from __future__ import annotations
 
@@ -19,27 +19,27 @@ NUMBERS = ("uint", "int", "enum")
 
 
 @rule("ICD030")
-def member_fits(ctx: Context) -> Iterator[Fault]:
-    largest = {id(e): e.widest for e in ctx.enums}
+def members_fit_their_fields(ctx: Context) -> Iterator[Fault]:
+    widest = {id(enum): enum.widest for enum in ctx.enums}
     for field, _ in ctx.fields_with["enum"]:
-        top = largest.get(id(field.enum)) if field.enum else None
-        if field.enum and top is not None and not _holds(field, top):
-            unfit = sum(not _holds(field, m) for m in field.enum.members)
-            others = f" (nor do {unfit - 1} others)" if unfit > 2 else " (nor does another)" if unfit == 2 else ""
+        top = widest.get(id(field.enum)) if field.enum else None
+        if field.enum and top is not None and not _can_represent(field, top):
+            misfits = sum(not _can_represent(field, member) for member in field.enum.members)
+            also = f" (nor do {misfits - 1} others)" if misfits > 2 else " (nor does another)" if misfits == 2 else ""
             member = f"{quote(top.name)} = {top.values} of {quote(field.enum.name)}"
-            text = f"{member} does not fit the {count(field.bits, 'bit')} of {quote(field.name)}{others}"
+            text = f"{member} does not fit the {count(field.bits, 'bit')} of {quote(field.name)}{also}"
             help = f"it takes {count(max(map(field.enum.bits_for, (top.value, top.last))), 'bit')}"
             help += ", as others of the enumeration are negative" if field.is_signed and top.value >= 0 else ""
             yield Fault.at(field.source, "bits", text, help)
 
 
-def _holds(field: Scalar, member: Member) -> bool:
-    """Whether the field can have all values of the member."""
+def _can_represent(field: Scalar, member: Member) -> bool:
+    """Return whether all values of a member are in the range of a field."""
     return field.raw_min <= member.value and member.last <= field.raw_max
 
 
 @rule("ICD035")
-def range_has_more_than_one_value(ctx: Context) -> Iterator[Fault]:
+def ranges_have_several_values(ctx: Context) -> Iterator[Fault]:
     for enum in ctx.enums:
         for member in enum.members:
             if member.to is None or member.to > member.value:
@@ -51,7 +51,7 @@ def range_has_more_than_one_value(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD031")
-def const_fits(ctx: Context) -> Iterator[Fault]:
+def constants_fit(ctx: Context) -> Iterator[Fault]:
     for field, _ in ctx.fields_with["const"]:
         problem = _misfit(field, field.const)
         if problem:
@@ -59,7 +59,7 @@ def const_fits(ctx: Context) -> Iterator[Fault]:
 
 
 @rule("ICD032")
-def special_fits(ctx: Context) -> Iterator[Fault]:
+def special_values_fit(ctx: Context) -> Iterator[Fault]:
     for field, _ in ctx.fields_with["special"]:
         seen = set()
         for item in mappings(field.source["special"]):
@@ -77,7 +77,7 @@ def special_fits(ctx: Context) -> Iterator[Fault]:
 
 
 def _not_special(field: Scalar, given: int | float | str) -> tuple[str, str] | None:
-    """What keeps a value from having a meaning in the field, and what to do; None if it can."""
+    """Return message and help if a value cannot be a special value of a field; None if it can."""
     if field.type == "float":
         if isinstance(given, str) and given not in floats.NAMED:
             return f"{quote(given)} is not a number", "write a number, nan, inf or -inf"
@@ -93,7 +93,7 @@ def _not_special(field: Scalar, given: int | float | str) -> tuple[str, str] | N
 
 
 def _misfit(field: Scalar, value: int | None) -> tuple[str, str] | None:
-    """What keeps the field from holding the raw value, and what to do; None if it fits."""
+    """Return message and help if a raw value is out of range for a field; None if it is in range."""
     if field.type not in NUMBERS:
         what = f"of {quote(field.name)} has no meaning for type `{field.type}`"
         return what, "only uint, int and enum fields have it"
@@ -130,7 +130,7 @@ def display_suits(ctx: Context) -> Iterator[Fault]:
 
 
 def _in_words(field: Scalar, node: LayoutNode) -> str:
-    """The type of a field: ``a float``, ``an enumeration with negative values``."""
+    """Return the type of a field in words: ``a float``, ``an enumeration with negative values``."""
     if isinstance(node, Derived):
         return "a derived value"
     if field.type == "enum":

@@ -1,4 +1,4 @@
-"""What the protocol section says and nothing would heed, and parts that a message or field cannot play."""
+"""Protocol section: keys without effect, and roles that a message or field cannot have."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from icdgen.icd.places import NodePlace, scalars_in
 from icdgen.icd.roles import INTEGERS, PROTOCOL, Role, reasons_against
 from icdgen.icd.rules.context import Context, section_of
 from icdgen.icd.rules.protocol import sections
-from icdgen.icd.rules.protocol_limits import roles_stand_once
+from icdgen.icd.rules.protocol_limits import roles_occur_once
 from icdgen.icd.rules.protocol_names import FIELDS
 from icdgen.icd.rules.protocol_sizes import numbers
 from icdgen.icd.rules.rule import rule
@@ -28,7 +28,7 @@ STEPS = ("reset", "advance", "load", "burst", "initiate", "begin", "packet", "fi
 
 
 @rule("ICD115")
-def nothing_is_passed_over(ctx: Context) -> Iterator[Fault]:
+def keys_have_an_effect(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         yield from _acknowledges(node)
         yield from _can_data(node)
@@ -36,6 +36,7 @@ def nothing_is_passed_over(ctx: Context) -> Iterator[Fault]:
 
 
 def _acknowledges(node: Node) -> Iterator[Fault]:
+    """Yield a fault if a node does not require acknowledges, for which clients wait in any case."""
     for bus in ("uart", "i2c"):
         section = section_of(node, bus, "acknowledge")
         if section is not None and section.get("required_before_next") is False:
@@ -45,6 +46,7 @@ def _acknowledges(node: Node) -> Iterator[Fault]:
 
 
 def _can_data(node: Node) -> Iterator[Fault]:
+    """Yield the faults of acknowledges and requests on CAN that have data."""
     for direction, key, what in (
         (TELECOMMAND, "acknowledge_bytes", "an acknowledge on CAN is taken with no data only"),
         (TELEMETRY, "request_bytes", "a request on CAN is sent with no data"),
@@ -56,6 +58,7 @@ def _can_data(node: Node) -> Iterator[Fault]:
 
 
 def _unsolicited(node: Node) -> Iterator[Fault]:
+    """Yield the faults of unsolicited logs without framing, or on another bus than the UART."""
     log = section_of(node, "unsolicited_log")
     if log is None:
         return
@@ -68,10 +71,10 @@ def _unsolicited(node: Node) -> Iterator[Fault]:
             yield Fault(log, place, "unsolicited logs are received on the UART only", f"remove `{bus}`")
 
 
-@rule("ICD116", whole=True)
-def parts_can_be_played(ctx: Context) -> Iterator[Fault]:
+@rule("ICD116", needs_complete=True)
+def fields_can_have_their_roles(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
-        messages = {one.name: one for one in ctx.messages_of(node)}
+        messages = {message.name: message for message in ctx.messages_of(node)}
         for section in sections(node):
             message = named(messages, section.get("message"))
             if message is not None:
@@ -83,22 +86,22 @@ def parts_can_be_played(ctx: Context) -> Iterator[Fault]:
 
 def _fields(owner: Map, keys: Iterable[str], fields: Iterable[NodePlace]) -> Iterator[Fault]:
     """Yield the faults of fields that have two roles, or a role that they cannot have."""
-    known = {field.name: field for field in fields if not field.view}
+    by_name = {field.name: field for field in fields if not field.view}
     seen: dict[str, str] = {}
     for key in keys:
-        field = named(known, owner.get(key))
+        field = named(by_name, owner.get(key))
         if field is None:
             continue
-        other = seen.setdefault(field.name, key)
-        if other != key:
-            yield Fault.at(owner, key, f"{quote(field.name)} is `{other}` already", "name the field of each part")
+        first_role = seen.setdefault(field.name, key)
+        if first_role != key:
+            yield Fault.at(owner, key, f"{quote(field.name)} is `{first_role}` already", "name the field of each part")
         elif reasons := reasons_against(field.scalar, PROTOCOL.get(key, Role(INTEGERS))):
             text = f"{quote(field.name)} cannot be `{key}`: it {reasons[0]}"
             yield Fault.at(owner, key, text, "name another field")
 
 
 def _telecommands_once(node: Node) -> Iterator[Fault]:
-    """A telecommand that begins two steps of the transfer of files: its receiver could not tell which."""
+    """Yield a fault for each telecommand of two steps of a file transfer, which a receiver cannot distinguish."""
     files = section_of(node, "file_transfer") or unread()
     seen: dict[str, str] = {}
     for procedure, key in product(files, STEPS):
@@ -108,13 +111,13 @@ def _telecommands_once(node: Node) -> Iterator[Fault]:
             yield Fault.at(files[procedure][key], "message", message, "name that of each step")
 
 
-@rule("ICD117", whole=True)
-def packets_have_their_message(ctx: Context) -> Iterator[Fault]:
+@rule("ICD117", needs_complete=True)
+def packets_match_their_message(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         sizes = numbers(section_of(node, "file_transfer"), "packet_bytes", "packet_counter_bytes")
         if sizes is None:
             continue
-        messages = {one.name: one for one in ctx.messages_of(node)}
+        messages = {message.name: message for message in ctx.messages_of(node)}
         for bus in BUSES:
             section = section_of(node, "file_transfer", "download", bus)
             if section is None:
@@ -122,14 +125,14 @@ def packets_have_their_message(ctx: Context) -> Iterator[Fault]:
             for key in ("packet", "id_of"):
                 message = named(messages, section.get(key))
                 if message is None or (key == "id_of" and bus == "uart"):
-                    continue  # on the UART any id can head the packets
+                    continue  # on the UART, packets can have any id
                 if message.telemetry_id is None or message.length != sum(sizes):
                     text = f"a packet has {count(sizes[1], 'byte')} of counter and {sizes[0]} of the file, which "
                     yield Fault.at(section, key, f"{text}{quote(message.name)} has not", "name its frame")
 
 
 @rule("ICD118")
-def rows_are_read_as_they_are(ctx: Context) -> Iterator[Fault]:
+def rows_have_readable_types(ctx: Context) -> Iterator[Fault]:
     for path in ROWS:
         for section in ctx.sections(*path[:-1]):
             for row in mappings(section.get(path[-1])):
@@ -141,4 +144,4 @@ def rows_are_read_as_they_are(ctx: Context) -> Iterator[Fault]:
                         yield Fault.at(row, "type", message, "correct `type` or `role`")
     for index in ctx.sections("index_file"):
         if any("role" in row for row in mappings(index.get("entry"))):
-            yield from roles_stand_once(index, "entry", INDEX_ROLES, "an entry of the index has no part for")
+            yield from roles_occur_once(index, "entry", INDEX_ROLES, "an entry of the index has no part for")
