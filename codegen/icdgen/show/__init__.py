@@ -1,1 +1,1 @@
-"""ICDs after errata, for machines and for people: ``icdgen show``."""
+"""Text and JSON forms of ICDs with their errata applied, for ``icdgen show``."""

@@ -1,4 +1,4 @@
-"""The table of a message's fields, as a reader of the manual expects it."""
+"""Table of the fields of a message, with the columns of tables in manuals."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _COLUMNS = [
 
 
 def field_table(message: Message | Struct, node: Node, width: int | None = None) -> str:
-    """Fields and reserved bits in the order of the frame; empty for a message without any."""
+    """Return a table of fields and reserved bits in the order of the frame; empty for a message without fields."""
     rows = [(field.at, _row(field, message)) for field in lines(message.layout) if not field.is_count]
     reserved = ("reserved", "", "", "", "", "", "")
     rows += [(gap.at, (str(gap.at), str(gap.bits), *reserved)) for gap in layout.gaps(message, node)]
@@ -40,6 +40,7 @@ def field_table(message: Message | Struct, node: Node, width: int | None = None)
 
 
 def _row(field: Line, message: Message | Struct) -> tuple[str, ...]:
+    """Return the cells of a field, in the order of `_COLUMNS`."""
     low, high = ("" if bound is None else exact_text(bound) for bound in allowed_ends(field))
     resolution = factor_text(field.scale.factor) if field.scale else ""
     unit = field.unit_symbol
@@ -56,18 +57,16 @@ def _row(field: Line, message: Message | Struct) -> tuple[str, ...]:
 def remarks(
     field: NodePlace, number: Callable[[Fraction], str] = exact_text, message: Message | None = None
 ) -> Iterator[str]:
-    """What is constant, exclusive limits, and what special values mean, that it is a view; ``number`` writes numbers.
+    """Yield remarks about a field: conditions, counts, orders, constants, exclusive limits, special values.
 
-    ``message`` is the one that has it, if the field can be in a variable-length part.
+    ``number`` formats numbers. ``message`` is the message of the field, if it can have variable-length parts.
     """
     part = _variable_part(message, field)
     if part is not None and message is not None:
         yield "up to the end of the frame" if part.is_rest else f"as many as {count_text(part.counter, part.plus)} says"
-        before = [
-            other.name for other in message.layout.parts[:-1] if other.begin < field.at // 8 and other is not part
-        ]
-        if before:
-            yield f"behind {before[-1]}"
+        earlier = [other for other in message.layout.parts[:-1] if other.begin < field.at // 8 and other is not part]
+        if earlier:
+            yield f"behind {earlier[-1].name}"
     if field.when:
         yield f"only there if {' and '.join(condition_text(condition, message) for condition in field.when)}"
     if field.aliases:
@@ -97,6 +96,6 @@ def remarks(
 
 
 def _variable_part(message: Message | Struct | None, field: NodePlace) -> VariablePart | None:
-    """Return the part of variable length that a field is, or is in; None if it is in none."""
+    """Return the variable-length part that contains a field; None for a field of the fixed part."""
     node = field.steps[0].node
     return next((part for part in message.layout.parts if part.node is node), None) if message else None

@@ -1,4 +1,4 @@
-"""The stable machine-readable form of ICDs, described by ``show.schema.json``. What does not apply is left out."""
+"""JSON form of ICDs. ``show.schema.json`` defines it; attributes that do not apply are omitted."""
 
 from __future__ import annotations
 
@@ -21,8 +21,10 @@ SCHEMA = Path(__file__).parent.with_name("show.schema.json")
 
 _Object = dict[str, object]
 
-_PLAIN = ("str", "int", "str | None", "int | None")  # types, as the model's classes declare them
-_OTHERWISE = {  # what is not shown, or not as it is
+# Annotations of attributes that are shown unchanged.
+_PLAIN = ("str", "int", "str | None", "int | None")
+# Attributes with these annotations that are not shown, or shown in another form.
+_EXCEPTIONS = {
     Node: ("file",),
     Message: ("node",),
     Enum: ("node",),
@@ -32,26 +34,28 @@ _OTHERWISE = {  # what is not shown, or not as it is
 
 
 def to_json(icd: Icd) -> _Object:
-    """A tree for `json.dumps`. A node lists only its own messages and enumerations; see its ``includes`` for more."""
+    """Return ICDs as values for JSON. A node has only its own messages and enumerations, and ``includes``."""
     loggable = [{"node": node.name} | _row(row) for node in icd.nodes for row in node.loggable]
     return {"format": FORMAT, "nodes": [_node(node) for node in icd.nodes], "loggable": loggable}
 
 
 @cache
-def as_they_are(kind: Any) -> tuple[str, ...]:
-    """The attributes of a class of the model that are shown as they are, under their own names."""
+def plain_attributes(kind: Any) -> tuple[str, ...]:
+    """Return the attributes of a class of the model that are shown unchanged, under their own names."""
     names = (attribute.name for attribute in fields(kind) if attribute.type in _PLAIN)
-    return tuple(name for name in names if name not in _OTHERWISE.get(kind, ()))
+    return tuple(name for name in names if name not in _EXCEPTIONS.get(kind, ()))
 
 
 def _attributes(thing: Any) -> _Object:
+    """Return the plain attributes of an object that differ from their default."""
     kind: Any = type(thing)
-    values = {name: getattr(thing, name) for name in as_they_are(kind)}
+    values = {name: getattr(thing, name) for name in plain_attributes(kind)}
     return {name: value for name, value in values.items() if value != _defaults(kind).get(name)}
 
 
 @cache
 def _defaults(kind: Any) -> dict[str, object]:
+    """Return the defaults of the attributes of a class."""
     return {attribute.name: attribute.default for attribute in fields(kind)}
 
 
@@ -68,13 +72,14 @@ def _node(node: Node) -> _Object:
     ) | {
         "includes": list(node.includes),
         **({"structs": list(map(_struct, node.structs))} if node.structs else {}),
-        "messages": [_message(m) for m in node.messages],
+        "messages": [_message(message) for message in node.messages],
         "enums": [_row(enum) | {"members": list(map(_row, enum.members))} for enum in node.enums],
         "loggable": [_row(row) for row in node.loggable],
     }
 
 
 def _message(message: Message) -> _Object:
+    """Return a message with its fields and derived values."""
     parts = list(map(_variable_part, message.layout.parts))
     places = [place for place in places_in(message.layout) if not place.is_count]
     return _present(
@@ -92,7 +97,7 @@ def _message(message: Message) -> _Object:
 
 
 def _variable_part(part: VariablePart) -> _Object:
-    """A part of variable length; its counter is left out if only the length of a frame gives the number of elements."""
+    """Return a variable-length part; without a counter if the length of the frame gives the number of elements."""
     return _present(
         part=part.name,
         counter=None if part.is_rest else part.counter,
@@ -104,6 +109,7 @@ def _variable_part(part: VariablePart) -> _Object:
 
 
 def _field(field: NodePlace) -> _Object:
+    """Return a field."""
     scale = field.scale
     return _present(
         name=field.name,
@@ -134,43 +140,47 @@ def _field(field: NodePlace) -> _Object:
 
 
 def _struct(struct: Struct) -> _Object:
+    """Return a struct with its fields."""
     fields = list(map(_field, places_in(struct.layout)))
     return {"name": struct.name, "length": struct.length} | _row(struct) | {"fields": fields}
 
 
 def _derived(field: NodePlace) -> _Object:
+    """Return a derived value."""
     attributes = {key: getattr(field, key) for key in ("name", "identifier", "formula", "summary")}
     display = field.display.plain if field.display else None
     return _present(**attributes, aliases=list(field.aliases), unit=field.unit_symbol or None, display=display)
 
 
 def _row(thing: Enum | Member | Loggable | Struct) -> _Object:
+    """Return the plain attributes, aliases and errata of an object."""
     aliases = list(thing.aliases) if isinstance(thing, (Enum, Member, Struct)) else []
     return _present(**_attributes(thing), aliases=aliases, **_ids(thing.errata))
 
 
 def _errata(node: Node, is_note: bool) -> list[_Object]:
+    """Return the errata or the notes of a node, with the places that they are about."""
     places: dict[str, list[_Object]] = {}
     for place, errata in _places(node):
         for erratum in errata:
             places.setdefault(erratum.id, []).append(place)
     return [
         _present(
-            **_attributes(e),
-            **{"what" if is_note else "why": e.why},
-            tables=list(e.tables),
-            printed=plain(dict(e.printed)),
-            held=plain(dict(e.held)),
-            places=places.get(e.id, []),
+            **_attributes(erratum),
+            **{"what" if is_note else "why": erratum.why},
+            tables=list(erratum.tables),
+            printed=plain(dict(erratum.printed)),
+            held=plain(dict(erratum.held)),
+            places=places.get(erratum.id, []),
         )
-        | ({} if is_note else {"changes": e.changes})
-        for e in node.errata
-        if e.is_note == is_note
+        | ({} if is_note else {"changes": erratum.changes})
+        for erratum in node.errata
+        if erratum.is_note == is_note
     ]
 
 
 def _places(node: Node) -> Iterator[tuple[_Object, tuple[Erratum, ...]]]:
-    """Every object of the node that errata can concern, with those that do."""
+    """Yield each object of a node that errata can be about, with its errata."""
     for what, owners in (("struct", node.structs), ("message", node.messages)):
         for owner in owners:
             yield {what: owner.name}, owner.errata
@@ -185,6 +195,7 @@ def _places(node: Node) -> Iterator[tuple[_Object, tuple[Erratum, ...]]]:
 
 
 def _ids(errata: tuple[Erratum, ...]) -> dict[str, list[str]]:
+    """Return the ids of errata and of notes."""
     return {
         "errata": [erratum.id for erratum in errata if not erratum.is_note],
         "notes": [erratum.id for erratum in errata if erratum.is_note],
@@ -192,5 +203,5 @@ def _ids(errata: tuple[Erratum, ...]) -> dict[str, list[str]]:
 
 
 def _present(**items: object) -> _Object:
-    """Without what is None or empty. 0 and False stay."""
+    """Return the items that have a value: not None, and not an empty text, list or mapping."""
     return {key: value for key, value in items.items() if value is not None and value not in ("", [], {})}

@@ -1,4 +1,4 @@
-"""ICDs as text: the nodes, one node's messages, one message, enumeration or erratum."""
+"""Text form of ICDs: the nodes, the messages of a node, or a message, enumeration, struct or erratum."""
 
 from __future__ import annotations
 
@@ -40,31 +40,34 @@ _MESSAGES = [
 
 
 def to_text(icd: Icd, selection: Sequence[str] = (), width: int | None = None, kind: str | None = None) -> str:
-    """Without a selection the nodes; of one node its messages; of a node and a name or id that message.
+    """Return the text of a selection: empty for all nodes, a node, or a node and an item of it.
 
-    The second name may also be an enumeration, a struct or an erratum's id; the node need not be named if it is the only one.
-    ``width`` is that of the terminal, None for a pipe.
-    Raises `NotFound` or `Ambiguous`.
+    The item is a message (by name or id), an enumeration, a struct or the id of an erratum. The node can be omitted if there is
+    only one. ``width`` is the width of the terminal, None for a pipe. Raises `NotFound` or `Ambiguous`.
     """
     if not selection:
         return _nodes(icd, width)
     if len(selection) > 1:
-        return _one(icd, find_node(icd, selection[0]), selection[1], width, kind)
+        return _item(icd, find_node(icd, selection[0]), selection[1], width, kind)
     node, items = find_named(icd, selection)
-    return _one(icd, node, items[0], width, kind) if items else _node(icd, node, width, kind)
+    return _item(icd, node, items[0], width, kind) if items else _node(icd, node, width, kind)
 
 
 def _nodes(icd: Icd, width: int | None) -> str:
+    """Return the table of all nodes."""
     rows = [
         (
             node.name,
             node.title,
             _number(node.node_type),
             _number(node.interface_version),
-            *(str(sum(m.kind == kind for m in node.messages)) for kind in (TELECOMMAND, TELEMETRY, CONFIGURATION)),
+            *(
+                str(sum(message.kind == kind for message in node.messages))
+                for kind in (TELECOMMAND, TELEMETRY, CONFIGURATION)
+            ),
             str(sum(map(_field_count, node.messages))),
-            str(sum(not e.is_note for e in node.errata)),
-            str(sum(e.is_note for e in node.errata)),
+            str(sum(not erratum.is_note for erratum in node.errata)),
+            str(sum(erratum.is_note for erratum in node.errata)),
             ", ".join(node.includes),
         )
         for node in icd.nodes
@@ -73,6 +76,7 @@ def _nodes(icd: Icd, width: int | None) -> str:
 
 
 def _node(icd: Icd, node: Node, width: int | None, kind: str | None) -> str:
+    """Return the head of a node and the table of its messages, own messages first."""
     facts = [
         f"node type {node.node_type}" if node.node_type is not None else "",
         f"interface version {node.interface_version}" if node.interface_version is not None else "",
@@ -83,67 +87,68 @@ def _node(icd: Icd, node: Node, width: int | None, kind: str | None) -> str:
     ]
     text = _lines([f"{node.name}: {node.title}", "; ".join(filter(None, facts)), node.summary], width)
     form = protocol_facts.of(icd, node).stream
-    messages = [m for m in icd.messages_of(node) if kind in (None, m.kind)]
-    messages.sort(key=lambda m: m.node != node.name)  # its own first
-    rows = [
-        (
-            "/".join(id_text(form, id) for id in m.ids),
-            m.kind,
-            m.name,
-            str(m.layout.longest) if len(m.layout.lengths) == 1 else f"{m.layout.shortest} to {m.layout.longest}",
-            str(_field_count(m)),
-            _number(m.table),
-            m.group,
-            m.node if m.node != node.name else "",
+    messages = [message for message in icd.messages_of(node) if kind in (None, message.kind)]
+    messages.sort(key=lambda message: message.node != node.name)
+    rows = []
+    for message in messages:
+        layout = message.layout
+        rows.append(
+            (
+                "/".join(id_text(form, id) for id in message.ids),
+                message.kind,
+                message.name,
+                str(layout.longest) if len(layout.lengths) == 1 else f"{layout.shortest} to {layout.longest}",
+                str(_field_count(message)),
+                _number(message.table),
+                message.group,
+                message.node if message.node != node.name else "",
+            )
         )
-        for m in messages
-    ]
     text += "\n" + render(_MESSAGES, rows, width) if rows else ""
     if node.enums:
-        text += "\n" + _lines([f"Enumerations: {', '.join(e.name for e in node.enums)}"], width)
-    missing = [f"Missing: {m.kind} {id_text(form, m.id)} {m.name}. {m.why}" for m in node.missing]
+        text += "\n" + _lines([f"Enumerations: {', '.join(enum.name for enum in node.enums)}"], width)
+    missing = [f"Missing: {item.kind} {id_text(form, item.id)} {item.name}. {item.why}" for item in node.missing]
     return text + ("\n" + _lines(missing, width) if missing else "")
 
 
-def _one(icd: Icd, node: Node, name: str, width: int | None, kind: str | None) -> str:
+def _item(icd: Icd, node: Node, name: str, width: int | None, kind: str | None) -> str:
+    """Return a message, or else the enumerations, structs or errata of a name. Raises `NotFound` or `Ambiguous`."""
     try:
         return _message(icd, node, find_message(icd, node.name, name, kind), width)
     except NotFound:
-        family = (*icd.included(node), node)
-        texts = (
-            [_enum(enum, width) for enum in by_name([e for n in family for e in n.enums], name, node.vocabulary)]
-            or [
-                _struct(struct, icd.node(struct.node), width)
-                for struct in by_name([s for n in family for s in n.structs], name, node.vocabulary)
-            ]
-            or [
-                _erratum(erratum, width)
-                for n in family
-                for erratum in n.errata
-                if erratum.id.casefold() == name.casefold()
-            ]
-        )
-        if not texts:
+        scope = (*icd.included(node), node)
+        enums = by_name([enum for owner in scope for enum in owner.enums], name, node.vocabulary)
+        structs = by_name([struct for owner in scope for struct in owner.structs], name, node.vocabulary)
+        errata = [erratum for owner in scope for erratum in owner.errata if erratum.id.casefold() == name.casefold()]
+        if enums:
+            texts = [_enum(enum, width) for enum in enums]
+        elif structs:
+            texts = [_struct(struct, icd.node(struct.node), width) for struct in structs]
+        elif errata:
+            texts = [_erratum(erratum, width) for erratum in errata]
+        else:
             raise
         return "\n".join(texts)
 
 
 def _field_count(message: Message) -> int:
-    """Return the number of fields, each element of an array by itself."""
+    """Return the number of fields, each array element separately."""
     return sum(not field.is_count for field in scalars_in(message.layout))
 
 
 def _struct(struct: Struct, node: Node, width: int | None) -> str:
+    """Return a struct with the table of its fields."""
     facts = ["struct", count(struct.length, "byte"), f"table {struct.table}" if struct.table else ""]
     lines = [f"{node.name}: {struct.name}", "; ".join(filter(None, facts)), struct.summary]
     lines += [f"Also called {', '.join(struct.aliases)}."] if struct.aliases else []
     return _lines(lines, width) + "\n" + field_table(struct, node, width)
 
 
-def _message(icd: Icd, asked: Node, message: Message, width: int | None) -> str:
-    node, form = icd.node(message.node), protocol_facts.of(icd, asked).stream
+def _message(icd: Icd, selected: Node, message: Message, width: int | None) -> str:
+    """Return a message with the table of its fields, its enumerations and errata. ``selected`` or an include declares it."""
+    node, form = icd.node(message.node), protocol_facts.of(icd, selected).stream
     # An id that is written as its bytes, `01 35`, is hexadecimal already.
-    in_hex = "/".join(f"{i:0{2 * size(node.id_bits)}X}" for i in message.ids)
+    in_hex = "/".join(f"{id:0{2 * size(node.id_bits)}X}" for id in message.ids)
     facts = [
         describe(message, form) + ("" if pair_bytes(form) else f" (hex {in_hex})"),
         length_text(message),
@@ -169,34 +174,37 @@ def _message(icd: Icd, asked: Node, message: Message, width: int | None) -> str:
 
 
 def _enum(enum: Enum, width: int | None) -> str:
+    """Return an enumeration with the table of its members, and its errata."""
     head = f"{enum.name} (enumeration" + (f", table {enum.table})" if enum.table else ")")
-    members = [(m.values, ", ".join((m.name, *m.aliases)), m.summary) for m in enum.members]
+    members = [(member.values, ", ".join((member.name, *member.aliases)), member.summary) for member in enum.members]
     table = render([Column("value", right=True, fixed=True), Column("name"), Column("meaning")], members, width)
-    errata = "".join("\n" + _erratum(e, width) for e in errata_of_enum(enum))
+    errata = "".join("\n" + _erratum(erratum, width) for erratum in errata_of_enum(enum))
     aliases = f"Also called {', '.join(enum.aliases)}." if enum.aliases else ""
     return _lines([head, enum.summary, aliases], width) + table + errata
 
 
 def _count(node: Node) -> str:
-    notes = sum(e.is_note for e in node.errata)
+    """Return the numbers of errata and notes of a node in words."""
+    notes = sum(erratum.is_note for erratum in node.errata)
     counts = ((len(node.errata) - notes, "erratum", "errata"), (notes, "note", "notes"))
     return ", ".join(f"{number} {singular if number == 1 else plural}" for number, singular, plural in counts if number)
 
 
 def _erratum(erratum: Erratum, width: int | None) -> str:
+    """Return an erratum or note with its changes."""
     lines = [f"{erratum.label} {erratum.id}{erratum.sureness}: {erratum.title}", erratum.why, erratum.evidence]
     if erratum.changes:
         printed = dict(erratum.printed)
-        changes = [f"{key} {_value(printed.get(key))} -> {_value(held)}" for key, held in erratum.held]
+        changes = [f"{key} {_value(printed.get(key))} -> {_value(value)}" for key, value in erratum.held]
         lines.append(f"Printed and held: {', '.join(changes)}")
     if erratum.tables:
         lines.append(f"Tables: {', '.join(map(str, erratum.tables))}")
-    head, *others = filter(None, lines)
-    return _lines([head], width) + _lines(others, width, "  ")
+    head, *indented = filter(None, lines)
+    return _lines([head], width) + _lines(indented, width, "  ")
 
 
 def _lines(lines: Sequence[str], width: int | None, indent: str = "") -> str:
-    """Paragraphs, wrapped to a terminal; empty ones left out."""
+    """Return paragraphs, wrapped to the width of a terminal; empty paragraphs are omitted."""
     text = ""
     for line in map(clean, filter(None, lines)):
         wrapped = [line] if width is None else textwrap.wrap(line, max(width - len(indent), 20)) or [line]
@@ -209,6 +217,7 @@ def _number(value: int | None) -> str:
 
 
 def _value(value: object) -> str:
+    """Return a value as YAML; ``(absent)`` for None."""
     if value is None:
         return "(absent)"
     return str(value).lower() if isinstance(value, bool) else str(value)

@@ -1,4 +1,4 @@
-"""Values of the fields of an envelope that a user chooses."""
+"""Values that a user chooses for fields of the framing, such as a source address."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from icdgen.protocol.facts import Facts
 from icdgen.values import numbers
 
 
-def values_of(known: Facts, chosen: Sequence[str]) -> dict[str, int]:
-    """``ROLE=NUMBER`` of fields of the envelope. Raises `icdgen.errors.UserError`."""
-    fields = {field.role: field for field in known.stream.fields if field.role in GIVEN} if known.stream else {}
+def values_of(facts: Facts, chosen: Sequence[str]) -> dict[str, int]:
+    """Return the values of fields of the framing by role, from texts ``ROLE=NUMBER``. Raises `icdgen.errors.UserError`."""
+    fields = {field.role: field for field in facts.stream.fields if field.role in GIVEN} if facts.stream else {}
     values = {}
     for text in chosen:
         role, _, number = text.partition("=")
         value, field = numbers.integer(number.strip()), fields.get(role.strip())
         if field is None:
             has = f"it has {', '.join(fields)}" if fields else "it has none to choose"
-            raise UserError(f"`{text}`: the envelope of {known.node.name} has no field `{role.strip()}`", has)
+            raise UserError(f"`{text}`: the envelope of {facts.node.name} has no field `{role.strip()}`", has)
         if value is None or not 0 <= value <= field.mask:
             raise UserError(f"`{text}` does not fit", f"{role.strip()}=NUMBER, from 0 to {field.mask}")
         values[field.role] = value

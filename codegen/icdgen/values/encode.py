@@ -1,4 +1,4 @@
-"""``x=100 y=-100`` -> the bytes of a message. Everything that is wrong is reported at once."""
+"""Encoding of a message from assignments such as ``x=100 y=-100``. All errors are reported at once."""
 
 from __future__ import annotations
 
@@ -25,66 +25,67 @@ _EACH = "give each field as name=value"
 def encode(
     icd: Icd, node_name: str, key: str, assignments: list[str], raw: bool = False, kind: str | None = None
 ) -> Frame:
-    """The frame of a message from ``name=value`` texts; values are physical, or raw with ``raw``.
+    """Return the frame of a message from ``name=value`` texts. Values are physical, or raw with ``raw``.
 
-    Fields with a constant fill themselves; every other field needs a value. Values that the ICD does not allow (another
-    constant, no member, beyond a limit) are refused unless ``raw``. Raises `NotFound`, `Ambiguous`, `BadValue`.
+    Constants are set automatically; every other field needs a value. Values that the ICD does not allow (another constant,
+    no member, beyond a limit) are errors unless ``raw``. Raises `NotFound`, `Ambiguous` or `BadValue`.
     """
     node = find_node(icd, node_name)
     message = find_message(icd, node_name, key, kind)
     fields = icd.longest_frame(message)
-    wrong = _Wrong()
+    errors = _Errors()
     given: dict[str, str] = {}
-    is_empty = False  # the open end is said to have no element
+    is_empty = False  # a variable-length array is explicitly empty
     for assignment in assignments:
-        with wrong.collect():
+        with errors.collect():
             pairs = split(message, fields, assignment, node.vocabulary)
             is_empty = is_empty or not pairs
             for field, text in pairs:
                 if field.name in given:
                     raise BadValue(f"`{field.name}` is given twice: {given[field.name]} and {text}")
                 given[field.name] = text
-    misnamed = bool(wrong.messages)
-    values, notes = _values(message, fields, given, raw, wrong)
-    needed = (one for one in fields if one.is_raw and one.const is None and _is_needed(one, given, values))
-    missing = [one.name for one in needed if one.name not in given]
-    with wrong.collect():
-        _are_there(message, fields, given, values)
+    has_wrong_names = bool(errors.messages)
+    values, notes = _values(message, fields, given, raw, errors)
+    required = (field for field in fields if field.is_raw and field.const is None and _is_needed(field, given, values))
+    missing = [field.name for field in required if field.name not in given]
+    with errors.collect():
+        _check_presence(message, fields, given, values)
     for part in message.layout.parts:
         elements = [field for field in fields if field.steps[0].node is part.node]
         missing = _without_elements(part, elements, missing, given, is_empty)
-        with wrong.collect():
+        with errors.collect():
             _count(part, elements, given, values)
-    if not misnamed:
-        with wrong.collect():
+    # A field that seems to be missing may have been given under a wrong name.
+    if not has_wrong_names:
+        with errors.collect():
             _require(missing)
-    wrong.report(f"`icdgen show {node.name} {shlex.quote(message.name)}` lists the values of each field")
+    errors.report(f"`icdgen show {node.name} {shlex.quote(message.name)}` lists the values of each field")
     return frame(icd, node, message, codec.encode(icd.node(message.node), message, values), notes)
 
 
 def _require(names: list[str]) -> None:
-    """Raises `BadValue` for fields without a value, if there are any."""
+    """Raise `BadValue` if there are names of fields without a value."""
     if names:
         raise BadValue("no value for " + ", ".join(f"`{name}`" for name in names), _EACH)
 
 
 def _is_needed(field: FrameField, given: dict[str, str], values: dict[str, int | bytes]) -> bool:
-    """Whether a field must be given: one that is not always there, if what it depends on is given and says so."""
-    return all(one.field in given for one in field.conditions) and codec.is_present(field, values)
+    """Return whether a field needs a value; of an optional field, whether its conditions are given and met."""
+    return all(condition.field in given for condition in field.conditions) and codec.is_present(field, values)
 
 
-def _are_there(
+def _check_presence(
     message: Message, fields: Sequence[FrameField], given: dict[str, str], values: dict[str, int | bytes]
 ) -> None:
-    """Raises `BadValue` for what is given and not there."""
+    """Raise `BadValue` if a value is given for an absent optional field."""
     for field in fields:
         if field.name in given and not codec.is_present(field, values):
-            needs = " and ".join(condition_text(one, message) for one in field.conditions)
+            needs = " and ".join(condition_text(condition, message) for condition in field.conditions)
             raise BadValue(f"`{field.name}` is not there: it is only if {needs}", f"leave `{field.name}` out")
 
 
-class _Wrong:
-    """Collects what is wrong, so that it is all reported at once."""
+class _Errors:
+    """Collects the errors of all assignments."""
 
     def __init__(self) -> None:
         self.messages: list[str] = []
@@ -92,6 +93,7 @@ class _Wrong:
 
     @contextmanager
     def collect(self, about: str = "") -> Iterator[None]:
+        """Add a `UserError` that is raised in the context, with the prefix ``about``."""
         try:
             yield
         except UserError as error:
@@ -99,7 +101,7 @@ class _Wrong:
             self.helps.append(error.help)
 
     def report(self, help: str) -> None:
-        """Raises `BadValue` if anything is wrong. Remedies that differ stand each with what it is good for."""
+        """Raise `BadValue` with all errors, if there are any. If their helps differ, each error has its own help."""
         if len(set(self.helps)) == 1:
             raise BadValue("\n".join(self.messages), self.helps[0] or help)
         if self.messages:
@@ -110,7 +112,10 @@ class _Wrong:
 def _without_elements(
     part: VariablePart, elements: list[FrameField], missing: list[str], given: dict[str, str], is_empty: bool
 ) -> list[str]:
-    """Return what is missing: of a variable-length node only its name, unless some of it or its counter is given."""
+    """Return the missing names, with the name of a variable-length part instead of the names of its elements.
+
+    If an element or the counter is given, the part is not missing, and `_count` checks the elements.
+    """
     names = {field.name for field in elements}
     missing = [name for name in missing if name not in names and name != part.counter]
     is_given = is_empty or part.counter in given or bool(names & given.keys())
@@ -120,9 +125,9 @@ def _without_elements(
 def _count(
     part: VariablePart, elements: list[FrameField], given: dict[str, str], values: dict[str, int | bytes]
 ) -> None:
-    """Sets the counter of a variable-length node to the number of elements, or bytes, that are given.
+    """Set the counter of a variable-length part to the number of given elements or bytes.
 
-    Raises `BadValue` where an element is left out, or the counter is given with another number.
+    Raises `BadValue` if an element is missing, or if the counter is given with another number.
     """
     if not part.is_array:
         octets = values[part.name]
@@ -149,14 +154,15 @@ def _count(
 def split(
     message: Message, fields: Sequence[FrameField], assignment: str, vocabulary: tuple[str, ...]
 ) -> list[tuple[FrameField, str]]:
-    """The field and the text of its value, or those of all elements of an array: ``temperatures=[1, 2.5, 3]``.
+    """Return the fields of an assignment with the texts of their values: one, or all elements of an array.
 
-    `fields` are those of the longest frame. A field's name may itself hold a ``=``. Raises `NotFound`, `Ambiguous`,
-    `BadValue`.
+    An array is assigned as ``temperatures=[1, 2.5, 3]``. `fields` are the scalars of the longest frame. Raises `NotFound`,
+    `Ambiguous` or `BadValue`.
     """
-    exact = [f for f in fields if assignment.startswith(f.name + "=")]
+    # The name of a field can contain "=", so try exact names first, the longest of them.
+    exact = [field for field in fields if assignment.startswith(field.name + "=")]
     if exact:
-        field = max(exact, key=lambda f: len(f.name))
+        field = max(exact, key=lambda field: len(field.name))
         return [(field, assignment[len(field.name) + 1 :].strip())]
     name, equals, text = assignment.partition("=")
     if not equals:
@@ -178,25 +184,29 @@ def split(
     return [(find_field(message, fields, name.strip(), vocabulary), text.strip())]
 
 
-def listed(name: str, text: str, count: int, is_open: bool = False) -> list[str]:
-    """The texts of an array's elements: of ``[1, 2.5, 3]``; of an open one there may be fewer. Raises `BadValue`."""
+def listed(name: str, text: str, count: int, has_variable_length: bool = False) -> list[str]:
+    """Return the texts of the elements of an array, from ``[1, 2.5, 3]``. Raises `BadValue` for a wrong number.
+
+    An array of variable length can have fewer than ``count``.
+    """
     text = text.strip()
     is_list = text[:1] == "[" and text[-1:] == "]"
-    if is_list and is_open and not text[1:-1].strip():
+    if is_list and has_variable_length and not text[1:-1].strip():
         return []
     parts = [part.strip() for part in text[1:-1].split(",")] if is_list else []
-    if len(parts) != count and not (is_open and is_list and len(parts) < count):
-        said = f"{len(parts)} given" if parts else f"not {text}"
-        some = ", ".join(["1", "2", "3"][:count]) + (", ..." if count > 3 else "")
-        help = f"`{name}=[{some}]`, or `{name}[0]=1` for one"
-        raise BadValue(f"`{name}` takes {'up to ' if is_open else ''}{count} values in brackets, {said}", help)
+    if len(parts) != count and not (has_variable_length and is_list and len(parts) < count):
+        actual = f"{len(parts)} given" if parts else f"not {text}"
+        example = ", ".join(["1", "2", "3"][:count]) + (", ..." if count > 3 else "")
+        help = f"`{name}=[{example}]`, or `{name}[0]=1` for one"
+        up_to = "up to " if has_variable_length else ""
+        raise BadValue(f"`{name}` takes {up_to}{count} values in brackets, {actual}", help)
     return parts
 
 
 def _values(
-    message: Message, fields: Sequence[FrameField], given: dict[str, str], raw: bool, wrong: _Wrong
+    message: Message, fields: Sequence[FrameField], given: dict[str, str], raw: bool, errors: _Errors
 ) -> tuple[dict[str, int | bytes], dict[str, str]]:
-    """Raw value of each field, and a note where a value was rounded."""
+    """Return the raw value of each field, and a note for each value that was rounded."""
     values: dict[str, int | bytes] = {}
     notes: dict[str, str] = {}
     for field in fields:
@@ -205,7 +215,7 @@ def _values(
         if field.name not in given:
             continue
         text = given[field.name]
-        with wrong.collect(f"{field.name}: "):
+        with errors.collect(f"{field.name}: "):
             values[field.name] = value = typed(field, text, raw)
             if isinstance(value, bytes):
                 continue
@@ -218,23 +228,23 @@ def _values(
 
 
 def _differs(field: FrameField, raw: int, exact: Fraction) -> bool:
-    """Whether the physical value of a raw one is another than the one that was given."""
+    """Return whether the physical value of a raw value differs from the given value."""
     if field.curve is not None:
         return codec.physical_double(field, raw) != float(exact)
     return codec.physical(field, raw) != exact
 
 
 def _check(field: FrameField, value: int, text: str, raw: bool) -> None:
-    """Raise `BadValue` for a value that the field cannot have: of physical values by type and limits together."""
-    fits = field.raw_min <= value <= field.raw_max
+    """Raise `BadValue` for a value that is out of range; a physical value must also satisfy constant, members and limits."""
+    is_in_range = field.raw_min <= value <= field.raw_max
     if raw:
-        if not fits:
+        if not is_in_range:
             raise BadValue(f"takes {field.raw_min} to {field.raw_max}, not {text}")
         return
-    if fits and codec.special_of(field, value):
+    if is_in_range and codec.special_of(field, value):
         return
-    help = "--raw takes it all the same" if fits else ""
+    help = "--raw takes it all the same" if is_in_range else ""
     if reasons := unlisted(field, value):
         raise BadValue(f"{text} is not allowed: {'; '.join(reasons)}{members(field)}", help)
-    if not fits or outside(field, value):
+    if not is_in_range or outside(field, value):
         raise BadValue(out_of_range(field, text), help)

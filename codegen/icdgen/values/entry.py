@@ -1,4 +1,4 @@
-"""What a person types for one field -> its raw value."""
+"""Conversion of the text that a user types for a field to the raw value."""
 
 from __future__ import annotations
 
@@ -19,17 +19,22 @@ _TRUTH = {"true": 1, "yes": 1, "on": 1, "1": 1, "false": 0, "no": 0, "off": 0, "
 
 
 def members(field: AnyScalar) -> str:
-    """The members of the field's enumeration, for the end of a message."""
-    return "; members: " + ", ".join(f"{m.values} {m.name}" for m in field.enum.members) if field.enum else ""
+    """Return the members of the enumeration of a field, for the end of a message; empty without an enumeration."""
+    if not field.enum:
+        return ""
+    return "; members: " + ", ".join(f"{member.values} {member.name}" for member in field.enum.members)
 
 
 def out_of_range(field: AnyScalar, text: str) -> str:
-    """The message for a physical value beyond the type or the limits."""
+    """Return the message for a physical value that is out of range."""
     return f"takes {range_text(field) or f'{field.raw_min} to {field.raw_max}'}, not {text}"
 
 
 def raw_value(field: FrameField, text: str) -> int | bytes:
-    """The raw value itself; the bits of a float as ``0x...``. Raises `BadValue`; does not look at the range."""
+    """Return the raw value that a text gives directly; the bits of a float are ``0x...``.
+
+    Raises `BadValue`. Does not check the range.
+    """
     _settable(field)
     if field.is_bytes:
         return _bytes(field, text)
@@ -46,13 +51,16 @@ def raw_value(field: FrameField, text: str) -> int | bytes:
 
 
 def from_physical(field: FrameField, text: str) -> int | bytes:
-    """The raw value of a text, else the one nearest to a physical value. Raises `BadValue`; does not look at the range."""
+    """Return the raw value that is nearest to a physical value. Raises `BadValue`. Does not check the range."""
     _settable(field)
     return _READERS.get(field.type, _integer)(field, text)
 
 
 def typed(field: FrameField, text: str, raw: bool = False) -> int | bytes:
-    """The raw value of either; of variable-length bytes and text as much as is given. Raises `BadValue`."""
+    """Return the raw value of a physical value, or of a raw value with ``raw``. Raises `BadValue`.
+
+    Bytes and text of variable length are not padded.
+    """
     has_variable_length = field.scalar.length is not None
     if has_variable_length and (raw or field.type == "bytes"):
         return _bytes(field, text)
@@ -61,6 +69,7 @@ def typed(field: FrameField, text: str, raw: bool = False) -> int | bytes:
 
 
 def _settable(field: FrameField) -> None:
+    """Raise `BadValue` for a derived value or an overlay field, which cannot be set."""
     if field.derived is not None:
         of = ", ".join(f"`{name}`" for name in field.derived.fields)
         raise BadValue(f"it is derived from {of or 'numbers'}", "set the fields that it is derived from")
@@ -69,13 +78,14 @@ def _settable(field: FrameField) -> None:
 
 
 def _bool(field: FrameField, text: str) -> int:
+    """Return the raw value of a flag."""
     if text.lower() not in _TRUTH:
         raise BadValue(f"`{text}` is neither true nor false (nor yes, no, on, off, 1, 0)")
     return _TRUTH[text.lower()]
 
 
 def _bytes(field: FrameField, text: str) -> bytes:
-    """Bytes; of variable length there may be fewer than the longest frame has room for."""
+    """Return bytes of hexadecimal text; a field of variable length can have fewer than the most."""
     try:
         value = parse_hex(text)
     except BadHex as error:
@@ -88,6 +98,7 @@ def _bytes(field: FrameField, text: str) -> bytes:
 
 
 def _text(field: FrameField, text: str) -> bytes:
+    """Return the bytes of a text field, padded with NUL."""
     try:
         return codec.raw_from_text(field, text)
     except codec.CodecError:
@@ -95,11 +106,13 @@ def _text(field: FrameField, text: str) -> bytes:
 
 
 def _special(field: FrameField, text: str) -> int | None:
-    """The value that has the text as its meaning."""
-    return next((s.value for s in field.special if s.meaning.casefold() == text.casefold()), None)
+    """Return the special value with this meaning (in any case) or None."""
+    meaning = text.casefold()
+    return next((special.value for special in field.special if special.meaning.casefold() == meaning), None)
 
 
 def _float(field: FrameField, text: str, raw: bool = False) -> int:
+    """Return the bits of a float field."""
     if text[:2] in ("0x", "0X"):
         value = numbers.integer(text)
         if raw and value is not None:
@@ -121,6 +134,7 @@ def _float(field: FrameField, text: str, raw: bool = False) -> int:
 
 
 def _integer(field: FrameField, text: str) -> int:
+    """Return the raw value of an integer field."""
     if (special := _special(field, text)) is not None:
         return special
     if field.curve is not None:
@@ -136,6 +150,7 @@ def _integer(field: FrameField, text: str) -> int:
 
 
 def _on_curve(field: FrameField, text: str) -> int:
+    """Return the raw value of a field with a polynomial or a lookup table."""
     try:
         return codec.raw_from_physical(field, _exact(field, text))
     except codec.CodecError as error:
@@ -146,6 +161,7 @@ def _on_curve(field: FrameField, text: str) -> int:
 
 
 def _exact(field: FrameField, text: str) -> Fraction:
+    """Return the exact number of a text, with or without the unit of the field."""
     exact = numbers.rational(without_unit(field, text))
     if exact is None:
         raise BadValue(f"`{text}` is not a number" + (f" (in {field.unit.symbol})" if field.unit else ""))
@@ -153,7 +169,7 @@ def _exact(field: FrameField, text: str) -> Fraction:
 
 
 def without_unit(field: AnyScalar, text: str) -> str:
-    """``12.5 deg`` or ``12.5deg`` without the unit."""
+    """Return ``12.5 deg`` or ``12.5deg`` without the unit of the field."""
     symbol = field.unit_symbol
     if not symbol or not text.endswith(symbol):
         return text
@@ -162,28 +178,30 @@ def without_unit(field: AnyScalar, text: str) -> str:
 
 
 def _enum(field: FrameField, text: str) -> int:
+    """Return the raw value of an enumeration field."""
     return _integer(field, text) if field.enum is None else _member(field, field.enum, text)
 
 
 def _member(field: FrameField, enum: Enum, text: str) -> int:
-    known = enum.members
+    """Return the value of a member, by name, by words that only one member has, or by number."""
     number = numbers.integer(text)
-    found = {m.values: m.value for m in by_name(known, text, ())}
-    if not found and number is None:
-        found = {m.values: m.value for m in known if _has_words(m, text)}
+    matches = {member.values: member.value for member in by_name(enum.members, text, ())}
+    if not matches and number is None:
+        matches = {member.values: member.value for member in enum.members if _has_words(member, text)}
     if number is not None:
-        found[str(number)] = number
-    if len(found) == 1:
-        ((values, value),) = found.items()
+        matches[str(number)] = number
+    if len(matches) == 1:
+        ((values, value),) = matches.items()
         if values == str(value):
             return value
-        what = f"is {values}: give the number"
+        problem = f"is {values}: give the number"
     else:
-        what = "fits several members" if found else f"is no member of {enum.name}"
-    raise BadValue(f"`{text}` {what}{members(field)}")
+        problem = "fits several members" if matches else f"is no member of {enum.name}"
+    raise BadValue(f"`{text}` {problem}{members(field)}")
 
 
 def _has_words(member: Member, text: str) -> bool:
+    """Return whether the name of a member has all words of a text."""
     wanted = naming.words(text)
     return bool(wanted) and set(wanted) <= set(naming.words(member.name))
 

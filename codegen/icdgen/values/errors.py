@@ -1,4 +1,4 @@
-"""What can be wrong with a request to decode or encode."""
+"""Errors of requests to decode or encode."""
 
 from __future__ import annotations
 
@@ -6,19 +6,19 @@ from icdgen.errors import UserError
 
 
 class NotFound(UserError):
-    """There is no node, message or field of that name."""
+    """No node, message or field has this name."""
 
 
 class Ambiguous(UserError):
-    """The name fits several; the message lists them."""
+    """Several messages or fields match the name. The text lists them."""
 
 
 class BadHex(UserError):
-    """The text is not bytes in hexadecimal; the message says where it stops being so."""
+    """A text is not bytes in hexadecimal. The text of the error has the place of the first wrong character."""
 
 
 class BadLength(UserError):
-    """Not the message's number of bytes. ``expected`` and ``actual`` count bytes."""
+    """A frame does not have the length of its message. ``expected`` and ``actual`` are in bytes."""
 
     def __init__(self, message: str, expected: int, actual: int, help: str = "") -> None:
         super().__init__(message, help)
@@ -26,4 +26,4 @@ class BadLength(UserError):
 
 
 class BadValue(UserError):
-    """Assignments that cannot be encoded; the message lists everything wrong with them, a line each."""
+    """Assignments cannot be encoded. The text lists all errors, one per line."""

@@ -1,4 +1,4 @@
-"""Nodes, messages and fields by what a person types for them."""
+"""Search for nodes, messages and fields by the names and ids that users type."""
 
 from __future__ import annotations
 
@@ -25,6 +25,8 @@ _BYTES = re.compile(r"[0-9A-Fa-f]{2}(?:[ /][0-9A-Fa-f]{2}){1,3}")
 
 
 class _HasName(Protocol):
+    """A message, enumeration, struct or node of a layout."""
+
     @property
     def name(self) -> str: ...
 
@@ -37,19 +39,19 @@ class _HasName(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class ArrayOfFields:
-    """The elements of an array of scalars in a frame; in a struct those of one place: ``Satellites[2].Angles``."""
+    """An array of scalars in a frame. If a struct contains the array, each element of the struct has one."""
 
-    steps: tuple[PathStep, ...]  # from the node of the message to the array as a whole
+    steps: tuple[PathStep, ...]  # path from the layout of the message to the array
     elements: list[FrameField]
 
     @property
     def name(self) -> str:
-        """Return the name, with the path to it."""
+        """Return the name with its path: ``Satellites[2].Angles``."""
         return name_of_steps(self.steps)
 
     @property
     def alias(self) -> str | None:
-        """Return the name with identifiers in place of names; None without any."""
+        """Return the name with identifiers instead of names; None if no node on the path has an identifier."""
         return alias_of_steps(self.steps)
 
 
@@ -57,7 +59,7 @@ _Named = TypeVar("_Named", bound="_HasName | FrameField | ArrayOfFields")
 
 
 def find_node(icd: Icd, name: str) -> Node:
-    """The node called ``name``, in any case. Raises `NotFound`."""
+    """Return the node called ``name``, in any case. Raises `NotFound`."""
     for node in icd.nodes:
         if node.name == name.strip().lower():
             return node
@@ -66,18 +68,18 @@ def find_node(icd: Icd, name: str) -> Node:
 
 
 def is_part(icd: Icd, node: Node) -> bool:
-    """Whether the node is only there to be included in others."""
+    """Return whether another node includes the node."""
     return any(node.name in other.includes for other in icd.nodes)
 
 
 def only_node(icd: Icd) -> Node | None:
-    """The node that need not be named, as there is no other."""
-    alone = [node for node in icd.nodes if not is_part(icd, node)]
-    return alone[0] if len(alone) == 1 else None
+    """Return the only node that no other node includes; None if there are several."""
+    nodes = [node for node in icd.nodes if not is_part(icd, node)]
+    return nodes[0] if len(nodes) == 1 else None
 
 
 def find_named(icd: Icd, words: Sequence[str]) -> tuple[Node, list[str]]:
-    """The node that the first word names, and the other words; where there is one node only, it need not be named.
+    """Return the node that the first word names, and the other words. If there is only one node, its name is optional.
 
     Raises `NotFound`.
     """
@@ -87,76 +89,80 @@ def find_named(icd: Icd, words: Sequence[str]) -> tuple[Node, list[str]]:
     if only is not None:
         return only, list(words)
     if words:
-        return find_node(icd, words[0]), []  # says that there is none, and which was probably meant
+        return find_node(icd, words[0]), []  # raises `NotFound`, with a similar name
     names = ", ".join(node.name for node in icd.nodes if not is_part(icd, node))
     raise NotFound("it is not said which node is meant", f"nodes: {names}")
 
 
 def find_frame(icd: Icd, words: Sequence[str]) -> tuple[Node, str, list[str]]:
-    """``[NODE] MESSAGE [FIELD=VALUE]...`` taken apart. Raises `NotFound`."""
-    node, rest = find_named(icd, words)
-    if not rest:
+    """Return node, message and assignments of the words ``[NODE] MESSAGE [FIELD=VALUE]...``. Raises `NotFound`."""
+    node, other_words = find_named(icd, words)
+    if not other_words:
         raise NotFound(f"no message of {node.name} is named", f"`icdgen show {node.name}` lists what there is")
-    return node, rest[0], rest[1:]
+    return node, other_words[0], other_words[1:]
 
 
 def find_message(icd: Icd, node_name: str, key: str, kind: str | None = None) -> Message:
-    """The message of a node, included ones among them, by id (``146``, ``0x92``, ``01 35``), name (in any case) or identifier.
+    """Return the message of a node, or of its included nodes, by name (in any case), identifier, alias or id.
 
-    ``kind`` narrows the search; "telecommand" and "telemetry" also find the configuration messages that can be sent and
-    requested. Raises `NotFound` or `Ambiguous`, with suggestions.
+    Ids are written as ``146``, ``0x92`` or ``01 35``. ``kind`` restricts the search; "telecommand" and "telemetry" include
+    the configuration messages that can be sent or requested. Raises `NotFound` or `Ambiguous`, with suggestions.
     """
     node = find_node(icd, node_name)
-    messages = [m for m in icd.messages_of(node) if kind is None or is_of_kind(m, kind)]
-    found = by_name(messages, key, node.vocabulary) or _by_id(messages, key, kind)
-    if len(found) == 1:
-        return found[0]
-    if found:
+    messages = [message for message in icd.messages_of(node) if kind is None or is_of_kind(message, kind)]
+    matches = by_name(messages, key, node.vocabulary) or _by_id(messages, key, kind)
+    if len(matches) == 1:
+        return matches[0]
+    if matches:
         form = facts.of(icd, node).stream
-        listed = ", ".join(f"`{m.name}` ({describe(m, form)})" for m in found)
+        listed = ", ".join(f"`{message.name}` ({describe(message, form)})" for message in matches)
         raise Ambiguous(f"`{key}` fits several messages of {node.name}: {listed}", "give the full name, or the kind")
     raise NotFound(f"{node.name} has no {kind or 'message'} `{key}`", _message_help(icd, node, messages, key, kind))
 
 
 def find_sharing(icd: Icd, node_name: str, key: str, kind: str | None = None) -> list[Message]:
-    """The messages that share the id, in one direction; none if the key is no id, or that of one message. Raises `NotFound`."""
+    """Return the messages of one direction that share the id ``key``; an empty list if fewer than two have it.
+
+    Raises `NotFound`.
+    """
     messages = icd.messages_of(find_node(icd, node_name))
     for direction in (TELECOMMAND, TELEMETRY):
-        found = _by_id([m for m in messages if is_of_kind(m, direction)], key, direction)
-        if len(found) > 1 and kind in (None, direction):
-            return found
+        sharing = _by_id([message for message in messages if is_of_kind(message, direction)], key, direction)
+        if len(sharing) > 1 and kind in (None, direction):
+            return sharing
     return []
 
 
 def _by_id(messages: Sequence[Message], key: str, kind: str | None) -> list[Message]:
+    """Return the messages with the id ``key``; an empty list if the key is not an id."""
     key = key.strip()
-    if _BYTES.fullmatch(key):  # an id of several bytes, as `describe` writes it
+    if _BYTES.fullmatch(key):  # bytes of an id, in the form that `describe` returns
         key = "0x" + re.sub("[ /]", "", key)
     if not _NUMBER.fullmatch(key):
         return []
-    wanted = int(key, 0) if key[:2] in ("0x", "0X") else int(key)
-    return [m for m in messages if wanted in _ids(m, kind)]
+    id = int(key, 0) if key[:2] in ("0x", "0X") else int(key)
+    return [message for message in messages if id in _ids(message, kind)]
 
 
 def find_field(
     message: Message, fields: Sequence[FrameField], key: str, vocabulary: tuple[str, ...] = ()
 ) -> FrameField:
-    """The field by name (in any case), identifier, or words that no other field has: ``x`` for Commanded X speed.
+    """Return the field by name (in any case), identifier, alias, or words that only it has: ``x`` for Commanded X speed.
 
-    `fields` are those of the longest frame of the message. Raises `NotFound` or `Ambiguous`, with suggestions.
+    `fields` are all scalars of the longest frame of the message. Raises `NotFound` or `Ambiguous`, with suggestions.
     """
-    found = by_name(fields, key, vocabulary) or _by_words(fields, key, vocabulary)
-    if len(found) == 1:
-        return found[0]
-    if found:
-        listed = ", ".join(f"`{f.name}`" for f in found)
+    matches = by_name(fields, key, vocabulary) or _by_words(fields, key, vocabulary)
+    if len(matches) == 1:
+        return matches[0]
+    if matches:
+        listed = ", ".join(f"`{field.name}`" for field in matches)
         raise Ambiguous(f"`{key}` fits several fields: {listed}", "give more of the name")
     help = _suggest_named(key, fields) or _list_fields(fields)
     raise NotFound(f"{message.name} has no field `{key}`", help)
 
 
 def find_array(fields: Sequence[FrameField], key: str, vocabulary: tuple[str, ...] = ()) -> list[FrameField]:
-    """The elements of the array of that name, in any case, or of that identifier; none if there is no such array."""
+    """Return the elements of the array with this name (in any case) or identifier; an empty list without a match."""
     arrays: list[ArrayOfFields] = []
     for field in fields:
         *before, last = field.steps
@@ -169,27 +175,30 @@ def find_array(fields: Sequence[FrameField], key: str, vocabulary: tuple[str, ..
 
 
 def by_name(items: Sequence[_Named], key: str, vocabulary: tuple[str, ...]) -> list[_Named]:
-    """Items of exactly this name, else of this name in any case, else of these words, however they are joined, else of
-    an alias of these words."""
+    """Return the items that a name matches, by the first of these comparisons that has a match.
+
+    The comparisons are: the exact name; the name in any case; the same words in any spelling; an alias of the same words.
+    """
     wanted = _joined(key, vocabulary)
     steps: list[Callable[[_Named], bool]] = [
         lambda item: item.name == key,
         lambda item: item.name.casefold() == key.strip().casefold(),
         *(
-            lambda item, names=names: wanted in (_joined(n, vocabulary) for n in names(item) if _is_indexed(key, n))
+            lambda item, names=names: wanted
+            in (_joined(name, vocabulary) for name in names(item) if _has_indices_of(key, name))
             for names in (_names, _aliases)
             if wanted
         ),
     ]
-    for matches in steps:
-        found = [item for item in items if matches(item)]
-        if found:
-            return found
+    for is_match in steps:
+        matches = [item for item in items if is_match(item)]
+        if matches:
+            return matches
     return []
 
 
 def is_of_kind(message: Message, kind: str) -> bool:
-    """Whether it is of the kind, or a configuration message that can be used so."""
+    """Return whether a message is of a kind, or is a configuration message that can be sent or requested as that kind."""
     if kind == TELECOMMAND:
         return message.telecommand_id is not None
     if kind == TELEMETRY:
@@ -198,75 +207,92 @@ def is_of_kind(message: Message, kind: str) -> bool:
 
 
 def describe(message: Message, form: Stream | None = None) -> str:
-    """``telemetry 146``, ``configuration 120/247``; ``telemetry 01 35`` where the packets of ``form`` have such ids."""
+    """Return kind and ids: ``telemetry 146``, ``configuration 120/247``, or ``telemetry 01 35`` if ``form`` has id bytes."""
     return f"{message.kind} {'/'.join(id_text(form, id) for id in message.ids)}"
 
 
 def _ids(message: Message, kind: str | None) -> tuple[int | None, ...]:
+    """Return the ids of a message in the direction of a kind."""
     return {TELECOMMAND: (message.telecommand_id,), TELEMETRY: (message.telemetry_id,)}.get(kind or "", message.ids)
 
 
 def _names(item: _HasName | FrameField | ArrayOfFields) -> Iterable[str]:
-    other = item.alias if isinstance(item, FrameField | ArrayOfFields) else item.identifier
-    return filter(None, (item.name, other))
+    """Return the name and the identifier of an item."""
+    identifier = item.alias if isinstance(item, FrameField | ArrayOfFields) else item.identifier
+    return filter(None, (item.name, identifier))
 
 
 def _aliases(item: _HasName | FrameField | ArrayOfFields) -> Iterable[str]:
-    """Aliases of an item; of an element or a field of a struct with the path to it, and alone if no array is on the path."""
+    """Return the aliases of an item.
+
+    A field of a struct has aliases with its path, and also without the path if the path contains no array.
+    """
     if not isinstance(item, FrameField | ArrayOfFields):
         return item.aliases
     *before, last = item.steps
-    alone = [last.text(alias) for alias in last.node.aliases]
-    head = name_of_steps(before)
-    with_path = [f"{head}.{alias}" for alias in alone] if before else []
-    return with_path if any(step.element is not None for step in before) else [*with_path, *alone]
+    without_path = [last.text(alias) for alias in last.node.aliases]
+    path = name_of_steps(before)
+    with_path = [f"{path}.{alias}" for alias in without_path] if before else []
+    return with_path if any(step.element is not None for step in before) else [*with_path, *without_path]
 
 
 def _joined(text: str, vocabulary: tuple[str, ...]) -> str:
+    """Return the words of a text without separators, for a comparison that ignores the spelling."""
     return "".join(naming.words(text, vocabulary))
 
 
-def _is_indexed(key: str, name: str) -> bool:
-    """Whether the indexes in brackets are those of a name: ``gain[-1]`` is no ``Gain[1]``, though the words are the same."""
-    return not (given := _INDEX.findall(key)) or given == _INDEX.findall(name)
+def _has_indices_of(key: str, name: str) -> bool:
+    """Return whether a key has no indices or those in a name: ``gain[-1]`` has the words, but not the index, of ``Gain[1]``."""
+    indices = _INDEX.findall(key)
+    return not indices or indices == _INDEX.findall(name)
 
 
 def _by_words(fields: Sequence[FrameField], key: str, vocabulary: tuple[str, ...]) -> list[FrameField]:
+    """Return the fields with all words of a key, or else the fields whose words begin with them."""
     wanted = set(naming.words(key, vocabulary))
     if not wanted:
         return []
-    fields = [f for f in fields if _is_indexed(key, f.name)]
-    known = [(f, {w for n in _names(f) for w in naming.words(n, vocabulary)}) for f in fields]
-    found = [f for f, words in known if wanted <= words]
-    return found or [f for f, words in known if all(any(w.startswith(one) for w in words) for one in wanted)]
+    candidates: list[tuple[FrameField, set[str]]] = []
+    for field in fields:
+        if _has_indices_of(key, field.name):
+            candidates.append((field, {word for name in _names(field) for word in naming.words(name, vocabulary)}))
+    matches = [field for field, words in candidates if wanted <= words]
+    if matches:
+        return matches
+    return [
+        field for field, words in candidates if all(any(word.startswith(prefix) for word in words) for prefix in wanted)
+    ]
 
 
 def _message_help(icd: Icd, node: Node, messages: Sequence[Message], key: str, kind: str | None) -> str:
+    """Return the help for an unknown message: its real kind, another node, or a similar name."""
     if kind is not None:
         with suppress(NotFound, Ambiguous):
             other = find_message(icd, node.name, key)
             return f"`{other.name}` is {describe(other, facts.of(icd, node).stream)}"
-    elsewhere = [n.name for n in icd.nodes if n is not node and by_name(n.messages, key, n.vocabulary)]
-    if elsewhere:
-        return f"it is a message of {' and '.join(elsewhere)}"
+    owners = [other for other in icd.nodes if other is not node and by_name(other.messages, key, other.vocabulary)]
+    if owners:
+        return f"it is a message of {' and '.join(owner.name for owner in owners)}"
     close = _suggest_named(key, messages)
     return close or f"`icdgen show {node.name}` lists what there is"
 
 
 def _list_fields(fields: Sequence[FrameField]) -> str:
-    names = [f.name for f in fields]
+    """Return the help that lists the fields of a message, or their number if there are many."""
+    names = [field.name for field in fields]
     if len(names) > MOST_LISTED:
         return f"it has {len(names)} fields; `icdgen show` lists them"
     return f"fields: {', '.join(names)}" if names else "it has no fields at all"
 
 
 def _suggest_named(key: str, items: Sequence[_HasName] | Sequence[FrameField]) -> str:
-    """Names near the key; an item whose alias is near is listed by its name."""
-    known = {alias: item.name for item in items for alias in _aliases(item)} | {item.name: item.name for item in items}
-    close = dict.fromkeys(known[text] for text in close_words(key, known))
+    """Return a question with similar names; an item with a similar alias is listed by its name."""
+    names = {alias: item.name for item in items for alias in _aliases(item)} | {item.name: item.name for item in items}
+    close = dict.fromkeys(names[text] for text in close_words(key, names))
     return "did you mean " + " or ".join(f"`{name}`" for name in close) + "?" if close else ""
 
 
 def _suggest(key: str, names: Iterable[str]) -> str:
+    """Return a question with similar names; empty without similar names."""
     close = close_words(key, names)
     return "did you mean " + " or ".join(f"`{name}`" for name in close) + "?" if close else ""

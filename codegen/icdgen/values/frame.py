@@ -1,4 +1,4 @@
-"""A message with its bytes and what each field of it holds: the answer of both decoding and encoding."""
+"""Decoded frame: a message with its bytes and the value of each field. Decoding and encoding return it."""
 
 from __future__ import annotations
 
@@ -21,20 +21,20 @@ from icdgen.protocol.envelope import Stream
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One field. ``raw`` is as in `icdgen.codec`: an int (the bits, for a float) or bytes."""
+    """Value of a field in a frame."""
 
     field: FrameField
-    raw: int | bytes
+    raw: int | bytes  # as in `icdgen.codec`: of a float its IEEE 754 bits
     remarks: tuple[str, ...] = ()
 
     @property
     def physical(self) -> Fraction | None:
-        """Exact physical value of a scaled field, else None."""
+        """Exact physical value of a field with a scale; None for any other field."""
         return None if isinstance(self.raw, bytes) else codec.physical(self.field, self.raw)
 
     @property
     def number(self) -> float | None:
-        """The physical value as correctly rounded double, or the number of a float field; else None."""
+        """Physical value as the nearest double, or the number of a float field; None for any other field."""
         if isinstance(self.raw, bytes):
             return None
         if self.field.type == "float" and self.field.curve is None:
@@ -43,13 +43,13 @@ class Row:
 
     @property
     def member(self) -> str | None:
-        """Name of the enumeration's member, None if it has none of that value."""
-        found = self.field.enum.member_of(self.raw) if self.field.enum else None
-        return found.name if found else None
+        """Name of the member of the enumeration; None if no member has the value."""
+        member = self.field.enum.member_of(self.raw) if self.field.enum else None
+        return member.name if member else None
 
     @property
     def raw_text(self) -> str:
-        """Raw value for people: a number in its display format, hexadecimal for floats and bytes; empty for derived values."""
+        """Raw value as text: a number in its display format, floats and bytes in hexadecimal; empty for derived values."""
         if self.field.derived is not None:
             return ""
         if isinstance(self.raw, bytes):
@@ -60,7 +60,7 @@ class Row:
 
     @property
     def text(self) -> str:
-        """What the field says, for people: physical value, name of the member, true or false."""
+        """Value as text: the physical value, the name of the member, true or false."""
         kind = self.field.type
         if isinstance(self.raw, bytes):
             return codec.text(self.raw) if kind == "text" else self.raw_text
@@ -77,7 +77,7 @@ class Row:
         return self.raw_text if physical is None else number_text(self.field, physical)
 
     def to_json(self) -> dict[str, object]:
-        """``{"name", "type", "raw", "value", ...}``; ``value`` is the one to show or plot."""
+        """Return the field as values for JSON: ``{"name", "type", "raw", "value", ...}``. ``value`` is the one to display."""
         kind = self.field.type
         raw: object = self.raw
         value: object
@@ -93,48 +93,58 @@ class Row:
             value = self.member
         else:
             value = self.raw if self.number is None else self.number
-        found: dict[str, object] = {"name": self.field.name, "type": kind, "raw": raw, "value": value}
+        result: dict[str, object] = {"name": self.field.name, "type": kind, "raw": raw, "value": value}
         if self.physical is not None:
-            found |= {"physical": self.number, "exact": str(self.physical)}
+            result |= {"physical": self.number, "exact": str(self.physical)}
         elif kind == "float" or self.field.curve is not None:
-            found["physical"] = value
+            result["physical"] = value
         if self.field.unit:
-            found["unit"] = self.field.unit.symbol
+            result["unit"] = self.field.unit.symbol
         if self.field.enum:
-            found["enum"] = self.field.enum.name
+            result["enum"] = self.field.enum.name
         if self.remarks:
-            found["remarks"] = list(self.remarks)
-        return found
+            result["remarks"] = list(self.remarks)
+        return result
 
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """``node`` is the one that was asked; ``remarks`` concern no single field."""
+    """A decoded frame."""
 
-    node: Node
+    node: Node  # the node that the message was looked up in; an included node can declare the message
     message: Message
     data: bytes
     rows: tuple[Row, ...]
-    remarks: tuple[str, ...] = ()
-    form: Stream | None = dataclass_field(default=None, compare=False, repr=False)  # packets of the node
+    remarks: tuple[str, ...] = ()  # about the frame, not about one field
+    form: Stream | None = dataclass_field(default=None, compare=False, repr=False)  # framing of the node
 
     @property
     def wrong_constants(self) -> list[Row]:
-        """Fields that have a constant and hold something else."""
+        """Constant fields with another value than their constant."""
         return [row for row in self.rows if row.field.const is not None and row.raw != row.field.const]
 
     def to_json(self) -> dict[str, object]:
-        """``{"node", "message", "kind", "id" or "set_id" and "get_id", "length", "bytes", "fields": [...]}``"""
+        """Return the frame as values for JSON.
+
+        The keys are ``node``, ``message``, ``kind``, ``id`` (or ``set_id`` and ``get_id``), ``length``, ``bytes`` and
+        ``fields``, and ``remarks`` if there are any.
+        """
         message = self.message
         ids = {key: getattr(message, key) for key in ("id", "set_id", "get_id") if getattr(message, key) is not None}
-        found = {"node": self.node.name, "message": message.name, "kind": message.kind, **ids, "length": len(self.data)}
-        found |= {"bytes": self.data.hex(), "fields": [row.to_json() for row in self.rows]}
-        return found | ({"remarks": list(self.remarks)} if self.remarks else {})
+        result = {
+            "node": self.node.name,
+            "message": message.name,
+            "kind": message.kind,
+            **ids,
+            "length": len(self.data),
+        }
+        result |= {"bytes": self.data.hex(), "fields": [row.to_json() for row in self.rows]}
+        return result | ({"remarks": list(self.remarks)} if self.remarks else {})
 
 
 def frame(icd: Icd, node: Node, message: Message, data: bytes, notes: dict[str, str] | None = None) -> Frame:
-    """Reads ``data``. ``notes`` are further remarks by field name. Raises `codec.LengthError`."""
-    owner = icd.node(message.node)  # its byte and bit order hold
+    """Decode ``data``. ``notes`` are further remarks by field name. Raises `codec.LengthError`."""
+    owner = icd.node(message.node)  # with the default orders of the message
     values = codec.decode_frame(owner, message, data)
     rows = []
     for field in codec.fields_of_frame(owner, message, values):
@@ -148,7 +158,7 @@ def frame(icd: Icd, node: Node, message: Message, data: bytes, notes: dict[str, 
 
 
 def remarks(field: AnyScalar, raw: int | bytes) -> list[str]:
-    """What a reader should know about a value: its special meaning, or that the ICD does not allow it."""
+    """Return the remarks about a value: its special meaning, or why the ICD does not allow it."""
     if isinstance(raw, bytes):
         return []
     special = codec.special_of(field, raw)
@@ -156,12 +166,12 @@ def remarks(field: AnyScalar, raw: int | bytes) -> list[str]:
 
 
 def violations(field: AnyScalar, raw: int) -> list[str]:
-    """In which way the raw value is not one that the ICD allows: constants, members, limits."""
+    """Return why the ICD does not allow a raw value: constants, members, limits."""
     return [*unlisted(field, raw), *outside(field, raw)]
 
 
 def unlisted(field: AnyScalar, raw: int) -> list[str]:
-    """In which way the raw value is not one of those that a constant or an enumeration lists."""
+    """Return why a raw value differs from the constant, or from all members of the enumeration, of a field."""
     reasons = []
     if field.const is not None and raw != field.const:
         reasons.append(f"must be {value_text(field.const)}")
@@ -171,13 +181,13 @@ def unlisted(field: AnyScalar, raw: int) -> list[str]:
 
 
 def outside(field: AnyScalar, raw: int) -> list[str]:
-    """Which limits the raw value does not keep."""
+    """Return the limits of a field that a raw value violates."""
     if field.limits is None:
         return []
     value: Fraction | float = raw
     if field.type == "float" or field.curve is not None:
-        found = codec.physical_double(field, raw)
-        value = codec.float_value(field, raw) if found is None else found
+        physical = codec.physical_double(field, raw)
+        value = codec.float_value(field, raw) if physical is None else physical
         if value != value:
             return ["not a number"]
     elif field.scale:
@@ -188,14 +198,15 @@ def outside(field: AnyScalar, raw: int) -> list[str]:
 
 
 def _reserved(node: Node, message: Message, data: bytes) -> list[str]:
-    found = []
+    """Return a remark for each run of reserved bits that is not 0."""
+    reasons = []
     for gap in layout.gaps(message, node):
         pieces = layout.pieces_at(gap.at, gap.bits, node.byte_order, node.bit_order)
         if any(data[piece.byte] & piece.mask for piece in pieces if piece.byte < len(data)):
-            found.append(f"reserved {bit_range(gap.at, gap.bits)} {'is' if gap.bits == 1 else 'are'} not 0")
-    return found
+            reasons.append(f"reserved {bit_range(gap.at, gap.bits)} {'is' if gap.bits == 1 else 'are'} not 0")
+    return reasons
 
 
 def _json_number(value: float) -> float | str:
-    """JSON has no NaN and no infinity."""
+    """Return a number for JSON; NaN and infinity as text, because JSON does not have them."""
     return value if math.isfinite(value) else repr(value)

@@ -1,4 +1,4 @@
-"""Bytes from hexadecimal text in any usual spelling."""
+"""Conversion of hexadecimal text in any usual spelling to bytes."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ HELP = "bytes are two digits each, for instance `2efb 0a00`, `0x2e, 0xfb` or `2E
 
 
 def parse_hex(text: str) -> bytes:
-    r"""The bytes of ``2efb 0a00``, ``0x2e,0xfb``, ``2E:FB``, ``{0x2e, 0xfb}``, ``\x2e\xfb``, over any number of lines.
+    r"""Return the bytes of ``2efb 0a00``, ``0x2e,0xfb``, ``2E:FB``, ``{0x2e, 0xfb}`` or ``\x2e\xfb``, on one or more lines.
 
-    After a prefix one digit is a byte too (``0x5``). Raises `BadHex` with the place of what does not fit.
+    After a prefix, a single digit is also a byte (``0x5``). Raises `BadHex` with the place of the first error.
     """
     quoted = _QUOTED.fullmatch(text)
     at, end = quoted.span("inside") if quoted else (0, len(text))
-    found = bytearray()
-    prefixed = -1  # where a prefix ended
+    result = bytearray()
+    prefixed = -1  # index of the end of the last prefix
     while at < end:
         token = _TOKEN.match(text, at, end)
         if token is None:
@@ -40,16 +40,17 @@ def parse_hex(text: str) -> bytes:
                 raise BadHex(f"{_place(text, token.end())}: {_show(after)} is not hexadecimal", HELP)
             if len(digits) % 2:
                 raise BadHex(f"{_place(text, at)}: `{digits[:20]}` is an odd number of digits", HELP)
-            found += bytes.fromhex(digits)
+            result += bytes.fromhex(digits)
         elif token["prefix"]:
             prefixed = token.end()
         at = token.end()
     if prefixed == end:
         raise BadHex(f"{_place(text, end)}: digits must follow the prefix", HELP)
-    return bytes(found)
+    return bytes(result)
 
 
 def _place(text: str, at: int) -> str:
+    """Return an index of the text in words: character, and line if there are several."""
     line = text.count("\n", 0, at)
     if "\n" not in text:
         return f"character {at + 1} of the bytes"
@@ -57,4 +58,5 @@ def _place(text: str, at: int) -> str:
 
 
 def _show(character: str) -> str:
+    """Return a character for a message."""
     return f"`{character}`" if character.isprintable() else f"U+{ord(character):04X}"

@@ -1,4 +1,4 @@
-"""Numbers as people write them, taken exactly."""
+"""Exact conversion of numbers that users type."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from icdgen.icd import floats
 
-LONGEST = 400
+LONGEST = 400  # characters; int() takes quadratic time for longer texts
 
 _DECIMAL = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
 _RATIO = re.compile(r"[+-]?[0-9]+/0*[1-9][0-9]*")
@@ -29,19 +29,20 @@ def integer(text: str) -> int | None:
 
 
 def rational(text: str) -> Fraction | None:
-    """``12``, ``-0.5``, ``1e-3``, ``1/3``, exactly; None if it is none of these."""
+    """Return the exact value of ``12``, ``-0.5``, ``1e-3`` or ``1/3``; None for any other text."""
     if len(text) > LONGEST:
         return None
     return Fraction(text) if _DECIMAL.fullmatch(text) or _RATIO.fullmatch(text) else None
 
 
 def float_bits(text: str, bits: int) -> int | None:
-    """IEEE 754 bits of the nearest float of 32 or 64 bits; also of ``nan`` and ``inf``. None if it is not a number.
+    """Return the bits of the nearest 32-bit or 64-bit float of a text, which can also be ``nan`` or ``inf``.
 
-    Raises `OverflowError`.
+    Returns None if the text is not a number. Raises `OverflowError`.
     """
     sign, word = text.startswith("-"), text.lstrip("+-").lower()
     if word in _SPECIAL and len(text) - len(word) <= 1:
         return floats.bits_of(float(_SPECIAL[word]), bits) | sign << bits - 1
+    # The sign is set separately: a Fraction has no negative zero.
     exact = rational(text)
     return None if exact is None else floats.nearest(abs(exact), bits) | sign << bits - 1

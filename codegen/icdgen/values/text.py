@@ -1,4 +1,4 @@
-"""A frame for people."""
+"""Text form of a decoded frame."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _COLUMNS = [
 
 
 def to_text(frame: Frame, width: int | None = None) -> str:
-    """Message, bytes and a table of its fields. ``width`` is that of the terminal, None for a pipe."""
+    """Return message, bytes and a table of the fields. ``width`` is the width of the terminal, None for a pipe."""
     message = frame.message
     lines = [f"{frame.node.name}: {message.name} ({describe(message, frame.form)}), {byte_count(len(frame.data))}"]
     if frame.data:
@@ -34,4 +34,4 @@ def to_text(frame: Frame, width: int | None = None) -> str:
         for row in frame.rows
     ]
     table = render(_COLUMNS, rows, width)
-    return text + ("\n" + table if table else "") + "".join(f"\nnote: {clean(one)}\n" for one in frame.remarks)
+    return text + ("\n" + table if table else "") + "".join(f"\nnote: {clean(remark)}\n" for remark in frame.remarks)

@@ -268,7 +268,7 @@ class _Reader:
 
 
 def _as_it_is(kind: object, item: Map) -> dict[str, Any]:
-    return {name: item[name] for name in machine.as_they_are(kind) if name in item}
+    return {name: item[name] for name in machine.plain_attributes(kind) if name in item}
 
 
 def _curve(item: Map) -> curve.Curve | None:
