@@ -1,1 +1,1 @@
-"""From a checked model to files on disk: what is written, kept, removed, and what need not run at all."""
+"""Generation of files from a checked model: rendering, comparison with the disk, and writing."""

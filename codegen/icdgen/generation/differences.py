@@ -1,4 +1,4 @@
-"""What ``--check`` prints: which files are not current, and the first lines that differ."""
+"""Output of ``--check``: the files that are not current, and their first differing lines."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _FILES, _LINES = 5, 12
 
 
 def short_diff(plans: list[Plan]) -> str:
-    """A unified diff of the first few files, and the names of the rest."""
+    """Return a unified diff of the first files that differ, and the number of further files."""
     lines: list[str] = []
     for plan in plans:
         for index, name in enumerate(plan.write):

@@ -1,4 +1,4 @@
-"""One generation run: load, check, render, compare, write."""
+"""A run of the generator: load, check, render, compare and write."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Files = Iterable[tuple[PurePosixPath, str | bytes]]  # path below the folder of 
 
 @dataclass(eq=False, repr=False)
 class Job:
-    """What is asked for. With several languages each goes into a folder of its own below ``out``."""
+    """Options of a run. With several languages, each has its own subfolder of ``out``."""
 
     languages: list[str]
     out: Path
@@ -28,28 +28,31 @@ class Job:
     templates: Path | None = None
     depfile: Path | None = None
     check: bool = False
-    measured: Path | None = None  # folder of measurements, for the papers that have them
+    measured: Path | None = None  # folder of measurements for the verification package
     packages: Packages = field(default_factory=Packages)
-    configs: dict[Path, str] = field(default_factory=dict)  # configuration files that were read or looked for
-    watch: Callable[[Files], Files] = iter  # passes generated files on, and can count them
+    configs: dict[Path, str] = field(
+        default_factory=dict
+    )  # fingerprints of configuration files that exist or were absent
+    watch: Callable[[Files], Files] = iter  # passes generated files on, for example to show the progress
 
 
 @dataclass(eq=False, repr=False)
 class Outcome:
-    """What came of it."""
+    """Result of a run."""
 
     loaded: Loaded
-    may_be_remembered: bool = True  # nothing but the files of `inputs` and icdgen itself decides
+    may_be_remembered: bool = True  # the output depends only on `inputs` and on icdgen itself
     plans: list[write.Plan] = field(default_factory=list)
-    inputs: dict[Path, str] = field(default_factory=dict)  # what decides the output -> its fingerprint when read
+    inputs: dict[Path, str] = field(default_factory=dict)  # fingerprint of each file that the output depends on
 
     @property
     def changes(self) -> bool:
+        """Whether a file is written or removed."""
         return any(plan.changes for plan in self.plans)
 
 
 def run(job: Job) -> Outcome:
-    """Writes nothing if the ICDs have errors or ``job.check`` is set. Raises `UserError`."""
+    """Generate. Writes nothing if the ICDs have errors or if ``job.check`` is set. Raises `UserError`."""
     chosen = [backends.get(name) for name in dict.fromkeys(job.languages)]
     if job.templates is not None and not os.path.isdir(job.templates):
         raise UserError(f"there is no folder {job.templates}", "--templates names a folder of templates")
@@ -82,7 +85,7 @@ def run(job: Job) -> Outcome:
 
 
 def _depfile(outcome: Outcome) -> tuple[bytes, set[str]]:
-    """What a dependency file says, and the files that it names."""
+    """Return the content of a dependency file in the syntax of Make, and the files that it names."""
     targets = [os.path.join(plan.out, name) for plan in outcome.plans for name in plan.files]
     needs = [str(path) for path in outcome.inputs if path.is_file()]
     text = " \\\n  ".join(map(_escape, targets)) + ": \\\n  " + " \\\n  ".join(map(_escape, needs)) + "\n"
@@ -90,6 +93,7 @@ def _depfile(outcome: Outcome) -> tuple[bytes, set[str]]:
 
 
 def _write_depfile(path: Path, outcome: Outcome) -> None:
+    """Write the dependency file. Raises `UserError` if it is also an input or an output."""
     data, named = _depfile(outcome)
     depfile = Path(os.path.realpath(path))
     if str(depfile) in named:
@@ -102,16 +106,20 @@ def _write_depfile(path: Path, outcome: Outcome) -> None:
 
 
 def _escape(path: str) -> str:
+    """Return a path in the syntax of Make. Raises `UserError` for a path with a line break."""
     if "\n" in path:
         raise UserError(f"{path} cannot be named in a dependency file", "rename what has a line end in its name")
     return path.replace("\\", "\\\\").replace(" ", "\\ ").replace("#", "\\#").replace("$", "$$").replace(":", "\\:")
 
 
 def remember(name: str, note: str, job: Job, outcome: Outcome) -> None:
-    """So that the same command over the same files, with its outputs still in place, ends at once."""
+    """Store a record of the run, with which the same command ends at once if its inputs and outputs are unchanged.
+
+    ``note`` is the text that the command then prints.
+    """
     if not name or outcome.loaded.findings or not outcome.may_be_remembered:
         return
-    files = {os.path.abspath(path): seen for path, seen in outcome.inputs.items()}
+    files = {os.path.abspath(path): fingerprint for path, fingerprint in outcome.inputs.items()}
     for plan in outcome.plans:
         out = os.path.abspath(plan.out)
         for file, digest in plan.digests.items():

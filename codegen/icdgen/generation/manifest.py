@@ -1,4 +1,4 @@
-"""What we wrote into a folder, so that we can tell our files from others'. One manifest a language."""
+"""Manifest of a folder: the files that icdgen wrote there for a language, so that it changes no other files."""
 
 from __future__ import annotations
 
@@ -8,11 +8,12 @@ from pathlib import Path
 
 
 def path(out: Path, language: str) -> Path:
+    """Return the path of the manifest of a language."""
     return out / f".icdgen-{language}.json"
 
 
 def read(out: Path, language: str) -> dict[str, str]:
-    """Relative path -> SHA-256 of each file that we wrote; empty where there is no (readable) manifest."""
+    """Return the SHA-256 of each file that icdgen wrote, by relative path; empty without a readable manifest."""
     try:
         data = json.loads(path(out, language).read_text(encoding="utf-8"))
         files = data["files"]
@@ -24,14 +25,16 @@ def read(out: Path, language: str) -> dict[str, str]:
 
 
 def text(files: dict[str, str]) -> str:
-    """The manifest's text; the same for the same files."""
+    """Return the text of a manifest; equal for equal files."""
     return json.dumps({"generator": "icdgen", "files": dict(sorted(files.items()))}, indent=1) + "\n"
 
 
 def digest(data: bytes) -> str:
+    """Return the SHA-256 of the content of a file, in hexadecimal."""
     return hashlib.sha256(data).hexdigest()
 
 
 def _is_inside(name: str) -> bool:
+    """Return whether a path of a manifest is in the folder; a manipulated manifest must not remove other files."""
     parts = Path(name).parts
     return bool(parts) and "\0" not in name and ".." not in parts and not Path(name).is_absolute()

@@ -1,4 +1,4 @@
-"""Brings a folder to the generated state: atomically, touching only what changes, never a file that is not ours."""
+"""Writes generated files to a folder: atomically, only if their content changes, and never over files of others."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from icdgen.generation import manifest
 
 @dataclass(eq=False, repr=False)
 class Plan:
-    """What would have to change below ``out`` so that it holds exactly the generated files."""
+    """Changes in the folder ``out`` after which it has exactly the generated files of a language."""
 
     out: Path
     language: str
@@ -23,74 +23,80 @@ class Plan:
     digests: dict[str, str] = field(default_factory=dict)  # of ``files``
     write: list[str] = field(default_factory=list)
     remove: list[str] = field(default_factory=list)
-    edited: list[str] = field(default_factory=list)  # ours once, no longer generated, but changed by hand: kept
+    edited: list[str] = field(default_factory=list)  # no longer generated, but edited by a user: not removed
     manifest: str = ""
 
     @property
     def changes(self) -> bool:
+        """Whether a file must be written or removed."""
         return bool(self.write or self.remove)
 
 
 def plan(out: Path, language: str, files: Iterable[tuple[PurePosixPath, str | bytes]]) -> Plan:
-    """Compares. Raises `UserError` where a file that is not ours stands in the way, or two outputs differ only in case."""
-    made = Plan(out, language, {})
+    """Compare generated files with a folder.
+
+    Raises `UserError` if a file would overwrite a file that icdgen did not write, or if two names differ only in case.
+    """
+    result = Plan(out, language, {})
     folded: dict[str, str] = {}
     for path, content in files:
         name = str(path)
         other = folded.setdefault(name.casefold(), name)
-        if other != name or name in made.files:
+        if other != name or name in result.files:
             raise UserError(
                 f"two outputs would share the file name {name}",
                 "names that differ only in case clash on some systems: give one of them an `identifier:`",
             )
         try:
-            made.files[name] = content if isinstance(content, bytes) else content.encode("utf-8")
+            result.files[name] = content if isinstance(content, bytes) else content.encode("utf-8")
         except UnicodeEncodeError as error:
-            what = f"U+{ord(error.object[error.start]):04X}, which is no character"
-            raise UserError(f"{name} would hold {what}", "mend the template") from None
-    ours = manifest.read(out, language)
-    for name, data in made.files.items():
-        now = read(os.path.join(out, name))
-        if now == data:
+            character = f"U+{ord(error.object[error.start]):04X}, which is no character"
+            raise UserError(f"{name} would hold {character}", "mend the template") from None
+    written = manifest.read(out, language)
+    for name, data in result.files.items():
+        current = read(os.path.join(out, name))
+        if current == data:
             continue
-        if now is not None and name not in ours:
+        if current is not None and name not in written:
             raise UserError(
                 f"{out / name} was not written by icdgen and would be overwritten",
                 "move it away, or generate into another folder with --out",
             )
-        made.write.append(name)
-    for name, digest in ours.items():
-        if name not in made.files:
-            now = read(out / name) if os.path.isfile(out / name) else None
-            if now is not None:
-                (made.remove if manifest.digest(now) == digest else made.edited).append(name)
-    made.digests = {name: manifest.digest(data) for name, data in made.files.items()}
-    made.manifest = manifest.text(made.digests)
-    return made
+        result.write.append(name)
+    for name, digest in written.items():
+        if name not in result.files:
+            current = read(out / name) if os.path.isfile(out / name) else None
+            if current is not None:
+                (result.remove if manifest.digest(current) == digest else result.edited).append(name)
+    result.digests = {name: manifest.digest(data) for name, data in result.files.items()}
+    result.manifest = manifest.text(result.digests)
+    return result
 
 
-def apply(made: Plan) -> None:
-    """Writes and removes. Raises `UserError` if the folder can't be written."""
-    ours = manifest.read(made.out, made.language)
+def apply(changes: Plan) -> None:
+    """Write and remove files. Raises `UserError` if the folder cannot be written."""
+    out = changes.out
+    written = manifest.read(out, changes.language)
+    target = manifest.path(out, changes.language)
     try:
-        if not made.files.keys() <= ours.keys():  # so that an interrupted run still knows what it wrote
-            known = ours | {name: ours.get(name, "") for name in made.files}
-            replace(manifest.path(made.out, made.language), manifest.text(known).encode())
-        for name in made.write:
-            replace(os.path.join(made.out, name), made.files[name])
-        target = manifest.path(made.out, made.language)
-        if read(target) != made.manifest.encode():
-            replace(target, made.manifest.encode())
-        for name in made.remove:
-            (made.out / name).unlink(missing_ok=True)
-            _remove_empty(made.out, (made.out / name).parent)
+        # First extend the manifest: after an interruption, the next run must know all files that this run wrote.
+        if not changes.files.keys() <= written.keys():
+            extended = written | {name: written.get(name, "") for name in changes.files}
+            replace(target, manifest.text(extended).encode())
+        for name in changes.write:
+            replace(os.path.join(out, name), changes.files[name])
+        if read(target) != changes.manifest.encode():
+            replace(target, changes.manifest.encode())
+        for name in changes.remove:
+            (out / name).unlink(missing_ok=True)
+            _remove_empty(out, (out / name).parent)
     except OSError as error:
-        what = f"cannot write {error.filename}: {error.strerror}"
-        raise UserError(what, "choose another folder with --out") from None
+        message = f"cannot write {error.filename}: {error.strerror}"
+        raise UserError(message, "choose another folder with --out") from None
 
 
 def replace(target: str | Path, data: bytes) -> None:
-    """Writes a file so that a reader sees the old content or the new one, never a part. The file's mode stays."""
+    """Write a file so that other processes see the old or the new content, never a part. Preserves its mode."""
     target = os.fspath(target)
     try:
         mode = os.stat(target).st_mode
@@ -106,9 +112,9 @@ def replace(target: str | Path, data: bytes) -> None:
         handle, name = _new_file(folder)
     try:
         with open(handle, "wb", buffering=0) as file:
-            rest = memoryview(data)
-            while rest:
-                rest = rest[file.write(rest) :]
+            unwritten = memoryview(data)
+            while unwritten:
+                unwritten = unwritten[file.write(unwritten) :]
         if mode is not None:
             os.chmod(name, stat.S_IMODE(mode))
         os.replace(name, target)
@@ -118,13 +124,14 @@ def replace(target: str | Path, data: bytes) -> None:
 
 
 def _new_file(folder: str) -> tuple[int, str]:
-    """A file of a name that nobody has, for writing. (`tempfile` costs more than the writing.)"""
+    """Create a file with a unique name; return its handle and name."""
+    # Like `tempfile.mkstemp`, whose import and calls take longer than writing a file.
     name = os.path.join(folder, f".icdgen-{os.urandom(8).hex()}")
     return os.open(name, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666), name
 
 
 def read(path: str | Path) -> bytes | None:
-    """The content of what we may write; None if it is not there. Raises `UserError` if it can't be read."""
+    """Return the content of a file; None if it does not exist. Raises `UserError` if it cannot be read."""
     try:
         if not stat.S_ISREG(os.stat(path).st_mode):
             raise UserError(f"{path} is in the way: it is not a file", "move it away, or choose another place")
@@ -137,6 +144,7 @@ def read(path: str | Path) -> bytes | None:
 
 
 def _remove_empty(top: Path, folder: Path) -> None:
+    """Remove empty folders, from ``folder`` upwards to ``top``."""
     while folder != top and folder.is_relative_to(top):
         try:
             folder.rmdir()

@@ -1,4 +1,4 @@
-"""Findings -> text, for people and for machines. A format is one module with a function ``report``."""
+"""Formats of findings, for people and for programs. Each format is a module with a function ``report``."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from icdgen.diagnostics import Finding
 
 
 class Report(Protocol):
-    """Findings in a format."""
+    """Function that returns findings in a format."""
 
     def __call__(self, findings: Iterable[Finding], texts: Mapping[str, str], colour: bool = False) -> str: ...
 
@@ -19,6 +19,6 @@ FORMATS = ("text", "json", "github", "sarif")
 
 
 def get(name: str) -> Report:
-    """The function ``report`` of a format, which is one of `FORMATS`."""
+    """Return the function ``report`` of a format in `FORMATS`."""
     report: Report = import_module(f"{__name__}.{name}").report
     return report

@@ -1,4 +1,4 @@
-"""The line that a finding is about, made fit for a terminal, and the marks under it."""
+"""Excerpt of a source line for a finding, with marks below it. It is safe to print on a terminal."""
 
 from __future__ import annotations
 
@@ -7,52 +7,55 @@ import unicodedata
 from icdgen.diagnostics import Fix, Lines, Place
 
 WIDTH = 100  # columns of a line that are shown
-LEAD = 30  # columns kept before the marks where the line is cut
+LEAD = 30  # columns that are shown before the marks if the line is cut
 TAB = "    "
 CUT = "..."
 LONGEST = 1000  # characters of a message; a hostile name may have thousands
 
-_ODD = ("Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp")
+# Unicode categories of control, format, private and unassigned characters, and of line separators.
+_UNPRINTABLE = ("Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp")
 
 
 def printable(text: str) -> str:
-    """The text with every character that a terminal could act upon written out: ``\\x1b``, ``\\u202e``."""
+    """Return a text with escapes such as ``\\x1b`` and ``\\u202e`` for characters that a terminal can interpret."""
     return text if text.isascii() and text.isprintable() else "".join(map(_shown, text))
 
 
 def shown(text: str) -> str:
-    """A message, `printable` and cut to `LONGEST`."""
+    """Return a message, cut to `LONGEST` characters, as `printable` text."""
     return printable(text if len(text) <= LONGEST else text[: LONGEST - 3] + "...")
 
 
 def _shown(char: str) -> str:
-    if unicodedata.category(char) not in _ODD:
+    """Return a character, or its escape if it is not printable."""
+    if unicodedata.category(char) not in _UNPRINTABLE:
         return char
     code = ord(char)
     return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
 
 
 def _columns(text: str) -> int:
-    """Columns that the text takes on a terminal."""
+    """Return the number of columns of a text on a terminal."""
     if text.isascii():
         return len(text)
     return sum(_width(char) for char in text)
 
 
 def _width(char: str) -> int:
+    """Return the number of columns of a character on a terminal."""
     if unicodedata.combining(char):
         return 0
     return 2 if unicodedata.east_asian_width(char) in "WF" else 1
 
 
 def excerpt(lines: Lines, place: Place, mark: str = "^") -> tuple[str, str] | None:
-    """The line and the marks below it, or None where the text has no such line. Long lines are cut to a window."""
+    """Return a line and the marks below it; None if the text has no such line. Long lines are cut around the marks."""
     line = lines[place.line]
     return None if line is None else marked(line, place.column, place.length, mark)
 
 
 def corrected(lines: Lines, fix: Fix) -> tuple[str, str] | None:
-    """The line with the correction, and marks below what is new."""
+    """Return the corrected line, and marks below the new text; None if the text has no such line."""
     line, start = lines[fix.place.line], fix.place.column - 1
     if line is None:
         return None
@@ -61,12 +64,12 @@ def corrected(lines: Lines, fix: Fix) -> tuple[str, str] | None:
 
 
 def marked(line: str, column: int, length: int, mark: str) -> tuple[str, str]:
-    """A line and marks below ``length`` of its characters from ``column`` on."""
+    """Return a line and marks below ``length`` characters from ``column`` on, both cut to `WIDTH` columns."""
     start = min(column - 1, len(line))
-    # Only what can end up in the window is looked at: a line may have a million columns.
+    # Look only at the part that can be visible: a line can have a million columns.
     head, tail = line[max(0, start - WIDTH) : start], line[start : start + WIDTH]
     stretch = tail[: max(1, min(length, len(tail)))]
-    before, under, after = (_spread(t) for t in (head, stretch, tail[len(stretch) :]))
+    before, under, after = map(_spread, (head, stretch, tail[len(stretch) :]))
     hidden_before, hidden_after = start > WIDTH, start + WIDTH < len(line)
     if not hidden_before and not hidden_after and _columns(before + under + after) <= WIDTH:
         return before + under + after, _marks(before, under, mark)
@@ -80,15 +83,17 @@ def marked(line: str, column: int, length: int, mark: str) -> tuple[str, str]:
 
 
 def _spread(text: str) -> str:
+    """Return printable text with tabs replaced by spaces."""
     return printable(text.replace("\t", TAB))
 
 
 def _marks(before: str, under: str, mark: str) -> str:
+    """Return the line of marks: spaces below ``before``, and at least one mark below ``under``."""
     return " " * _columns(before) + mark * max(1, _columns(under))
 
 
 def _first(text: str, columns: int) -> str:
-    """As much of the beginning as fits."""
+    """Return the longest start of a text that fits in a number of columns."""
     if text.isascii():
         return text[: max(0, columns)]
     for index, char in enumerate(text):
@@ -99,7 +104,7 @@ def _first(text: str, columns: int) -> str:
 
 
 def _last(text: str, columns: int) -> str:
-    """As much of the end as fits."""
+    """Return the longest end of a text that fits in a number of columns."""
     if text.isascii():
         return text[-columns:]
     return _first(text[::-1], columns)[::-1]

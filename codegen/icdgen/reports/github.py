@@ -1,4 +1,4 @@
-"""Findings as workflow commands: GitHub shows them beside the lines of a pull request."""
+"""Findings as workflow commands, which GitHub shows at the lines of a pull request."""
 
 from __future__ import annotations
 
@@ -11,11 +11,12 @@ COMMANDS = {"error": "error", "warning": "warning", "note": "notice"}
 
 
 def report(findings: Iterable[Finding], texts: Mapping[str, str], colour: bool = False) -> str:
-    """One command a line; nothing where there is no finding."""
-    return "".join(_one(f) + "\n" for f in findings)
+    """Return one command per line; an empty text without findings."""
+    return "".join(_command(finding) + "\n" for finding in findings)
 
 
-def _one(finding: Finding) -> str:
+def _command(finding: Finding) -> str:
+    """Return the workflow command of a finding."""
     place = finding.place
     properties = {
         "title": f"icdgen {finding.code}",
@@ -25,15 +26,17 @@ def _one(finding: Finding) -> str:
         "col": place.column,
         "endColumn": place.column + place.length,
     }
-    said = ",".join(f"{key}={_property(str(value))}" for key, value in properties.items())
+    parameters = ",".join(f"{key}={_property(str(value))}" for key, value in properties.items())
     text = f"{finding.code}: {finding.message}" + (f"\nhelp: {finding.help}" if finding.help else "")
     text = "\n".join(map(printable, text.split("\n")))
-    return f"::{COMMANDS[finding.severity]} {said}::{_data(text)}"
+    return f"::{COMMANDS[finding.severity]} {parameters}::{_data(text)}"
 
 
 def _data(text: str) -> str:
+    """Return the message of a command, escaped as in the toolkit of GitHub Actions."""
     return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
 
 
 def _property(text: str) -> str:
+    """Return the value of a property, which also escapes the separators of properties."""
     return _data(text).replace(":", "%3A").replace(",", "%2C")

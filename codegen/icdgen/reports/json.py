@@ -1,4 +1,4 @@
-"""Findings as one JSON object, the stable form for programs."""
+"""Findings as one JSON object, a stable format for programs."""
 
 from __future__ import annotations
 
@@ -10,17 +10,18 @@ from icdgen.diagnostics import Finding
 
 
 def report(findings: Iterable[Finding], texts: Mapping[str, str], colour: bool = False) -> str:
-    """``{"findings": [{"code", "severity", "message", ...}], "counts": {"error": 2, ...}}``"""
+    """Return ``{"findings": [{"code", "severity", "message", ...}], "counts": {"error": 2, ...}}``."""
     findings = list(findings)
-    counts = Counter(f.severity for f in findings)
+    counts = Counter(finding.severity for finding in findings)
     document = {
-        "findings": [_one(f) for f in findings],
+        "findings": list(map(_object, findings)),
         "counts": {severity: counts[severity] for severity in ("error", "warning", "note")},
     }
     return json.dumps(document, indent=2) + "\n"
 
 
-def _one(finding: Finding) -> dict[str, object]:
+def _object(finding: Finding) -> dict[str, object]:
+    """Return a finding as values for JSON."""
     place = finding.place
     return {
         "code": finding.code,
@@ -35,7 +36,7 @@ def _one(finding: Finding) -> dict[str, object]:
 
 
 def _optional(finding: Finding) -> dict[str, object]:
-    """The correction, and the other place that the finding is about, each if there is one."""
+    """Return the fix and the related place of a finding, if it has them."""
     result: dict[str, object] = {}
     if finding.fix is not None:
         result["fix"] = finding.fix.place._asdict() | {"text": finding.fix.text}

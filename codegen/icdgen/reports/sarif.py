@@ -1,4 +1,4 @@
-"""Findings as SARIF 2.1.0, which code-scanning services and editors read."""
+"""Findings as SARIF 2.1.0, a format of code-scanning services and editors."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from icdgen.icd import rules
 
 
 class Page(Protocol):
-    """What a rule's page must have to be described."""
+    """Page of a rule, as far as SARIF needs it."""
 
     @property
     def why(self) -> str: ...
 
 
 class Explained(Protocol):
-    """What a rule must have to be described; both the rules of ICDs and those of the diff do."""
+    """A rule for ICDs or a rule of the diff, as far as SARIF needs it."""
 
     @property
     def severity(self) -> str: ...
@@ -38,30 +38,31 @@ SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 
 
 def report(findings: Iterable[Finding], texts: Mapping[str, str], colour: bool = False) -> str:
-    """One run of the tool, with the rules that were broken."""
+    """Return a log with one run, which describes the violated rules."""
     return json.dumps(document(list(findings), _rule), indent=2) + "\n"
 
 
 def document(findings: list[Finding], about: Callable[[str], dict[str, Any]]) -> dict[str, Any]:
-    """A tree for `json.dumps`. ``about`` describes a rule."""
-    codes = sorted({f.code for f in findings})
+    """Return the log as values for JSON. ``about`` returns the description of a rule by its code."""
+    codes = sorted({finding.code for finding in findings})
     index = {code: number for number, code in enumerate(codes)}
     driver = {"name": "icdgen", "semanticVersion": __version__, "rules": [about(code) for code in codes]}
     run = {
         "tool": {"driver": driver},
         "columnKind": "unicodeCodePoints",
-        "results": [_result(f, index[f.code]) for f in findings],
+        "results": [_result(finding, index[finding.code]) for finding in findings],
     }
     return {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
 
 
 def _rule(code: str) -> dict[str, Any]:
+    """Return the description of a rule for ICDs."""
     rule = rules.ALL.get(code)
     return {"id": code} if rule is None else described(code, rule, rules.explain(code))
 
 
 def described(code: str, rule: Explained, text: str) -> dict[str, Any]:
-    """A rule that has a ``title``, a ``page`` and a ``severity``; ``text`` explains it."""
+    """Return the `reportingDescriptor` of a rule (SARIF, section 3.49); ``text`` is its explanation in Markdown."""
     return {
         "id": code,
         "shortDescription": {"text": rule.title},
@@ -72,6 +73,7 @@ def described(code: str, rule: Explained, text: str) -> dict[str, Any]:
 
 
 def _result(finding: Finding, index: int) -> dict[str, Any]:
+    """Return the `result` of a finding (SARIF, section 3.27)."""
     text = finding.message + (f"\n{finding.help}" if finding.help else "")
     result = {
         "ruleId": finding.code,
@@ -92,11 +94,12 @@ def _result(finding: Finding, index: int) -> dict[str, Any]:
 
 
 def physical(place: Place) -> dict[str, Any]:
-    """A stretch of a line."""
+    """Return the `physicalLocation` of a place (SARIF, section 3.29)."""
     region = {"startLine": place.line, "startColumn": place.column, "endColumn": place.column + place.length}
     return {"artifactLocation": {"uri": _uri(place.file)}, "region": region}
 
 
 def _uri(file: str) -> str:
+    """Return the URI of a file; relative for a relative path."""
     path = PurePath(file)
     return path.as_uri() if path.is_absolute() else quote(os.fsencode(path.as_posix()))

@@ -1,4 +1,4 @@
-"""Findings for people: the place, what is wrong, the line with marks under it, what to do, and the corrected line."""
+"""Findings as text: the place and message, the line with marks below it, the help, and the corrected line."""
 
 from __future__ import annotations
 
@@ -19,30 +19,31 @@ COLOURS = {
 RESET = "\x1b[0m"
 
 
+# Function of a role and a text that returns the text in the colour of the role.
 Paint = Callable[[str, str], str]
-"""Puts a text in the colour of its role, which comes first."""
 
 
 def report(findings: Iterable[Finding], texts: Mapping[str, str], colour: bool = False) -> str:
-    """The findings in the order given, and a line that counts them."""
+    """Return the findings in the given order, and a line with their number. ``texts`` lacks files that cannot be read."""
     findings = list(findings)
     paint: Paint = _painted if colour else _plain
-    lines = {file: Lines(text) for file, text in texts.items()}  # but for those that could not be read
-    parts = (_one(finding, lines, paint) for finding in findings)
+    lines = {file: Lines(text) for file, text in texts.items()}
+    parts = (_text(finding, lines, paint) for finding in findings)
     return "".join(part + "\n" for part in parts) + _summary(findings) + "\n"
 
 
 def _summary(findings: list[Finding]) -> str:
-    """``3 errors, 1 warning in 2 files``"""
-    counts = Counter(f.severity for f in findings)
+    """Return the numbers of findings and files in words: ``3 errors, 1 warning in 2 files``."""
+    counts = Counter(finding.severity for finding in findings)
     if not counts:
         return "no findings"
-    said = [_count(counts[s], s) for s in ("error", "warning", "note") if counts[s]]
-    return f"{', '.join(said)} in {_count(len({f.place.file for f in findings}), 'file')}"
+    numbers = [_count(counts[severity], severity) for severity in ("error", "warning", "note") if counts[severity]]
+    files = {finding.place.file for finding in findings}
+    return f"{', '.join(numbers)} in {_count(len(files), 'file')}"
 
 
-def _one(finding: Finding, texts: Mapping[str, Lines], paint: Paint) -> str:
-    """The message, the line with marks, the related line, the help, and the corrected line."""
+def _text(finding: Finding, texts: Mapping[str, Lines], paint: Paint) -> str:
+    """Return the text of a finding: message, line with marks, related line, help and corrected line."""
     place, related, fix = finding.place, finding.related, finding.fix
     rows = _Rows(max(len(str(each.place.line)) for each in (finding, related, fix) if each is not None), paint)
     heading = paint("place", printable(str(place)))
@@ -67,7 +68,7 @@ def _one(finding: Finding, texts: Mapping[str, Lines], paint: Paint) -> str:
 
 
 class _Rows:
-    """Excerpts of one finding, all with a gutter as wide as the largest line number."""
+    """Excerpts of a finding, with a gutter for the largest line number."""
 
     def __init__(self, width: int, paint: Paint) -> None:
         self.indent = " " * width
@@ -76,7 +77,7 @@ class _Rows:
     def excerpt(
         self, place: Place, content: tuple[str, str] | None, role: str, label: str = "", begin: bool = False
     ) -> str:
-        """A line of the source and marks below it, with the label after them; empty without ``content``."""
+        """Return a line of the source and marks below it, with a label after the marks; empty without ``content``."""
         if content is None:
             return ""
         line, marks = content
@@ -91,8 +92,10 @@ def _count(number: int, noun: str) -> str:
 
 
 def _plain(role: str, text: str) -> str:
+    """Return the text without a colour."""
     return text
 
 
 def _painted(role: str, text: str) -> str:
+    """Return the text in the colour of a role, as ANSI escape codes."""
     return f"{COLOURS[role]}{text}{RESET}"

@@ -1,7 +1,7 @@
-"""Links and messages of a model as objects of the Python runtime, without generating code.
+"""Links and messages of a model as objects of the Python runtime, without generated code.
 
-The tool's own commands (simulator, links, logs) run on the runtime that users get. Importing this package makes the runtime
-importable as ``icdgen_runtime`` from the checkout or the wheel.
+The simulator, links and logs of icdgen use the same runtime as generated code. Importing this package makes the runtime
+importable as ``icdgen_runtime``, from the checkout or the wheel.
 """
 
 from icdgen import shipped

@@ -1,4 +1,4 @@
-"""``LINK`` of a node, equal to that of its generated package."""
+"""Link of a node as an object of the runtime, equal to ``LINK`` in generated code."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def link_of(icd: Icd, facts: Facts) -> Link:
 
 
 def _evaluate(value: object, names: Mapping[str, object]) -> object:
-    """Return the object that an expression of `icdgen.link_calls` stands for."""
+    """Return the object that an expression of `icdgen.link_calls` describes."""
     if isinstance(value, Commented):
         return _evaluate(value.item, names)
     if isinstance(value, Verbatim):

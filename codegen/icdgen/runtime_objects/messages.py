@@ -1,4 +1,4 @@
-"""Messages of the model as the classes that the runtime's client and procedures ask for."""
+"""Message classes for the client and the procedures of the runtime, made from the model."""
 
 from __future__ import annotations
 
@@ -17,50 +17,53 @@ from icdgen.icd.places import NodePlace
 
 
 class ModelMessage(Message):
-    """A message whose frame the reference codec reads and writes. It has raw values, and no physical ones."""
+    """A message that the reference codec encodes and decodes. Its attributes are raw values only."""
 
     description: ClassVar[MessageDescription]
 
     def __init__(self) -> None:
-        for one in self.description.fields:
-            setattr(self, one.name, _value(one.model, one.model.initial_value))
+        for field in self.description.fields:
+            setattr(self, field.name, _value(field.model, field.model.initial_value))
 
     @classmethod
     def from_bytes(cls, data: Buffer) -> ModelMessage:
-        """The message in a frame. Raises `LengthError`."""
+        """Return the message of a frame. Raises `LengthError`."""
         description, frame = cls.description, bytes(data)
         try:
-            raw, made = codec.decode(description.node, description.model, frame), cls()
+            raw, message = codec.decode(description.node, description.model, frame), cls()
         except codec.LengthError:
             raise LengthError(cls.NAME, cls.LENGTH, len(frame)) from None
-        for one in description.fields:
-            known = one.model.name in raw  # a field that is not always there may be absent
-            setattr(made, one.name, _value(one.model, raw[one.model.name]) if known else None)
-        return made
+        for field in description.fields:
+            # An absent optional field has no raw value.
+            is_present = field.model.name in raw
+            setattr(message, field.name, _value(field.model, raw[field.model.name]) if is_present else None)
+        return message
 
     def to_bytes(self) -> bytes:
-        """The frame, with reserved bits 0. Raises `RangeError`."""
+        """Return the frame; reserved bits are 0. Raises `RangeError`."""
         description = self.description
-        held = ((one, getattr(self, one.name)) for one in description.fields)
-        raw = {one.model.name: _raw(one, value) for one, value in held if value is not None}
+        values = ((field, getattr(self, field.name)) for field in description.fields)
+        raw = {field.model.name: _raw(field, value) for field, value in values if value is not None}
         return codec.encode(description.node, description.model, raw)
 
 
 class ModelMessages(Messages):
-    """Messages of the model by id; a class is made when it is asked for."""
+    """Message classes of a node by id; each is made on the first access."""
 
-    def __init__(self, node: str, kind: str, known: Mapping[int, model.Message], description: Description) -> None:
-        super().__init__({}, node, kind, {id: message.name for id, message in known.items()})
-        self._known, self._description = known, description
+    def __init__(self, node: str, kind: str, messages: Mapping[int, model.Message], description: Description) -> None:
+        super().__init__({}, node, kind, {id: message.name for id, message in messages.items()})
+        self._messages, self._description = messages, description
 
     def _load(self, id: int) -> type[Message]:
+        """Return the class of an id. Raises `UnknownIdError`."""
         if id not in self:
             raise UnknownIdError(self._node, self._kind, id)
-        self._loaded[id] = found = _class(self._description.message(self._known[id]))
-        return found
+        self._loaded[id] = message_class = _class(self._description.message(self._messages[id]))
+        return message_class
 
 
 def _class(description: MessageDescription) -> type[ModelMessage]:
+    """Return the class of a message, with the class attributes of generated code."""
     message = description.model
     members = {
         "description": description,
@@ -72,15 +75,15 @@ def _class(description: MessageDescription) -> type[ModelMessage]:
         "ACKNOWLEDGED": message.acknowledge,
         "FIELDS": tuple(
             FieldInfo(
-                one.name,
-                one.model.name,
-                one.model.at,
-                one.model.bits,
-                one.model.type,
-                byte_order=one.model.byte_order,
-                bit_order=one.model.bit_order,
+                field.name,
+                field.model.name,
+                field.model.at,
+                field.model.bits,
+                field.model.type,
+                byte_order=field.model.byte_order,
+                bit_order=field.model.bit_order,
             )
-            for one in description.fields
+            for field in description.fields
         ),
         "BYTE_ORDER": description.node.byte_order,
         "BIT_ORDER": description.node.bit_order,
@@ -89,7 +92,7 @@ def _class(description: MessageDescription) -> type[ModelMessage]:
 
 
 def _value(field: NodePlace, raw: int | bytes) -> object:
-    """What an attribute holds: a float's number, and not its bits."""
+    """Return the value of an attribute for a raw value: of a float the number, of a flag a truth value."""
     if isinstance(raw, bytes):
         return raw
     if field.type == "float":
@@ -97,13 +100,13 @@ def _value(field: NodePlace, raw: int | bytes) -> object:
     return bool(raw) if field.type == "bool" else raw
 
 
-def _raw(one: FieldDescription, value: object) -> int | bytes:
-    """The reverse of `_value`. Raises `RangeError`."""
-    field = one.model
+def _raw(field: FieldDescription, value: object) -> int | bytes:
+    """Return the raw value of the value of an attribute. Raises `RangeError`."""
+    place = field.model
     try:
-        raw = codec.float_bits(field, value) if isinstance(value, float) else value
+        raw = codec.float_bits(place, value) if isinstance(value, float) else value
         assert isinstance(raw, int | bytes)
-        codec.check_raw(field, raw)
+        codec.check_raw(place, raw)
     except codec.CodecError as error:
-        raise RangeError(one.name, str(error), value) from None
+        raise RangeError(field.name, str(error), value) from None
     return raw

@@ -1,4 +1,4 @@
-"""The documentation site as a whole: made in memory, written to a folder, or served."""
+"""Documentation site of ICDs: rendered in memory, written to a folder, or served over HTTP."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From ICD files to the files of the site."""
+"""Rendering of the documentation site from ICD files."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 
 @dataclass
 class Site:
-    """``files`` by path from the top of the site; none if the ICDs have errors."""
+    """A rendered site. If the ICDs have errors, it has no files."""
 
     ok: bool
     findings: list[Finding]
     texts: dict[str, str]
-    files: dict[str, str] = field(default_factory=dict)
-    inputs: dict[Path, str] = field(default_factory=dict)  # what decides the site -> its fingerprint when read
+    files: dict[str, str] = field(default_factory=dict)  # by path relative to the top of the site
+    inputs: dict[Path, str] = field(default_factory=dict)  # fingerprint of each file that the site depends on
 
 
 def make(
@@ -37,27 +37,27 @@ def make(
     packages: Packages | None = None,
     watch: Callable[[Files], Files] = iter,
 ) -> Site:
-    """Loads, checks and renders. ``previous`` is an older release, as `icdgen.diff.inputs` takes it.
+    """Load and check ICDs, and render the site.
 
-    ``watch`` passes the files on, and can count them.
-
-    Raises `UserError` where a file can't be read or a template is bad.
+    ``previous`` is an older release to compare with, in the syntax of `icdgen.diff.inputs`. ``watch`` passes the files on, for
+    example to show the progress. Raises `UserError` if a file cannot be read or a template has an error.
     """
     loaded = load_checked(icds, HtmlBackend.named_in)
-    made = Site(loaded.ok, list(loaded.findings), dict(loaded.texts), inputs=dict(loaded.inputs))
-    older = _older(made, previous, icds) if made.ok and previous is not None else None
-    if made.ok:
+    site = Site(loaded.ok, list(loaded.findings), dict(loaded.texts), inputs=dict(loaded.inputs))
+    older = _older(site, previous, icds) if site.ok and previous is not None else None
+    if site.ok:
         render = Renderer(HtmlBackend.name, templates)
         backend = HtmlBackend(older)
         backend.packages = packages or Packages()
-        made.files = {
+        site.files = {
             str(path): page for path, page in watch(backend.files(loaded.icd, render)) if isinstance(page, str)
         }
-        made.inputs |= render.looked_at
-    return made
+        site.inputs |= render.looked_at
+    return site
 
 
 def _older(site: Site, previous: str, icds: list[Path]) -> Side:
+    """Load the older release; if it has errors, the site has its findings and is not rendered."""
     from icdgen.diff import inputs
 
     side = inputs.one_side(previous, icds)
@@ -69,8 +69,8 @@ def _older(site: Site, previous: str, icds: list[Path]) -> Side:
 
 
 def write(site: Site, out: Path, check: bool = False) -> Plan:
-    """Brings a folder to the state of the site; with ``check`` only compares. Raises `UserError`."""
-    made = plan(out, HtmlBackend.name, ((PurePosixPath(name), text) for name, text in site.files.items()))
+    """Write the site to a folder, or only compare with ``check``. Returns the changes. Raises `UserError`."""
+    changes = plan(out, HtmlBackend.name, ((PurePosixPath(name), text) for name, text in site.files.items()))
     if not check:
-        apply(made)
-    return made
+        apply(changes)
+    return changes

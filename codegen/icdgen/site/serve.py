@@ -1,4 +1,4 @@
-"""The site over HTTP, on this machine only, made anew when an ICD changes."""
+"""HTTP server of the site, for this machine only. It renders the site again if an ICD changes."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _TYPES = {
 
 
 class Source:
-    """Keeps the site current: what is asked for is made of the files as they are then."""
+    """The current site: rendered again on a request if an input file has changed."""
 
     def __init__(
         self,
@@ -40,22 +40,27 @@ class Source:
         self._site: Site | None = None
 
     def site(self) -> Site:
-        """The site as of now. Raises `UserError`."""
+        """Return the current site. Raises `UserError`."""
         with self._lock:
-            seen = self._site.inputs.items() if self._site else ()
-            if self._site is None or any(fingerprints.of_path(os.fspath(path)) != was for path, was in seen):
+            inputs = self._site.inputs.items() if self._site else ()
+            if self._site is None or any(fingerprints.of_path(os.fspath(path)) != old for path, old in inputs):
+                # If `make` raises, the next request tries again.
                 self._site = None
                 self._site = make(*self._arguments)
             return self._site
 
 
 def handler(source: Source) -> type[BaseHTTPRequestHandler]:
-    """A request handler that answers from ``source``."""
+    """Return a request handler class that serves the site of ``source``."""
 
     class Handler(BaseHTTPRequestHandler):
+        """Serves pages, or the findings if the ICDs have errors."""
+
         server_version, sys_version = "icdgen", ""
 
         def do_GET(self) -> None:
+            """Send a page, a redirection or an error."""
+            # Only localhost: otherwise a web page could read the site by DNS rebinding.
             if (self.headers.get("Host") or "").rsplit(":", 1)[0] not in _NAMES:
                 self._send(HTTPStatus.FORBIDDEN, ".txt", "This server answers only to localhost.\n")
                 return
@@ -80,12 +85,14 @@ def handler(source: Source) -> type[BaseHTTPRequestHandler]:
         do_HEAD = do_GET
 
         def handle(self) -> None:
+            """Handle requests of a connection. Browsers close connections at any time, which is not an error."""
             try:
                 super().handle()
             except ConnectionError:
-                self.close_connection = True  # the browser went away, as browsers do
+                self.close_connection = True
 
         def finish(self) -> None:
+            """Flush the output, unless the browser has closed the connection."""
             with suppress(ConnectionError):
                 super().finish()
 
@@ -103,12 +110,13 @@ def handler(source: Source) -> type[BaseHTTPRequestHandler]:
                 self.wfile.write(data)
 
         def log_message(self, format: str, *args: object) -> None:
-            """Nothing: what goes well need not be said."""
+            """Suppress the log of requests."""
 
     return Handler
 
 
 def _complaint(text: str) -> str:
+    """Return a page with the reason why the site cannot be shown."""
     return (
         '<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>icdgen</title>'
         f"<body><h1>This site cannot be shown</h1><pre>{html.escape(text)}</pre></body></html>\n"
@@ -123,7 +131,7 @@ def serve(
     port: int,
     say: Callable[[str], None],
 ) -> None:
-    """Serves until interrupted. Raises `UserError` if the port is taken."""
+    """Serve the site until Ctrl+C. ``say`` shows the address. Raises `UserError` if the port is in use."""
     source = Source(icds, previous, templates, packages)
     try:
         server = ThreadingHTTPServer((HOST, port), handler(source))

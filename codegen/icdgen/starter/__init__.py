@@ -1,4 +1,4 @@
-"""A first ICD: a commented device that is ready to check, generate and simulate."""
+"""First ICD of a project, for ``icdgen init``: a commented device that is ready to check, generate and simulate."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ crate = "{package}"  # the name in `use {package}::{name}`
 
 
 def write(folder: Path, name: str, style: Style | None = None, origin: str = "") -> list[Path]:
-    """Writes ``icd/NAME.yaml``, its errata file and, unless they are there, the schema and ``icdgen.toml``.
+    """Write ``icd/NAME.yaml``, its errata file and, if they do not exist, the schema and ``icdgen.toml``.
 
-    ``style`` is that of the node ``origin``, if it is to be taken over.
-    Raises `UserError`, before anything is written, if the name cannot be a node's or a file of that name is there.
+    Returns the paths of the written files, relative to ``folder``. With a ``style``, the ICD has the style of the node
+    ``origin``. Raises `UserError`, before anything is written, if the name is invalid or a file of this name exists.
     """
     if not _NAME.fullmatch(name):
         proposal = re.sub(r"[^a-z0-9]+", "_", latin(name).lower()).strip("_").lstrip("0123456789_")[:64]
@@ -66,7 +66,7 @@ def write(folder: Path, name: str, style: Style | None = None, origin: str = "")
 
 
 def _package(name: str) -> str:
-    """The project's name, or where no language takes it the name with `_icd`."""
+    """Return the name of the package: the name of the project, or with the suffix `_icd` if a language does not allow it."""
     try:
         packages.of_project(config.Config(name=name))
     except UserError:
@@ -75,5 +75,6 @@ def _package(name: str) -> str:
 
 
 def _filled(template: str, name: str) -> str:
+    """Return a template of `icdgen init` for a device."""
     text = (shipped.templates() / "init" / template).read_text(encoding="utf-8")
     return text.replace("{{ name }}", name).replace("{{ title }}", name.replace("_", " ").capitalize())
