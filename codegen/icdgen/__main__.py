@@ -1,4 +1,4 @@
-"""``icdgen`` on the command line. A build step that has nothing to do ends here, before anything heavy is imported."""
+"""Entry point of ``icdgen``. A build step without changes ends here, before any large module is imported."""
 
 from __future__ import annotations
 
@@ -7,14 +7,15 @@ import sys
 
 
 def main() -> None:
-    """Runs the command line and exits: 0 clean, 1 findings, 2 misuse."""
+    """Run the command line and exit: 0 success, 1 findings, 2 wrong usage, 130 interrupted."""
     try:
         _main()
-    except KeyboardInterrupt:  # while modules are still being loaded; later `cli` says more
+    except KeyboardInterrupt:  # only while modules are imported; later `cli` handles it
         sys.exit(130)
 
 
 def _main() -> None:
+    """Print the note of a recorded run whose files are unchanged, or else run the command."""
     from icdgen import cache
 
     arguments = sys.argv[1:]
@@ -27,7 +28,8 @@ def _main() -> None:
         sys.exit(0)
     import gc
 
-    gc.disable()  # a short run that makes many small objects: the collector doubles its time and frees nothing
+    # A short run makes many small objects. The garbage collector doubles its time and frees nothing.
+    gc.disable()
     from icdgen import cli
 
     try:
@@ -36,18 +38,19 @@ def _main() -> None:
         _leave(end.code)
         raise
     finally:
-        gc.freeze()  # nor does it free anything that matters when the interpreter ends
+        # Otherwise the interpreter collects once more at its end.
+        gc.freeze()
 
 
 def _leave(status: object) -> None:
-    """Ends a generation at once: its files are written, and to take Python apart, object by object, is a thirtieth of a run.
+    """End a generation at once, without destroying all objects, which takes a thirtieth of a run.
 
-    Not where others may still have something to do: a plug-in, or whoever traces the run or asked to be called at its end.
+    Only if no other code has to run at the end: a plug-in, a tracer, a profiler or a function registered with `atexit`.
     """
     import atexit
 
-    ours = "icdgen.commands.generate" in sys.modules and "icdgen.backends.plug_in" not in sys.modules
-    if not ours or not isinstance(status, int) or sys.gettrace() or sys.getprofile() or atexit._ncallbacks():
+    is_plain_run = "icdgen.commands.generate" in sys.modules and "icdgen.backends.plug_in" not in sys.modules
+    if not is_plain_run or not isinstance(status, int) or sys.gettrace() or sys.getprofile() or atexit._ncallbacks():
         return
     try:
         for stream in (sys.stdout, sys.stderr):
@@ -59,7 +62,7 @@ def _leave(status: object) -> None:
 
 
 def _was_printed(note: str) -> bool:
-    """Whether the note, if there is one, could be printed; the way through `cli` knows what to say if not."""
+    """Print a note; return whether that succeeded. If not, the run continues with `cli`, which reports the error."""
     try:
         print(note, end="\n" if note else "", flush=True)
     except (OSError, ValueError):

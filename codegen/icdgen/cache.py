@@ -1,10 +1,10 @@
-"""Remembers, by content, what was checked and what was generated, so that a build step with nothing to do costs nothing.
+"""Cache of checked models and of finished runs, so that a build step without changes takes almost no time.
 
-A record holds data and lists files with the SHA-256 of each; it counts only while every one of them is as it was, the tool itself
-included. Records live in the user's cache folder; ``ICDGEN_CACHE=off`` does without.
+A record has data and a list of files with their SHA-256. It is valid only while all these files, and icdgen itself, are
+unchanged. Records are in the cache folder of the user; ``ICDGEN_CACHE=off`` disables the cache.
 
-What is read here decides what is generated. So nothing counts that anybody but the user could have put there, and records are
-plain data: nothing in them is ever run. This module is on the path of every start: it imports next to nothing.
+Records determine what is generated. Therefore a record is ignored if anyone other than the user could have written it, and
+records are plain data that is never executed. Every start imports this module, so it imports almost nothing.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from hashlib import sha256
 from icdgen import fingerprints
 
 MOST = 300  # records of one kind
-_BYTES = 64 << 20  # no record of ours is larger
+_BYTES = 64 << 20  # size limit of a record
 _TEXT = ("utf-8", "surrogateescape")
 
 
 def folder() -> str | None:
-    """The cache folder, or None if it is switched off."""
+    """Return the cache folder; None if the cache is disabled or the user has no home folder."""
     chosen = os.environ.get("ICDGEN_CACHE")
     if chosen in ("off", "0"):
         return None
@@ -30,26 +30,27 @@ def folder() -> str | None:
     base = os.environ.get("XDG_CACHE_HOME", "")
     if not os.path.isabs(base):
         home = os.path.expanduser("~")
-        if not os.path.isdir(home):  # as that of a service is not, and it is not for us to make
+        # A service may have no home folder, and icdgen must not create one.
+        if not os.path.isdir(home):
             return None
         base = os.path.join(home, ".cache")
     return os.path.join(base, "icdgen")
 
 
 def key(*parts: str) -> str:
-    """A name for a record about ``parts``, for this tool."""
+    """Return the name of a record about ``parts`` that is valid for this version of icdgen."""
     return sha256("\0".join((fingerprints.of_tool(), *parts)).encode(*_TEXT)).hexdigest()
 
 
 def recall(kind: str, name: str) -> bytes | None:
-    """The data of a record, if it is the user's own, whole, and every file it lists is unchanged."""
+    """Return the data of a record; None if it is absent, damaged, not private, or if a file that it lists has changed."""
     top = folder()
     if top is None or not _is_private_folder(top) or not _is_private_folder(os.path.join(top, kind)):
         return None
-    digest, _, rest = _content(os.path.join(top, kind, name)).partition(b"\n")
-    if digest != sha256(rest).hexdigest().encode():
+    digest, _, body = _content(os.path.join(top, kind, name)).partition(b"\n")
+    if digest != sha256(body).hexdigest().encode():
         return None
-    head, _, data = rest.partition(b"\0")
+    head, _, data = body.partition(b"\0")
     for line in head.decode(*_TEXT).splitlines():
         expected, _, path = line.partition(" ")
         if fingerprints.of_path(path) != expected:
@@ -58,32 +59,36 @@ def recall(kind: str, name: str) -> bytes | None:
 
 
 def remember(kind: str, name: str, data: bytes, files: dict[str, str]) -> None:
-    """Keeps a record. ``files``: path -> fingerprint of what was read or written there. Never fails."""
+    """Write a record. ``files`` has the fingerprint of each file that was read or written. Does not raise `OSError`."""
+    # Paths are stored one per line, so those with a line break cannot be recorded.
     if fingerprints.UNKNOWN in files.values() or any(len(path.splitlines()) != 1 for path in files):
         return
     top = folder()
     if top is None:
         return
-    rest = "\n".join(f"{seen} {path}" for path, seen in files.items()).encode(*_TEXT) + b"\0" + data
+    head = "\n".join(f"{fingerprint} {path}" for path, fingerprint in files.items()).encode(*_TEXT)
+    body = head + b"\0" + data
     try:
         for place in (top, os.path.join(top, kind)):
             _make(place)
             if not _is_private_folder(place):
                 return
-        _write(os.path.join(top, kind, name), sha256(rest).hexdigest().encode() + b"\n" + rest)
+        _write(os.path.join(top, kind, name), sha256(body).hexdigest().encode() + b"\n" + body)
         _prune(os.path.join(top, kind))
     except OSError:
         return
 
 
 def _is_private(status: os.stat_result) -> bool:
-    """Whether it belongs to the user, and nobody else may write to it."""
-    if not hasattr(os, "getuid"):  # Windows: a profile's folders are its user's
+    """Return whether a file or folder belongs to the user, and no other user can write to it."""
+    # On Windows, other users cannot write to the folders of a profile.
+    if not hasattr(os, "getuid"):
         return True
     return status.st_uid == os.getuid() and not stat.S_IMODE(status.st_mode) & 0o022
 
 
 def _is_private_folder(path: str) -> bool:
+    """Return whether a path is a private folder, and not a link."""
     try:
         status = os.lstat(path)
     except (OSError, ValueError):
@@ -92,25 +97,27 @@ def _is_private_folder(path: str) -> bool:
 
 
 def _content(path: str) -> bytes:
-    """The bytes of a file of the user's own; none if it is anything else."""
+    """Return the bytes of a private file; empty for anything else, such as a link or a pipe."""
     flags = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     try:
         with open(os.open(path, flags), "rb") as file:
             status = os.fstat(file.fileno())
-            ours = stat.S_ISREG(status.st_mode) and _is_private(status) and status.st_nlink == 1
-            return file.read() if ours and status.st_size <= _BYTES else b""
+            # A second hard link could be in a folder that others can write to.
+            is_own = stat.S_ISREG(status.st_mode) and _is_private(status) and status.st_nlink == 1
+            return file.read() if is_own and status.st_size <= _BYTES else b""
     except OSError:
         return b""
 
 
 def _make(place: str) -> None:
+    """Create a folder that only the user can access, unless it exists."""
     if not os.path.isdir(place):
         os.makedirs(os.path.dirname(place) or ".", exist_ok=True)
         os.mkdir(place, 0o700)
 
 
 def _write(target: str, data: bytes) -> None:
-    """Writes a file, whole or not at all."""
+    """Write a file atomically."""
     part = f"{target}.{os.getpid()}"
     handle = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o600)
     try:
@@ -123,7 +130,7 @@ def _write(target: str, data: bytes) -> None:
 
 
 def _prune(top: str) -> None:
-    """Removes the oldest files where there are more than `MOST`."""
+    """Remove the oldest files of a folder with more than `MOST` files."""
     with os.scandir(top) as entries:
         files = list(entries)
     if len(files) > MOST:

@@ -1,4 +1,4 @@
-"""Options in, one call, result out. Commands live in ``commands``; each is imported when it is named."""
+"""Command line of icdgen. The commands are modules of ``icdgen.commands``, each imported only when it is used."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from icdgen.errors import UserError
 from icdgen.reports.excerpt import shown
 from icdgen.suggest import close_words
 
-# Commands as `--help` groups them. Each is a module in ``icdgen.commands`` with a click command of the same name; the module
-# of `import` is `import_`, as that is a keyword of Python.
+# Commands in the groups of `--help`. Each is a module of ``icdgen.commands`` with a click command of the same name. The module
+# of `import` is `import_`, because `import` is a keyword of Python.
 _GROUPS = {
     "Describe a device": ("init", "check", "fmt", "show", "rule", "units", "schema"),
     "Generate": ("generate", "docs"),
@@ -29,16 +29,18 @@ _GROUPS = {
 _COMMANDS = tuple(name for names in _GROUPS.values() for name in names)
 _DEFAULT = "generate"
 _FOLDERS = ("--cmake-dir", "--examples-dir")
-_WHOLE = 10_000  # characters of a sentence
+_UNLIMITED = 10_000  # characters of a sentence in `--help`
 
 
 class _Commands(click.Group):
     """A group whose default command is ``generate``, so that a build step reads ``icdgen --lang c``."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the names of all commands."""
         return list(_COMMANDS)
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
+        """Import a command; return None if there is no such command."""
         if name not in _COMMANDS:
             return None
         python = f"{name}_" if iskeyword(name) else name
@@ -46,20 +48,22 @@ class _Commands(click.Group):
         return command
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse arguments; insert the default command unless they begin with a command or an option of the group."""
         if args and args[0] not in (*_COMMANDS, "--help", "-h", "--version", *_FOLDERS):
             _refuse_mistyped(args[0])
             args = [_DEFAULT, *args]
         return super().parse_args(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the complete first sentence of each command: click cuts it off at the width of the terminal."""
+        """Write the commands in groups, with the complete first sentence of each. Click would truncate it."""
         for title, names in _GROUPS.items():
             commands = ((name, self.get_command(ctx, name)) for name in names)
-            rows = [(name, command.get_short_help_str(_WHOLE)) for name, command in commands if command is not None]
+            rows = [(name, command.get_short_help_str(_UNLIMITED)) for name, command in commands if command is not None]
             with formatter.section(title):
                 formatter.write_dl(rows)
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the available languages and the epilog."""
         from icdgen.commands.common import known_languages
 
         formatter.write_paragraph()
@@ -67,18 +71,19 @@ class _Commands(click.Group):
         super().format_epilog(ctx, formatter)
 
     def invoke(self, ctx: click.Context) -> object:
+        """Run the command. Errors get the context of the shipped ICDs; a closed pipe has the exit status of SIGPIPE."""
         try:
             return super().invoke(ctx)
         except UserError as error:
             from icdgen.commands.common import beside_shipped
 
             raise beside_shipped(error, ctx) from None
-        except BrokenPipeError:  # click would say 1, which means findings
+        except BrokenPipeError:  # click would exit with 1, which means findings
             ctx.exit(141)
 
 
 def _refuse_mistyped(word: str) -> None:
-    """A word that is no option, and no file or folder, was meant as a command, and not as an ICD."""
+    """Raise `UserError` for a first argument that looks like a command but is neither a command nor a file or folder."""
     if not word.isidentifier() or os.path.lexists(word):
         return
     close = close_words(word, _COMMANDS)
@@ -87,13 +92,13 @@ def _refuse_mistyped(word: str) -> None:
 
 
 def _folder(name: str, what: str, place: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """The option that says where what is shipped lies, as the function ``place`` of `icdgen.shipped` knows."""
+    """Return an option that prints a shipped folder and exits. ``place`` is a function of `icdgen.shipped`."""
 
-    def show(ctx: click.Context, option: click.Parameter, wanted: bool) -> None:
-        if wanted:
+    def show(ctx: click.Context, option: click.Parameter, is_set: bool) -> None:
+        if is_set:
             from icdgen import shipped
 
-            click.echo(getattr(shipped, place)().as_posix())  # as CMake takes paths everywhere
+            click.echo(getattr(shipped, place)().as_posix())  # CMake expects slashes, also on Windows
             ctx.exit()
 
     help = f"Show the folder of {what}, and exit."
@@ -118,7 +123,7 @@ def icdgen(ctx: click.Context) -> None:
 
 
 def _generate_or_help(ctx: click.Context) -> None:
-    """Generate what icdgen.toml names; without languages there, print the help and exit with the status of wrong usage."""
+    """Generate the languages of icdgen.toml; if it names none, print the help and exit with status 2."""
     from icdgen.commands.common import chosen
 
     command = icdgen.get_command(ctx, _DEFAULT)
@@ -130,7 +135,7 @@ def _generate_or_help(ctx: click.Context) -> None:
 
 
 def main(arguments: list[str], run: str = "") -> None:
-    """Runs a command line and exits. ``run`` names the record under which a generation may be remembered."""
+    """Run a command line and exit. ``run`` is the name of the cache record of this command line."""
     try:
         _show_anything()
         status = _run(arguments, run)
@@ -158,13 +163,14 @@ def main(arguments: list[str], run: str = "") -> None:
 
 
 def _show_anything() -> None:
-    """Characters that the terminal's encoding lacks are shown as escapes. Raises OSError if the output is broken already."""
+    """Make the standard streams print escapes for characters that the encoding of the terminal lacks."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
 
 
 def _run(arguments: list[str], run: str) -> int:
+    """Run a command line; return its exit status."""
     try:
         status = icdgen.main(arguments, prog_name="icdgen", standalone_mode=False, obj={"run": run})
     except SystemExit as end:
@@ -175,7 +181,7 @@ def _run(arguments: list[str], run: str) -> int:
 
 
 def _drop_unwritten_output() -> None:
-    """What could not be written is not tried again, with a traceback, when Python ends."""
+    """Discard output that cannot be written. Otherwise Python tries again at its end and prints a traceback."""
     try:
         if sys.stdout is not None:
             sys.stdout.flush()
@@ -184,7 +190,7 @@ def _drop_unwritten_output() -> None:
 
 
 def _complain(message: str, help: str = "") -> int:
-    """Says what is wrong, if there is anybody left to tell; the status of misuse."""
+    """Print an error and its help, unless the error stream is closed; return the exit status 2."""
     lines = [f"icdgen: error: {line}" for line in message.split("\n")]
     lines += [f"  help: {line}" for line in help.split("\n") if line]
     with suppress(OSError):

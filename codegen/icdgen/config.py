@@ -1,4 +1,4 @@
-"""``icdgen.toml``: what a project generates, so that its build step is just ``icdgen``. See docs/reference/configuration.md.
+"""Configuration file ``icdgen.toml`` of a project. ``docs/reference/configuration.md`` describes it.
 
 name = "thruster"                # of the project, and of its Python package and Rust crate
 icds = ["icd/thruster.yaml"]     # files or folders, relative to this file
@@ -22,41 +22,47 @@ from icdgen.errors import UserError
 
 NAME = "icdgen.toml"
 _KEYS = {"name": str, "icds": list, "lang": list, "out": str, "templates": str}
-PACKAGES = {"python": "package", "rust": "crate", "c": "prefix"}  # section -> its key, the name in generated code
+# Key of each section, which has the name of the package in generated code.
+PACKAGES = {"python": "package", "rust": "crate", "c": "prefix"}
 
 
 @dataclass(eq=False, repr=False)
 class Config:
-    """What the file at ``path`` says, which has the ``text``; ``looked_at`` names every place where it was or might have been."""
+    """Content of a configuration file."""
 
-    path: Path | None = None
+    path: Path | None = None  # None if there is no file
     text: str = ""
     icds: list[Path] = field(default_factory=list)
     lang: list[str] = field(default_factory=list)
     out: Path | None = None
     templates: Path | None = None
     name: str = ""  # of the project
-    packages: dict[str, str] = field(default_factory=dict)  # by section of `PACKAGES`, as far as they are given
-    looked_at: dict[Path, str] = field(default_factory=dict)  # fingerprints as of just before it was read
+    packages: dict[str, str] = field(default_factory=dict)  # by section of `PACKAGES`, if given
+    looked_at: dict[Path, str] = field(
+        default_factory=dict
+    )  # fingerprints of the file, and of all paths tried before it
 
     def place_of(self, icd: Path) -> Place:
-        """Where the file names one of ``icds``."""
+        """Return the place of one of ``icds`` in the file."""
         path = self.path or Path(NAME)
         base = path.parent
         named = icd.relative_to(base) if icd.is_relative_to(base) else icd
         entry = re.compile(rf"""(?<=["'])(?:\./)*{re.escape(named.as_posix())}/*(?=["'])""")
         for number, line in enumerate(self.text.splitlines(), 1):
-            if found := entry.search(line):
-                return Place(str(path), number, found.start() + 1, len(found.group()) or 1)
+            if match := entry.search(line):
+                return Place(str(path), number, match.start() + 1, len(match.group()) or 1)
         return Place(str(path))
 
     def place_of_key(self, section: str, key: str) -> Place:
-        """Where a key of a section stands; the empty section is the beginning of the file."""
+        """Return the place of a key of a section; the empty section is the top level."""
         return _place(self.path or Path(NAME), self.text, section, key)
 
 
 def find(start: Path) -> Config:
-    """The configuration of the nearest folder upwards that has one. Raises `UserError` if it can't be read."""
+    """Return the configuration of a folder, or of the nearest parent folder that has one, up to the root of the repository.
+
+    Raises `UserError` if the file cannot be read.
+    """
     looked_at = {}
     for folder in (start, *start.parents):
         path = folder / NAME
@@ -71,6 +77,7 @@ def find(start: Path) -> Config:
 
 
 def _read(path: Path) -> Config:
+    """Read and check a configuration file. Raises `UserError`."""
     import tomllib
 
     try:
@@ -91,8 +98,9 @@ def _read(path: Path) -> Config:
         if key in PACKAGES:
             packages[key] = _package(path, text, key, value)
         elif key not in _KEYS:
-            known = f"known keys: {', '.join(_KEYS)}, and the sections {', '.join(f'[{one}]' for one in PACKAGES)}"
-            raise _wrong(path, text, "", key, f"unknown key `{key}`", known)
+            sections = ", ".join(f"[{section}]" for section in PACKAGES)
+            help = f"known keys: {', '.join(_KEYS)}, and the sections {sections}"
+            raise _wrong(path, text, "", key, f"unknown key `{key}`", help)
         else:
             _check_value(path, text, "", key, value, _KEYS[key])
     base = path.parent
@@ -109,37 +117,42 @@ def _read(path: Path) -> Config:
 
 
 def _package(path: Path, text: str, section: str, value: object) -> str:
-    """The name that a section gives; empty if it gives none. Raises `UserError`."""
+    """Return the name of the package in a section; empty without a name. Raises `UserError`."""
     key = PACKAGES[section]
     if not isinstance(value, dict):
         raise _wrong(
             path, text, "", section, f"`{section}` must be a section", f'[{section}], and below it {key} = "..."'
         )
-    for one, name in value.items():
-        if one != key:
-            raise _wrong(path, text, section, one, f"unknown key `{one}` in [{section}]", f"known key: {key}")
+    for own_key, name in value.items():
+        if own_key != key:
+            raise _wrong(path, text, section, own_key, f"unknown key `{own_key}` in [{section}]", f"known key: {key}")
         _check_value(path, text, section, key, name, str)
     return str(value.get(key, ""))
 
 
 def _check_value(path: Path, text: str, section: str, key: str, value: object, kind: type) -> None:
-    given = value if isinstance(value, list) else [value]
-    texts = [one for one in given if isinstance(one, str)]
-    if not isinstance(value, kind) or len(texts) != len(given):
-        what, example = ("a list of texts", '["..."]') if kind is list else ("a text", '"..."')
-        raise _wrong(path, text, section, key, f"`{key}` must be {what}", f"for instance {key} = {example}")
-    if any(not one or "\0" in one for one in texts):
+    """Raise `UserError` unless a value is a text, or a list of texts if ``kind`` is list."""
+    values = value if isinstance(value, list) else [value]
+    texts = [item for item in values if isinstance(item, str)]
+    if not isinstance(value, kind) or len(texts) != len(values):
+        expected, example = ("a list of texts", '["..."]') if kind is list else ("a text", '"..."')
+        raise _wrong(path, text, section, key, f"`{key}` must be {expected}", f"for instance {key} = {example}")
+    if any(not item or "\0" in item for item in texts):
         help = "write a path or a name, or take it out"
         raise _wrong(path, text, section, key, f"`{key}` holds an empty text, or a NUL character", help)
 
 
 def _wrong(path: Path, text: str, section: str, key: str, message: str, help: str) -> UserError:
+    """Return the error about a key, with its place in the file."""
     place = _place(path, text, section, key)
     return UserError(f"{path}:{place.line}:{place.column}: {message}", help)
 
 
 def _place(path: Path, text: str, section: str, key: str) -> Place:
-    """The line and column of a key, also where it is written as `section.key`; of the first line if it is not found."""
+    """Return the place of a key, also in the form `section.key`; the start of the file if the key is not found.
+
+    `tomllib` does not report positions.
+    """
     names = rf"""["']?{re.escape(key)}["']?"""
     dotted = rf"""["']?{re.escape(section)}["']?\s*\.\s*{names}""" if section else names
     inside = ""

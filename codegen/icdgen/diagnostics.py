@@ -1,4 +1,4 @@
-"""Findings, and the source text to which they refer. Package ``reports`` prints them."""
+"""Findings and their places in source texts. The package ``icdgen.reports`` formats them."""
 
 from __future__ import annotations
 
@@ -6,11 +6,12 @@ import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
-_BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")  # what YAML counts as the end of a line
+# Line breaks of YAML 1.1, section 4.2, which PyYAML implements.
+_BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")
 
 
 class Place(NamedTuple):
-    """A stretch of a source line. ``line`` and ``column`` count from 1; ``length`` is in characters, at least 1."""
+    """A range of a source line. ``line`` and ``column`` count from 1; ``length`` is in characters, at least 1."""
 
     file: str
     line: int = 1
@@ -22,14 +23,14 @@ class Place(NamedTuple):
 
 
 class Lines:
-    """The lines of a source text, split when a line is first requested."""
+    """Lines of a source text, which is split on the first access."""
 
     def __init__(self, text: str) -> None:
         self._text = text.removeprefix("\ufeff")
         self._lines: list[str] | None = None
 
     def __getitem__(self, number: int) -> str | None:
-        """Line ``number``, counted from 1; None if the text has no such line."""
+        """Return line ``number``, counted from 1; None if the text has no such line."""
         if self._lines is None:
             self._lines = _BREAK.split(self._text)
         return self._lines[number - 1] if 1 <= number <= len(self._lines) else None
@@ -40,33 +41,33 @@ class Lines:
 
 
 class Fix(NamedTuple):
-    """A correction: ``text`` replaces what the source has at ``place``."""
+    """A correction: ``text`` replaces the text at ``place``."""
 
     place: Place
     text: str
 
 
 class Related(NamedTuple):
-    """Another place that a finding is about, such as the first of two equal names, and what stands there."""
+    """A second place of a finding, such as the first of two equal names, with a label."""
 
     place: Place
     label: str
 
 
 class Finding(NamedTuple):
-    """One thing that is wrong with the input, where it is and what to do about it."""
+    """A fault of the input: what is wrong, where, and what to do."""
 
     code: str
     message: str
     place: Place
     help: str = ""
     severity: str = "error"  # "error" | "warning" | "note"
-    fix: Fix | None = None  # where the correction is known
+    fix: Fix | None = None  # None if the correction is unknown
     related: Related | None = None
 
 
 class Findings(Exception):
-    """Raised where work cannot go on because of what is wrong in the input; carries everything found so far."""
+    """The input has errors with which work cannot continue. Has all findings so far."""
 
     def __init__(self, findings: list[Finding]) -> None:
         super().__init__(f"{len(findings)} finding(s)")
@@ -74,10 +75,10 @@ class Findings(Exception):
 
 
 def has_errors(findings: Iterable[Finding]) -> bool:
-    """Whether one of the findings is an error."""
+    """Return whether one of the findings is an error."""
     return any(finding.severity == "error" for finding in findings)
 
 
 def in_order(findings: list[Finding]) -> list[Finding]:
-    """Sorted by place, so that a reader works through a file from top to bottom; duplicates dropped."""
-    return sorted(set(findings), key=lambda f: (f.place, f.code, f.message))
+    """Return the findings sorted by place, without duplicates."""
+    return sorted(set(findings), key=lambda finding: (finding.place, finding.code, finding.message))

@@ -1,10 +1,10 @@
-"""What goes wrong because of what a user asked for, said in a user's words."""
+"""Errors that a user can correct."""
 
 from __future__ import annotations
 
 
 class UserError(Exception):
-    """A request that can't be met. ``help`` says what to do about it."""
+    """A request of a user cannot be met. ``help`` is what to do about it."""
 
     def __init__(self, message: str, help: str = "") -> None:
         super().__init__(message)
@@ -12,5 +12,5 @@ class UserError(Exception):
 
 
 def unreadable(path: object, error: OSError, help: str = "check the path") -> UserError:
-    """What is said of a file that cannot be read."""
+    """Return the error for a file that cannot be read."""
     return UserError(f"cannot read {path}: {error.strerror}", help)

@@ -1,6 +1,6 @@
-"""What a file holds, in 64 digits: by these we know whether an input, an output or the tool itself is still what it was.
+"""Fingerprints (SHA-256) of files, to detect changes of inputs, outputs and icdgen itself.
 
-This module is on the path of every start: it imports next to nothing.
+Every start imports this module, so it imports almost nothing.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from hashlib import sha256
 ABSENT = "-"
 _CHUNK = 1 << 16  # bytes
 _READ = os.O_RDONLY | getattr(os, "O_BINARY", 0)
-UNKNOWN = "?"  # what can't be read, or not twice; never equal to anything
+UNKNOWN = "?"  # of a path that cannot be read, or only once, such as a pipe; records with it are never valid
 
 
 def of_path(path: str) -> str:
-    """SHA-256 of a file, of a folder's list of names, or `ABSENT`, or `UNKNOWN`."""
+    """Return the SHA-256 of a file, or of the names in a folder; `ABSENT` or `UNKNOWN` for other paths."""
     try:
         status = os.stat(path)
         if stat.S_ISREG(status.st_mode):
@@ -32,34 +32,37 @@ def of_path(path: str) -> str:
 
 
 def _of_file(path: str, size: int) -> str:
-    """By the system's own calls, and no more of them than it has bytes for: every start reads a thousand files."""
+    """Return the SHA-256 of a file of ``size`` bytes."""
+    # Every start reads a thousand files, so this uses the calls of the operating system, and not one more than necessary.
     digest = sha256()
     handle = os.open(path, _READ)
     try:
         while data := os.read(handle, _CHUNK):
             digest.update(data)
             size -= len(data)
-            if size == 0:  # what is longer now is another file, and so is its digest; what is shorter ends by itself
+            # Saves the call that would return no data. If the file has grown meanwhile, the digest is that of its start.
+            if size == 0:
                 break
     finally:
         os.close(handle)
     return digest.hexdigest()
 
 
-_known: list[str] = []  # the digest of the tool, once it is needed
+_cached: list[str] = []  # the digest of icdgen, after the first use
 
 
 def of_tool() -> str:
-    """Digest of everything that decides what the tool does: its own files, its templates and runtimes, the interpreter, jinja2.
+    """Return the digest of icdgen: its modules, templates and runtimes, the interpreter and jinja2.
 
-    As of when it is first asked for: what changes later is not what runs.
+    It is computed once, because a file that changes later does not change the running program.
     """
-    if not _known:
-        _known.append(_digest())
-    return _known[0]
+    if not _cached:
+        _cached.append(_digest())
+    return _cached[0]
 
 
 def _digest() -> str:
+    """Compute the digest of icdgen."""
     package = os.path.dirname(os.path.abspath(__file__))
     data = os.path.join(package, "data")
     root = data if os.path.isdir(data) else os.path.dirname(os.path.dirname(package))
@@ -78,15 +81,15 @@ def _digest() -> str:
 
 
 def _files(top: str, without: str) -> list[str]:
-    """Every file below a folder, whatever it is called; not what Python and other tools leave there."""
-    found = []
+    """Return all files below a folder, except in the folder ``without``, in hidden folders and in ``__pycache__``."""
+    paths = []
     try:
         with os.scandir(top) as entries:
             for entry in entries:
                 if not entry.is_dir():
-                    found.append(entry.path)
+                    paths.append(entry.path)
                 elif entry.name != "__pycache__" and entry.name[0] != "." and entry.path != without:
-                    found += _files(entry.path, without)
-    except FileNotFoundError:  # not every folder of sources is there
+                    paths += _files(entry.path, without)
+    except FileNotFoundError:  # an installed icdgen lacks some folders
         return []
-    return found
+    return paths

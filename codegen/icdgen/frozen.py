@@ -1,8 +1,8 @@
-"""``@dataclass(frozen=True)`` at a quarter of its price: every start makes the classes of the model and of the protocol anew.
+"""Replacement of ``@dataclass(frozen=True)`` that takes a quarter of the time to create classes.
 
-They are frozen for whoever checks types, and not while Python runs, where most of the time would go into writing methods that
-refuse what mypy has refused already. All classes compare, hash and show themselves by the same three methods; the one that begins
-objects is written for the first of a class.
+Every start creates the classes of the model and of the protocol. For type checkers they are frozen. At run time they are not,
+because `dataclasses` would spend most of the time on generating methods that reject assignments, which mypy rejects already.
+All classes share the implementation of comparison, hash and repr. ``__init__`` is generated with the first object of a class.
 """
 
 from __future__ import annotations
@@ -21,10 +21,11 @@ else:
     def dataclass(
         *, frozen: bool, eq: bool = True, repr: bool = True, **options: bool
     ) -> Callable[[type[Any]], type[Any]]:
-        """For classes that are frozen; options are those of `dataclasses.dataclass`."""
+        """Return a decorator for frozen classes, with the options of `dataclasses.dataclass`."""
 
-        def made(plain: type[Any]) -> type[Any]:
-            plain.__doc__ = plain.__doc__ or plain.__name__  # else the signature is worked out, to stand in place of it
+        def decorate(plain: type[Any]) -> type[Any]:
+            # Without a docstring, `dataclasses` would compute the signature, which is slow.
+            plain.__doc__ = plain.__doc__ or plain.__name__
             kind = dataclasses.dataclass(init=False, eq=False, repr=False, **options)(plain)
             _begin_late(kind)
             if eq:
@@ -33,13 +34,14 @@ else:
                 kind.__repr__ = _shown
             return kind
 
-        return made
+        return decorate
 
 
 def _compare_by_value(kind: type[Any]) -> None:
-    compared = [one for one in dataclasses.fields(kind) if one.compare]
-    value = attrgetter(*(one.name for one in compared))
-    hashed = attrgetter(*(one.name for one in compared if one.hash is not False))
+    """Give a class ``__eq__`` and ``__hash__`` over its fields."""
+    compared = [field for field in dataclasses.fields(kind) if field.compare]
+    value = attrgetter(*(field.name for field in compared))
+    hashed = attrgetter(*(field.name for field in compared if field.hash is not False))
 
     def equals(self: object, other: object) -> bool:
         return value(self) == value(other) if other.__class__ is self.__class__ else NotImplemented
@@ -51,35 +53,40 @@ def _compare_by_value(kind: type[Any]) -> None:
 
 
 def _begin_late(kind: type[Any]) -> None:
-    """Gives the class its ``__init__`` with the first object: of many classes, a run makes none."""
+    """Give a class an ``__init__`` that generates the real one on the first call: a run uses few of the classes."""
 
-    def begin(self: Any, *given: object, **named: object) -> None:
+    def begin(self: Any, *positional: object, **keywords: object) -> None:
         kind.__init__ = _initialiser(kind)
-        kind.__init__(self, *given, **named)
+        kind.__init__(self, *positional, **keywords)
 
     kind.__init__ = begin
 
 
 def _initialiser(kind: type[Any]) -> Callable[..., None]:
-    """What `dataclasses` writes too, in three times the time that all the rest of a class takes."""
-    known = sorted(dataclasses.fields(kind), key=lambda one: one.kw_only is True)
-    scope: dict[str, Any] = {f"_{one.name}": one.default for one in known if one.default is not dataclasses.MISSING}
-    made = {f"_{one.name}": one.default_factory for one in known if one.default_factory is not dataclasses.MISSING}
-    scope |= made
+    """Return the ``__init__`` of a class, equivalent to the one that `dataclasses` generates."""
+    fields = sorted(dataclasses.fields(kind), key=lambda field: field.kw_only is True)
+    scope: dict[str, Any] = {}  # default or factory of each field, by its name with a leading underscore
+    factories: set[str] = set()
     parameters, lines = ["self"], []
-    for one in known:
-        if one.kw_only is True and "*" not in parameters:
+    for field in fields:
+        name, default = field.name, f"_{field.name}"
+        if field.default is not dataclasses.MISSING:
+            scope[default] = field.default
+        elif field.default_factory is not dataclasses.MISSING:
+            scope[default] = field.default_factory
+            factories.add(default)
+        if field.kw_only is True and "*" not in parameters:
             parameters.append("*")
-        default, name = f"_{one.name}", one.name
         parameters.append(f"{name}={default}" if default in scope else name)
-        lines.append(
-            f" self.{name} = " + (f"{default}() if {name} is {default} else {name}" if default in made else name)
-        )
+        value = f"{default}() if {name} is {default} else {name}" if default in factories else name
+        lines.append(f" self.{name} = {value}")
     exec(f"def __init__({', '.join(parameters)}):\n" + "\n".join(lines or [" pass"]), scope)
     initialiser: Callable[..., None] = scope["__init__"]
     return initialiser
 
 
-def _shown(one: Any) -> str:
-    values = (f"{each.name}={getattr(one, each.name)!r}" for each in dataclasses.fields(one) if each.repr)
-    return f"{type(one).__qualname__}({', '.join(values)})"
+def _shown(instance: Any) -> str:
+    """Return the repr of an object, as `dataclasses` does."""
+    fields = dataclasses.fields(instance)
+    values = (f"{field.name}={getattr(instance, field.name)!r}" for field in fields if field.repr)
+    return f"{type(instance).__qualname__}({', '.join(values)})"

@@ -1,7 +1,7 @@
-"""Link of a node as a tree of constructor calls: types and keywords are those of ``wire/link.py`` in the Python runtime.
+"""Link of a node as a tree of constructor calls, with the types and keywords of ``wire/link.py`` in the Python runtime.
 
-The Python backend writes the calls into generated code. `icdgen.runtime_objects` makes them, so that the tool's own commands
-get the same link without generating code.
+The Python backend writes the calls into generated code. `icdgen.runtime_objects` evaluates them, so that the commands of icdgen
+have the same link without generating code.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from icdgen.protocol.declared import facts_of
 from icdgen.protocol.envelope import Check, Stream, StreamRow
 from icdgen.protocol.sections import Crc, Download, Erasure, HoleMap, Listing, LogFile, LogMessage, Step, Upload
 
-# Types whose names in generated code are not those of the facts.
+# Types that have another name in generated code.
 _TYPES = {
     Crc: "CrcForm", LogFile: "LogFileForm", LogMessage: "LogMessageForm", HoleMap: "HoleMapForm",
     Listing: "ListForm", Download: "DownloadForm", Upload: "UploadForm", Erasure: "ErasureForm",
@@ -29,12 +29,12 @@ def type_name(part: type) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """``name(positional, keyword=value)``; ``is_flat``: on one line."""
+    """Call ``name(positional, keyword=value)``."""
 
     name: str
     positional: tuple[object, ...] = ()
     keywords: Mapping[str, object] = field(default_factory=dict)
-    is_flat: bool = False
+    is_flat: bool = False  # written on one line
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,10 +68,13 @@ def _row(name: str, *positional: object, **keywords: object) -> Call:
 
 
 class _LinkBuilder:
+    """Builds the calls for the parts of a link."""
+
     def __init__(self, link: LinkDescription) -> None:
         self.description, self.facts, self.assumed = link, link.facts, Assumptions(link.facts)
 
     def link(self) -> Call:
+        """Return the call of ``Link``."""
         facts, node = self.facts, self.facts.node
         parts: dict[str, object] = {
             "node": node.name,
@@ -116,14 +119,14 @@ class _LinkBuilder:
         return _call("Link", **parts, **{key: part for key, part in optional.items() if part is not None})
 
     def commented(self, value: object, section: str, key: str) -> object:
-        """Return the value; with the reason as a comment if the ICD assumes it."""
+        """Return a value, with the reason as a comment if it is an assumption of the ICD."""
         why = self.assumed.why(section, key)
         return Commented(value, (f"Assumed: {why}",)) if why else value
 
     def commented_rest(self, value: object, section: str) -> object:
-        """Return the value, with the reasons for the assumptions of the section that belong to none of its keys."""
-        rest = self.assumed.of_section(section) if value is not None else []
-        return Commented(value, tuple(f"Assumed, {key}: {why}" for key, why in rest)) if rest else value
+        """Return a value, with the reasons for assumptions of a section that no comment of its keys has."""
+        reasons = self.assumed.of_section(section) if value is not None else []
+        return Commented(value, tuple(f"Assumed, {key}: {why}" for key, why in reasons)) if reasons else value
 
     def part(self, part: object, section: str, **computed: object) -> object:
         """Return the call for a part of the link: its declared facts, then the keywords of ``computed``."""
@@ -143,12 +146,14 @@ class _LinkBuilder:
         return values
 
     def polled(self) -> Call | None:
+        """Return the call for the acknowledge that a client polls on I2C."""
         step = self.description.polled
         if step is None:
             return None
         return _call("Polled", telemetry=step.message.telemetry_id, **{role: field.name for role, field in step.fields})
 
     def can(self) -> object:
+        """Return the call for the link over CAN."""
         can = self.facts.can
         if can is None:
             return None
@@ -162,10 +167,12 @@ class _LinkBuilder:
         return self.part(can, "can", **computed)
 
     def checksum(self) -> object:
+        """Return the call for the checksum of messages."""
         form = self.facts.checksum
         return self.part(form, "crc8", crc=_call("CrcForm", **self.declared(form.crc, "crc8"))) if form else None
 
     def mask(self) -> object:
+        """Return the call for the log mask."""
         mask = self.facts.mask
         if mask is None:
             return None
@@ -175,11 +182,13 @@ class _LinkBuilder:
         return self.part(mask, "log_mask", bits=bits)
 
     def index(self) -> object:
+        """Return the call for the index of files."""
         index = self.facts.index
         fields = {role: (field.at, field.bytes) for role, field in index.fields.items()} if index else {}
         return self.part(index, "index_file", fields=fields)
 
     def hole_map(self) -> object:
+        """Return the call for the map of missing packets."""
         pieces = self.description.map_pieces
         if not pieces:
             return None
@@ -192,6 +201,7 @@ class _LinkBuilder:
         )
 
     def files(self) -> object:
+        """Return the call for file transfers."""
         files = self.facts.files
         if files is None:
             return None
@@ -203,20 +213,21 @@ class _LinkBuilder:
         )
 
     def step(self, step: Step) -> Call:
+        """Return the call for a step of a procedure."""
         message = step.message
         ids = {"telecommand": message.telecommand_id, "telemetry": message.telemetry_id}
         fields = {role: field.name for role, field in self.description.step(step).fields}
         return _call("Step", **{key: id for key, id in ids.items() if id is not None}, fields=fields)
 
     def sent(self, telecommand: SentMessage) -> object:
-        """Return how a telecommand is sent."""
+        """Return the call for the length and the acknowledge of a telecommand."""
         flags = {} if telecommand.message.acknowledge else {"acknowledged": False}
         flags |= {"setting": True} if telecommand.is_setting else {}
         message = telecommand.message
         return self.commented_rest(_row("Sent", message.length, **flags), f"message {message.name}")
 
     def assumptions(self) -> tuple[Call, ...]:
-        """Return all assumptions, for programs that ask for them."""
+        """Return the calls for all assumptions of the ICD."""
         return tuple(
             _call("Assumption", section=each.section, key=each.key, value=_plain(each.value), why=str(each.why))
             for each in self.facts.assumptions
@@ -237,6 +248,7 @@ def _stream(form: Stream) -> Call:
 
 
 def _stream_rows(rows: tuple[StreamRow, ...]) -> tuple[Call, ...]:
+    """Return the calls for the messages of a direction; the last argument is the response, if the ICD declares one."""
     values = ((row.id, row.least, row.most, row.cuts_zeros, row.seed, row.reply) for row in rows)
     return tuple(_row("StreamRow", *(row if row[-1] is not None else row[:-1])) for row in values)
 
@@ -252,7 +264,7 @@ def _members(part: Any) -> dict[str, object]:
 
 
 def _plain(value: object) -> object:
-    """Return a value of the ICD without the positions that the YAML reader attaches."""
+    """Return a value of the ICD as plain tuples, dicts and scalars, without places."""
     if isinstance(value, dict):
         return {_plain(key): _plain(item) for key, item in value.items() if key not in ("assumptions", "source")}
     if isinstance(value, list | tuple):

@@ -1,4 +1,4 @@
-"""Load ICDs with all checks, including those of the names that generated code would declare."""
+"""Load ICDs with all checks, including the checks of names in generated code."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ def load(
 ) -> Loaded:
     """Load ICDs as `icdgen.icd.load.load` does, and check the names that generated code declares.
 
-    Names are checked for `plug_ins` and for the built-in `languages`; by default for all of these. Working out the names
-    of one language takes about as long as all other rules together, so commands ask for the languages they generate.
+    Names are checked for `plug_ins` and for the built-in `languages`, by default for all of them. Computing the names of one
+    language takes about as long as all other rules together, so commands pass only the languages that they generate.
     """
     built_in = backends.names() if languages is None else languages
-    asked: list[Language] = [*map(backends.get, built_in), *plug_ins] if check else []
-    return icd_files.load(paths, check, asked, unsaved)
+    checked: list[Language] = [*map(backends.get, built_in), *plug_ins] if check else []
+    return icd_files.load(paths, check, checked, unsaved)

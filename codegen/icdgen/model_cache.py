@@ -1,4 +1,4 @@
-"""Loads ICDs with all checks, or takes the model of an earlier run over the very same files."""
+"""Load ICDs with all checks, or read the model of an earlier run with unchanged files from the cache."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ def load_checked(
     plug_ins: Sequence[Language] = (),
     with_positions: bool = False,
 ) -> Loaded:
-    """Load ICDs as `icdgen.loading.load` does. A remembered model carries no positions and comes without texts.
+    """Load ICDs as `icdgen.loading.load` does. A model from the cache has no places and no texts.
 
-    With plug-ins nothing is remembered: what they say of names may change with any file of theirs.
+    The cache is not used with plug-ins, because their names can depend on files that icdgen does not know.
     """
     if plug_ins or with_positions:
         from icdgen.loading import load
@@ -41,6 +41,6 @@ def load_checked(
 
     loaded = load(paths, languages=languages)
     if not loaded.findings:
-        files = {os.path.abspath(path): seen for path, seen in loaded.inputs.items()}
+        files = {os.path.abspath(path): fingerprint for path, fingerprint in loaded.inputs.items()}
         cache.remember(KIND, name, model_json.text(loaded.icd, loaded.inputs), files)
     return loaded

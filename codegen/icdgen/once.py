@@ -1,4 +1,4 @@
-"""`functools.cached_property` without the lock that Python before 3.12 takes for each value: a run works out thousands."""
+"""Cached values of objects. `cached_property` is without the lock of `functools` before Python 3.12, which is slow."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING or sys.version_info >= (3, 12):
 else:
 
     class cached_property:
-        """An attribute that is worked out when it is first asked for."""
+        """An attribute that is computed on the first access."""
 
         def __init__(self, function: Any) -> None:
             self.function, self.__doc__ = function, function.__doc__
@@ -23,15 +23,15 @@ else:
         def __set_name__(self, owner: type[Any], name: str) -> None:
             self.name = name
 
-        def __get__(self, one: Any, owner: type[Any] | None = None) -> Any:
-            if one is None:
+        def __get__(self, instance: Any, owner: type[Any] | None = None) -> Any:
+            if instance is None:
                 return self
-            value = one.__dict__[self.name] = self.function(one)
+            value = instance.__dict__[self.name] = self.function(instance)
             return value
 
 
 def kept_by_owner(function: Callable[[Owner], Result]) -> Callable[[Owner], Result]:
-    """A function of one object, in whose ``__dict__`` the result is kept."""
+    """Decorate a function of one object so that its result is cached in the ``__dict__`` of the object."""
     name = f"_{function.__name__}"
 
     @wraps(function)

@@ -1,6 +1,6 @@
-"""Templates -> text, and the runtime's sources as they are.
+"""Rendering of templates, and access to the sources of runtimes.
 
-Values come finished from the backends: a template holds loops, not decisions about bits.
+Backends compute all values. A template has loops, but no decisions about bits.
 """
 
 from __future__ import annotations
@@ -25,17 +25,17 @@ if TYPE_CHECKING:
 
 
 class Named(Protocol):
-    """A backend, as far as rendering goes; it may have ``templates`` and ``runtime``, too."""
+    """A backend, as far as `Renderer` needs it. It can also have the attributes ``templates`` and ``runtime``."""
 
     @property
     def name(self) -> str: ...
 
 
 class Renderer:
-    """Renders the templates of one backend and hands out its runtime; files in ``override`` (``--templates DIR``) win.
+    """Renders the templates of a backend and reads the files of its runtime.
 
-    ``templates`` and ``runtime`` are the folders of both, where they are not ours.
-    ``looked_at`` tells of every file below ``override`` that was read or looked for, with its fingerprint as of just before.
+    Files in ``override`` (``--templates DIR``) replace both. ``templates`` and ``runtime`` are the folders of a plug-in, by
+    default the shipped folders. ``looked_at`` has the fingerprint of each file in ``override`` that was read or absent.
     """
 
     def __init__(
@@ -60,12 +60,12 @@ class Renderer:
 
     @classmethod
     def of(cls, backend: Named, override: Path | None = None) -> Renderer:
-        """The renderer of a backend, which may say where its templates and its runtime lie."""
+        """Return the renderer of a backend, with its own folders of templates and runtime if it has them."""
         folders = (getattr(backend, "templates", None), getattr(backend, "runtime", None))
         return cls(backend.name, override, *folders)
 
     def __call__(self, template: str, **values: object) -> str:
-        """The text of ``template`` (its file name, such as ``message.h.j2``). Raises `UserError` for a bad template."""
+        """Render a template, given by its file name, such as ``message.h.j2``. Raises `UserError` for an error in it."""
         from jinja2 import TemplateError, TemplateSyntaxError
 
         try:
@@ -77,18 +77,18 @@ class Renderer:
             raise UserError(
                 f"{_where(error, template)}: {error.message or type(error).__name__}", "mend the template"
             ) from None
-        except Exception as error:  # whatever an expression in a template may do
+        except Exception as error:  # an expression of a template can raise anything
             raise UserError(
                 f"{_where(error, template)}: {type(error).__name__}: {error}", "mend the template"
             ) from error
 
     def runtime_files(self, folder: str = ".") -> list[str]:
-        """The sources of the backend's runtime below ``folder``, as paths within the runtime; nothing that tools left there."""
-        found = (path.relative_to(self._runtime) for path in (self._runtime / folder).rglob("*") if path.is_file())
-        return sorted(path.as_posix() for path in found if not any(map(_is_left_by_tools, path.parts)))
+        """Return the source files of the runtime below ``folder``, as paths relative to the runtime."""
+        files = (path.relative_to(self._runtime) for path in (self._runtime / folder).rglob("*") if path.is_file())
+        return sorted(path.as_posix() for path in files if not any(map(_is_output_of_tools, path.parts)))
 
     def source(self, file: str) -> str:
-        """The text of a file of the runtime. Raises `UserError` if the user's own in its place cannot be read."""
+        """Return the text of a file of the runtime, or of its replacement. Raises `UserError` if that cannot be read."""
         for folder in self._own:
             path = folder / file
             self.looked_at[path] = fingerprints.of_path(os.fspath(path))
@@ -101,26 +101,28 @@ class Renderer:
         return (self._runtime / file).read_text(encoding="utf-8")
 
 
-def _is_left_by_tools(name: str) -> bool:
+def _is_output_of_tools(name: str) -> bool:
+    """Return whether a file or folder is hidden, or written by Python or Cargo."""
     return name.startswith(".") or name in ("__pycache__", "target")
 
 
 def _where(error: Exception, template: str) -> str:
-    """File and line of the innermost template that an error went through."""
-    found, trace = template, error.__traceback__
+    """Return file and line of the innermost template in the traceback of an error."""
+    place, trace = template, error.__traceback__
     while trace is not None:
         file = trace.tb_frame.f_code.co_filename
         if file.endswith(".j2"):
-            found = f"{file}:{trace.tb_lineno}"
+            place = f"{file}:{trace.tb_lineno}"
         trace = trace.tb_next
-    return found
+    return place
 
 
 def _context_class() -> type[Context]:
+    """Return a class of contexts with fast calls."""
     from jinja2.runtime import Context, Macro
 
     class PlainContext(Context):
-        """Calls functions as they are: none of those that templates are given asks for the context, and they are called often."""
+        """Context that calls functions directly. Jinja's own `call` first checks whether a function needs the context."""
 
         def call(
             self, function: Callable[..., object], /, *args: object, _loop_vars: object = None, _block_vars: object = None,
@@ -132,10 +134,13 @@ def _context_class() -> type[Context]:
 
 
 def _loader(own: list[Path], shipped: Path, looked_at: dict[Path, str]) -> BaseLoader:
+    """Return a loader of templates from the folders ``own`` and ``shipped``."""
     import jinja2
     from jinja2.loaders import split_template_path
 
     class Loader(jinja2.FileSystemLoader):
+        """Adds the fingerprints of templates in ``own`` to ``looked_at``."""
+
         def get_source(self, environment: Environment, template: str) -> tuple[str, str, Callable[[], bool]]:
             for folder in own:
                 path = folder.joinpath(*split_template_path(template))
@@ -146,30 +151,37 @@ def _loader(own: list[Path], shipped: Path, looked_at: dict[Path, str]) -> BaseL
 
 
 def _compiled() -> BytecodeCache:
+    """Return the cache of compiled templates."""
     import jinja2
 
     class Compiled(jinja2.BytecodeCache):
-        """Keeps the code of shipped templates where Python keeps that of modules, in ``__pycache__`` beside the source, and as
-        it would: whoever can write there can write to the tool itself. That of others' templates is kept nowhere.
+        """Stores the compiled code of shipped templates in ``__pycache__`` in the folder of their source, like Python.
+
+        Loading code from there is safe: anyone who can write to that folder can change icdgen itself. The code of other
+        templates is not stored.
         """
 
         def get_cache_key(self, name: str, filename: str | None = None) -> str:
-            is_ours = filename is not None and Path(filename).is_relative_to(shipped.templates())
-            return cache_from_source(filename) if filename and is_ours and sys.implementation.cache_tag else ""
+            """Return the path of the compiled code; empty for a template that is not shipped."""
+            is_shipped = filename is not None and Path(filename).is_relative_to(shipped.templates())
+            return cache_from_source(filename) if filename and is_shipped and sys.implementation.cache_tag else ""
 
         def get_source_checksum(self, source: str) -> str:
+            """Return a checksum of the template and of icdgen, with which stored code must agree."""
             return sha256(f"{fingerprints.of_tool()}\0{source}".encode()).hexdigest()
 
         def load_bytecode(self, bucket: Bucket) -> None:
+            """Load the code of a template, if it is stored and current."""
             try:
-                made_of, _, code = SourceFileLoader("", bucket.key).get_data(bucket.key).partition(b"\n")
-                bucket.code = marshal.loads(code) if made_of == bucket.checksum.encode() else None
+                checksum, _, code = SourceFileLoader("", bucket.key).get_data(bucket.key).partition(b"\n")
+                bucket.code = marshal.loads(code) if checksum == bucket.checksum.encode() else None
             except (OSError, EOFError, ValueError, TypeError):
                 return
 
         def dump_bytecode(self, bucket: Bucket) -> None:
+            """Store the code of a template. `set_data` writes atomically, and ignores errors."""
             if bucket.key and not sys.dont_write_bytecode:
                 data = bucket.checksum.encode() + b"\n" + marshal.dumps(bucket.code)
-                SourceFileLoader("", bucket.key).set_data(bucket.key, data)  # whole or not at all, and never fails
+                SourceFileLoader("", bucket.key).set_data(bucket.key, data)
 
     return Compiled()

@@ -1,4 +1,4 @@
-"""Where what is shipped beside the code lies: in the wheel under ``icdgen/data``, in a checkout at its top."""
+"""Folders of the files that icdgen ships with its code: in a wheel below ``icdgen/data``, in a checkout at the top."""
 
 from __future__ import annotations
 
@@ -12,42 +12,43 @@ PACKAGE = Path(__file__).parent
 
 @cache
 def _root() -> Path:
+    """Return the folder that contains the shipped folders."""
     data = PACKAGE / "data"
     return data if data.is_dir() else PACKAGE.parent.parent
 
 
 def templates() -> Path:
-    """Folder of the shipped templates, one folder a backend."""
+    """Return the folder of the shipped templates, with a subfolder per backend."""
     return _root() / "templates"
 
 
 def runtimes() -> Path:
-    """Folder of what generated code runs on, one folder a backend."""
+    """Return the folder of the runtimes of generated code, with a subfolder per backend."""
     return _root() / "runtime"
 
 
 def icds() -> Path:
-    """Folder of the shipped ICDs."""
+    """Return the folder of the shipped ICDs."""
     return _root() / "icd"
 
 
 def cmake() -> Path:
-    """Folder of the CMake module."""
+    """Return the folder of the CMake module."""
     return _root() / "cmake"
 
 
 def examples() -> Path:
-    """Folder of the small programs and of the ICDs to begin with."""
+    """Return the folder of example programs and ICDs."""
     return _root() / "examples"
 
 
 def docs() -> Path:
-    """Folder of the manual, in Markdown."""
+    """Return the folder of the documentation of icdgen, in Markdown."""
     return _root() / "docs"
 
 
 def provide_runtime() -> None:
-    """Makes ``icdgen_runtime`` importable, what generated Python runs on: the tool talks to devices by it as well."""
+    """Make ``icdgen_runtime``, the runtime of generated Python code, importable for commands that talk to devices."""
     name = "icdgen_runtime"
     if name in sys.modules:
         return

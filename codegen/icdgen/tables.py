@@ -1,4 +1,4 @@
-"""Text tables for terminals and pipes. In a pipe nothing is wrapped, cut or coloured, for programs to read."""
+"""Text tables for terminals and pipes. Tables for a pipe are not wrapped, cut or coloured."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from collections.abc import Iterable, Sequence
 from typing import Literal, NamedTuple, TextIO
 
 GAP = 2  # spaces between columns
-NARROWEST = 8  # a column is not wrapped to less
+NARROWEST = 8  # minimum width of a wrapped column
 
 
 class Column(NamedTuple):
-    """``right``: numbers, aligned at their last digit. ``fixed``: never wrapped."""
+    """A column of a table."""
 
     title: str
-    right: bool = False
-    fixed: bool = False
+    right: bool = False  # aligned to the right, for numbers
+    fixed: bool = False  # never wrapped
 
 
 def width_of(stream: TextIO | None) -> int | None:
-    """Columns of the terminal that the stream goes to; None if it is not a terminal, or closed."""
+    """Return the width of the terminal of a stream in characters; None if it is not a terminal, or closed."""
     try:
         return os.get_terminal_size(stream.fileno()).columns if stream is not None and stream.isatty() else None
     except (OSError, ValueError):
@@ -28,9 +28,9 @@ def width_of(stream: TextIO | None) -> int | None:
 
 
 def render(columns: Sequence[Column], rows: Iterable[Sequence[str]], width: int | None = None) -> str:
-    """The table, each line ended by a newline. With ``width`` cells are wrapped so that it fits, if it can.
+    """Return a table as text. With ``width``, cells are wrapped to fit, if possible.
 
-    Columns that are empty in every row are left out. Control characters in cells are shown as escapes.
+    Columns that are empty in all rows are omitted. Control characters in cells are shown as escapes.
     """
     cells = [[clean(cell) for cell in row] for row in rows]
     used = [index for index in range(len(columns)) if any(row[index] for row in cells)]
@@ -38,10 +38,12 @@ def render(columns: Sequence[Column], rows: Iterable[Sequence[str]], width: int 
     cells = [[row[index] for index in used] for row in cells]
     if not columns:
         return ""
-    widths = [max(_width(c.title), *(_width(row[i]) for row in cells)) for i, c in enumerate(columns)]
-    least = [
-        size if c.fixed else min(size, max(_width(c.title), NARROWEST)) for c, size in zip(columns, widths, strict=True)
-    ]
+    widths: list[int] = []
+    least: list[int] = []
+    for index, column in enumerate(columns):
+        size = max(_width(column.title), *(_width(row[index]) for row in cells))
+        widths.append(size)
+        least.append(size if column.fixed else min(size, max(_width(column.title), NARROWEST)))
     if width is not None and _total(least) <= width < _total(widths):
         return _wrapped(columns, cells, least, width)
     lines = [[column.title for column in columns], ["-" * size for size in widths], *cells]
@@ -49,16 +51,20 @@ def render(columns: Sequence[Column], rows: Iterable[Sequence[str]], width: int 
 
 
 def clean(text: str) -> str:
-    """The text with everything that could move the cursor or colour the terminal written as an escape."""
-    return text if text.isprintable() else "".join(c if c.isprintable() else _escape(c) for c in text)
+    """Return a text with escapes for all characters that can move the cursor or change colours."""
+    if text.isprintable():
+        return text
+    return "".join(character if character.isprintable() else _escape(character) for character in text)
 
 
 def _escape(character: str) -> str:
+    """Return the escape of a character; a space for a line break or a tab."""
     code = ord(character)
     return " " if character in "\n\t" else f"\\u{{{code:x}}}"
 
 
 def _line(cells: Sequence[str], columns: Sequence[Column], widths: Sequence[int]) -> str:
+    """Return a line of the table."""
     padded = []
     for cell, column, size in zip(cells, columns, widths, strict=True):
         space = " " * (size - _width(cell))
@@ -67,16 +73,20 @@ def _line(cells: Sequence[str], columns: Sequence[Column], widths: Sequence[int]
 
 
 def _width(text: str) -> int:
+    """Return the columns of a text on a terminal: none for combining characters, two for wide ones."""
     if text.isascii():
         return len(text)
-    return sum(0 if unicodedata.combining(c) else 1 + (unicodedata.east_asian_width(c) in "WF") for c in text)
+    visible = (character for character in text if not unicodedata.combining(character))
+    return sum(1 + (unicodedata.east_asian_width(character) in "WF") for character in visible)
 
 
 def _total(widths: Sequence[int]) -> int:
+    """Return the width of a line."""
     return sum(widths) + GAP * (len(widths) - 1)
 
 
 def _wrapped(columns: Sequence[Column], cells: Sequence[Sequence[str]], least: Sequence[int], width: int) -> str:
+    """Return a table with wrapped cells."""
     import io
 
     from rich.console import Console

@@ -76,7 +76,7 @@ def test_every_file_that_output_is_made_of_is_part_of_the_tool(tmp_path, monkeyp
     seen = []
     for text in ("one", "two", "one"):
         path.write_text(text)
-        monkeypatch.setattr(fingerprints, "_known", [])
+        monkeypatch.setattr(fingerprints, "_cached", [])
         seen.append(fingerprints.of_tool())
     assert seen[0] == seen[2] != seen[1]
 
