@@ -79,11 +79,11 @@ def test_findings_stand_in_the_same_order_in_each_run(tmp_path):
     assert len(runs) == 1
 
 
-def test_equal_findings_of_one_place_are_counted_and_not_merged(tmp_path):
+def test_equal_findings_of_one_place_are_counted(tmp_path):
     text = MESSAGE.replace("\t16\t8\tMode", "\tx\t8\tMode\tUINT\tx\n\tx\t8\tMode") + ENUM
     result, _ = read(tmp_path, text)
-    assert found(result, "IMP023") == 2 * [
-        "table 1 (`Pump State Telemetry Format`), field `Mode`: `bit` is `x`, which is not a number"
+    assert found(result, "IMP023") == [
+        "table 1 (`Pump State Telemetry Format`), field `Mode`: `bit` is `x`, which is not a number; the same in 1 more row"
     ]
 
 

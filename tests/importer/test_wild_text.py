@@ -80,7 +80,8 @@ def test_bytes_or_bits_are_stated_and_never_inferred(tmp_path):
     text = HEADING + BYTES
     assert fields(read(tmp_path, text, RULE, NODE)[1]) == [(0, 8, "Mode"), (8, 16, "Speed"), (24, 32, "Time")]
     result, _ = read(tmp_path, text, RULE.replace("Offset: byte, Size: bytes", "Offset: bit, Size: bits"), NODE)
-    assert "its type `U16` has 16 bits, its size is 2" in found(result, "IMP105")[1]
+    (message,) = found(result, "IMP105")
+    assert "its type `U8` has 8 bits, its size is 1; the same in 2 more rows: `Speed`, `Time`" in message
 
 
 def test_a_heading_that_gives_an_id_without_a_table_is_reported(tmp_path):

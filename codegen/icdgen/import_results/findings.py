@@ -35,3 +35,8 @@ class Trouble(NamedTuple):
     severity: str = "warning"  # "error" | "warning" | "note"
     sure: str = LIKELY
     place: Place | None = None  # of the rule that gave it
+    also: tuple[Spot, ...] = ()  # further places with the same cause
+
+    def is_about_table(self, order: int | None) -> bool:
+        """Whether the finding, or another place with the same cause, is in the table with this number (from 0)."""
+        return self.spot.order == order or any(spot.order == order for spot in self.also)

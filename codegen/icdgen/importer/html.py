@@ -42,7 +42,8 @@ def report(result: Result) -> str:
     name = html.escape(result.document.file)
     about: dict[int | None, list[Trouble]] = {}
     for trouble in result.troubles:
-        about.setdefault(trouble.spot.order, []).append(trouble)
+        for order in dict.fromkeys(spot.order for spot in (trouble.spot, *trouble.also)):
+            about.setdefault(order, []).append(trouble)
     doubtful = [one for one in result.survey.found if result.sure_of(one.table) != CERTAIN]
     rest = [one for one in result.survey.found if result.sure_of(one.table) == CERTAIN]
     parts = [

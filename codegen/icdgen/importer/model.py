@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from icdgen.import_results.findings import Spot, Trouble
 from icdgen.importer.descriptions import Described
@@ -33,6 +33,19 @@ class ReadField:
         return self.at + self.bits * (self.facts.get("count") or self.count or 1)
 
 
+class Extent(NamedTuple):
+    """Run of bits of a message: the numbers of its first bit and of the bit behind it, in a bit order."""
+
+    at: int
+    end: int
+    bit_order: str
+
+    def numbers_in(self, bit_order: str) -> list[int]:
+        """The numbers that the bits have in a bit order: within its byte, bit 0 of one order is bit 7 of the other."""
+        numbers = range(self.at, self.end)
+        return list(numbers) if bit_order == self.bit_order else [number ^ 7 for number in numbers]
+
+
 @dataclass(slots=True)
 class ReadStruct:
     """A struct that a message repeats; ``length`` in bytes."""
@@ -57,13 +70,15 @@ class ReadMessage:
     group: str = ""
     listed: dict[str, object] = field(default_factory=dict)
     summary: str = ""
-    reserved: list[tuple[int, int]] = field(default_factory=list)  # first bit and size of what is printed as reserved
+    reserved: list[Extent] = field(default_factory=list)
     structs: list[ReadStruct] = field(default_factory=list)
+    bit_order: str = "lsb0"
 
-    def extents(self) -> list[tuple[int, int]]:
-        """The first bit and the bit behind of each field and of each run of reserved bits."""
-        fields = [(field.at, field.end) for field in self.fields]
-        return fields + [(at, at + size) for at, size in self.reserved]
+    def extents(self) -> list[Extent]:
+        """The bits of each field and of each run of reserved bits."""
+        orders = [field.facts.get("bit_order", self.bit_order) for field in self.fields]
+        fields = [Extent(field.at, field.end, order) for field, order in zip(self.fields, orders, strict=True)]
+        return fields + self.reserved
 
     @property
     def all_fields(self) -> list[ReadField]:
@@ -72,16 +87,12 @@ class ReadMessage:
 
     @property
     def gaps(self) -> list[tuple[int, int]]:
-        """Runs of bits, first and last, that neither a field nor reserved bits cover."""
-        total = 8 * (self.length or 0)
-        free, at = [], 0
-        for start, end in sorted(self.extents()):
-            if start > at:
-                free.append((at, min(start, total) - 1))
-            at = max(at, end)
-        if at < total:
-            free.append((at, total - 1))
-        return [(first, last) for first, last in free if last >= first]
+        """First and last bit of each run that neither a field nor reserved bits cover, in the bit order of the message."""
+        covered = {number for extent in self.extents() for number in extent.numbers_in(self.bit_order)}
+        free = [number for number in range(8 * (self.length or 0)) if number not in covered]
+        starts = [number for number in free if number - 1 in covered or number == 0]
+        ends = [number for number in free if number + 1 in covered or number == 8 * (self.length or 0) - 1]
+        return list(zip(starts, ends, strict=True))
 
     @property
     def reserved_bytes(self) -> int:

@@ -134,10 +134,20 @@ class Profile:
         node = self.data["node"] | (self.nodes[0].head if self.nodes else {})
         return node.get("byte_order", "little"), node.get("bit_order", "lsb0")
 
+    def states_order(self, key: str) -> bool:
+        """Whether the profile itself states `byte_order` or `bit_order` for all of its nodes."""
+        nodes = self.own.get("nodes", ())
+        return key in self.own.get("node", {}) or (bool(nodes) and all(key in node for node in nodes))
+
     @property
     def reads_descriptions(self) -> bool:
         """Whether rules look into descriptions for units, formulas and constants: if the profile states phrases."""
         return "phrases" in self.own or "variables" in self.own
+
+    @cached_property
+    def empty(self) -> frozenset[str]:
+        """Texts of cells, without case, that stand for an empty cell."""
+        return frozenset(text.casefold() for text in self.data["empty"])
 
     def is_reserved(self, name: str) -> bool:
         """Whether a field of this name means nothing; an entry of `reserved` that begins with ``~`` is a pattern."""

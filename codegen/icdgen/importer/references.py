@@ -152,7 +152,7 @@ def _is_held(message: ReadMessage, most: int, troubles: list[Trouble]) -> bool:
         say("IMP031", f"its rule gives no {' and no '.join(lacking)}; the message was left out",
             "state it under `message:`, or take it with a pattern", "error")  # fmt: skip
         return False
-    needed = max(((end + 7) // 8 for _, end in message.extents()), default=0)
+    needed = max(((extent.end + 7) // 8 for extent in message.extents()), default=0)
     if message.length is None:
         message.length = needed
         what = f"it does not say its length; the fields need {needed} byte{'s' if needed != 1 else ''}"

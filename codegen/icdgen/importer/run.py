@@ -51,7 +51,7 @@ class Result:
 
     def sure_of(self, table: SourceTable) -> str:
         """How sure the reading of a table is."""
-        about = [t for t in self.survey.troubles if t.spot.order == table.spot.order and t.code != "IMP035"]
+        about = [t for t in self.survey.troubles if t.is_about_table(table.spot.order) and t.code != "IMP035"]
         what = next((one.what for one in self.survey.found if one.table is table), "")
         if what == UNKNOWN or any(t.severity == "error" or t.sure == DOUBTFUL for t in about):
             return DOUBTFUL

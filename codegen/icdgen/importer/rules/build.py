@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 
-from icdgen.importer.model import Found, ReadEnum, ReadField, ReadMember, ReadMessage, ReadStruct
+from icdgen.importer.model import Extent, Found, ReadEnum, ReadField, ReadMember, ReadMessage, ReadStruct
 from icdgen.importer.profile import Profile
 from icdgen.importer.rules import attach, lists
 from icdgen.importer.rules.bit_order import Order
@@ -19,14 +19,13 @@ from icdgen.importer.words import squeezed
 class Builder:
     """Builds messages of parts; ``order`` is the node's."""
 
-    def __init__(self, profile: Profile, order: Order) -> None:
-        self.profile, self.order = profile, order
-        self.notes = Notes()
+    def __init__(self, profile: Profile, order: Order, notes: Notes) -> None:
+        self.profile, self.order, self.notes = profile, order, notes
         self.enums: dict[str, ReadEnum] = {}
         self.enums_found: list[Found] = []
 
-    def build(self, parts: list[Part]) -> tuple[list[Found], Notes]:
-        """Return the messages and enumerations in the order of the tables, and the findings about them."""
+    def build(self, parts: list[Part]) -> list[Found]:
+        """Return the messages and enumerations in the order of the tables."""
         messages = [part for part in parts if part.rule.what in ("message", "registers")]
         for part in messages:
             self.place(part)
@@ -42,7 +41,7 @@ class Builder:
             for part in parts
             if part.rule.what == "enumeration" and part.given.get("enumeration")
         ]
-        return sorted(made, key=lambda found: found.table.number), self.notes
+        return sorted(made, key=lambda found: found.table.number)
 
     def place(self, part: Part) -> None:
         """Put the pieces of split fields together and bring bits into the node's order."""
@@ -84,7 +83,7 @@ class Builder:
                 part.rule.place,
             )
             kind = ""
-        made = ReadMessage(normalised(part.name), kind, table)
+        made = ReadMessage(normalised(part.name), kind, table, bit_order=self.order.bit_order)
         made.summary = part.given.get("message_text", "")
         made.group = part.given.get("section", "")
         for role in ("id", "set_id", "get_id", "length"):
@@ -126,7 +125,7 @@ class Builder:
         seen: set[str] = set()
         for draft in part.drafts:
             if self.profile.is_reserved(draft.name):
-                made.reserved.append((draft.at, draft.size))
+                made.reserved.append(Extent(draft.at, draft.end, (draft.order or self.order).bit_order))
             elif draft.roles.get("group"):
                 groups[normalised(draft.roles.get("group"))].append(draft)
             else:

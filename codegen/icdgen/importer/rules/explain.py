@@ -32,7 +32,7 @@ def explain(interpretation: Interpretation, number: int) -> str:
             lines += _columns(rule, table) + [line for part in parts for line in _part(part)]
     if not choice.rules:
         lines.append("  no rule applies: the table is not imported")
-    about = [t for t in interpretation.survey.troubles if t.spot.order == number - 1]
+    about = [t for t in interpretation.survey.troubles if t.is_about_table(number - 1)]
     lines += [_finding(trouble) for trouble in about]
     return "\n".join(line.rstrip() for line in lines)
 

@@ -27,7 +27,7 @@ def report(tables: list[SourceTable], document: str) -> str:
         f"# {document}: {counted}, a rule for each. A table without a rule is not imported.",
         "# Give each column a role or a pattern (docs/reference/import-rules.md), or put its heading under `ignore`.",
         "profile: 1",
-        "node: {byte_order: little, bit_order: lsb0}  # state both: little or big, lsb0 or msb0",
+        "node: {}  # state the orders of the document, such as {byte_order: big, bit_order: lsb0}",
         "rules:",
     ]
     for group in groups:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from decimal import Decimal
 from typing import Any
 
@@ -12,7 +12,8 @@ from icdgen.importer import descriptions, formulas
 from icdgen.importer.descriptions import Described
 from icdgen.importer.document import SourceTable
 from icdgen.importer.profile import Profile
-from icdgen.importer.rules.bit_order import Order
+from icdgen.importer.rules import places, positions
+from icdgen.importer.rules.bit_order import Bit, Order
 from icdgen.importer.rules.cells import Roles
 from icdgen.importer.rules.language import NUMBERS, TypeName, decimal, type_of, whole_number
 from icdgen.importer.rules.notes import Notes
@@ -20,7 +21,7 @@ from icdgen.importer.rules.rule import Rule
 from icdgen.importer.words import tidy_unit
 
 MOST_BITS = 64  # of a number
-_EMPTY = ("", "-", "–", "—", "n/a", "none")
+_EMPTY = ("", "n/a", "none")
 _IN_PARENTHESES = re.compile(r"\A\(([^()]*(?:\([^()]*\)[^()]*)*)\)\Z")  # `(V)`, but not `(N)·(m)`
 _VALUE = r"(?:0x[0-9a-f]+|0b[01]+|-?[0-9]+)"
 _MEMBER = re.compile(  # a comma separates members only in front of a value: names may contain one
@@ -45,7 +46,7 @@ class Draft:
     facts: dict[str, Any] = field(default_factory=dict)  # further keys of the field in the ICD
     part: tuple[int, int] | None = None  # bit numbers of the whole field that this piece has
     order: Order | None = None  # where it is not the node's
-    window: tuple[int, int] = (0, 0)  # first byte and number of the bytes from whose least significant bit `at` counts
+    frame_bits: list[Bit] = field(default_factory=list)  # from the least significant one, if `at` does not state them
 
     @property
     def size(self) -> int:
@@ -63,12 +64,36 @@ class FieldReader:
 
     def __init__(self, rule: Rule, table: SourceTable, profile: Profile, order: Order, notes: Notes) -> None:
         self.rule, self.table, self.profile, self.order, self.notes = rule, table, profile, order, notes
+        self.places = places.PlaceReader(rule, order, self.error)
         self.next = 0  # where a field without a position stands
+        self.subject = ""  # name of the field, or text of the row, that is being read
 
-    def read(self, roles: Roles) -> Draft | None:
+    def read(self, roles: Roles) -> list[Draft]:
+        """Return the field of a row; several for padding in several places; none, with a finding, if it cannot be read."""
+        for role, last in (("bit", "last_bit"), ("byte", "last_byte")):
+            printed = roles.get(role)
+            if not positions.is_list(printed):
+                continue
+            runs = positions.runs_of(printed)
+            if len(runs) > 1 and not self.profile.is_reserved(roles.get("name")):
+                self.subject = roles.get("name")
+                self.error(
+                    "IMP105",
+                    f"{self.table.title}, field `{self.subject}`: its {role}s `{printed[:40]}` are not consecutive",
+                    self.table.spot_of(roles.row.source),
+                    "write a row for each part in the table file (--tables), and number the parts by the role `part`",
+                )
+                return []
+            each = [roles.given | {role: str(first), last: str(final)} for first, final in runs]
+            return [draft for given in each for draft in self.read(replace(roles, given=given))]
+        draft = self.read_field(roles)
+        return [draft] if draft is not None else []
+
+    def read_field(self, roles: Roles) -> Draft | None:
         """Return the field; None, with a finding, if something that it needs is missing."""
         name, spot = roles.get("name"), self.table.spot_of(roles.row.source)
         where = f"{self.table.title}, field `{name}`"
+        self.subject = name or roles.row.text
         if not name:
             self.error(
                 "IMP025",
@@ -83,11 +108,13 @@ class FieldReader:
             return None
         if roles.get("group") and not roles.get("counter") and not roles.get("rest"):
             numbers.pop("count", None)  # says how often the group is repeated, not the field
-        place = self.place(numbers, roles)
         sized = self.size(numbers, printed, roles, where, spot)
         if sized is None:
             return None
         bits, count = sized
+        if "end_bit" in numbers and not self.places.is_range_clear(numbers, bits * (count or 1), where, spot):
+            return None
+        place = self.places.place(numbers, roles.byte_shift, bits * (count or 1))
         at, range_size = place if place is not None else (self.next, 0)
         if bits == 0 and range_size:
             bits = range_size // (count or 1)
@@ -116,17 +143,16 @@ class FieldReader:
                 "or a type with a width; `width: unit` makes a single position one bit or byte",
             )
             return None
-        window = self.window(numbers, at, bits * (count or 1), where, spot)
-        if window is None:
+        frame_bits = self.places.frame_bits(numbers, at, bits * (count or 1), where, spot)
+        if frame_bits is None:
             return None
         kind = printed.kind
         if kind in ("uint", "int") and bits in (40, 48, 56) and range_size and not printed.bits and not count:
-            self.notes.warn(
+            self.warn(
                 "IMP105",
                 f"{where}: a number of {bits // 8} bytes is unusual, and only its range of bytes gives this size",
                 spot,
                 "is it an array? `set: [{where: {name: ...}, bits: 8, count: N}]`",
-                self.rule.place,
             )
         if kind in ("uint", "int", "enum") and bits > MOST_BITS:
             self.error(
@@ -137,28 +163,36 @@ class FieldReader:
             )
             return None
         made = Draft(name, at, bits, kind, self.described(roles, kind, where, spot), spot, roles, count)
-        made.window = window
+        made.frame_bits = frame_bits
         self.facts(made, numbers, where, spot)
         self.next = made.end
         return made
 
     def error(self, code: str, message: str, spot: Spot, help: str) -> None:
-        self.notes.error(code, message, spot, help, self.rule.place)
+        self.notes.error(code, message, spot, help, self.rule.place, self.subject)
+
+    def warn(self, code: str, message: str, spot: Spot, help: str) -> None:
+        self.notes.warn(code, message, spot, help, self.rule.place, self.subject)
 
     def numbers(self, roles: Roles, where: str, spot: Spot) -> dict[str, int] | None:
         """The whole numbers among the roles; None, with a finding, if one is none."""
         made = {}
-        for role in ("byte", "last_byte", "bit", "last_bit", "bytes", "bits", "count", "stride", "up_to"):
+        for role in ("byte", "last_byte", "bit", "last_bit", "end_bit", "bytes", "bits", "count", "stride", "up_to"):
             text = roles.get(role)
             if not text:
                 continue
             value = whole_number(text, self.rule.base if role in ("byte", "last_byte") else 10)
             if value is None or value < 0:
+                is_range = re.fullmatch(r"\d+\s*[-–:~]\s*\d+", text) and role in ("byte", "bit")
                 self.error(
                     "IMP023",
                     f"{where}: `{role}` is `{text[:40]}`, which is not a number",
                     spot,
-                    "correct the pattern or the table file",
+                    (
+                        f"take both ends of the range: `'^{{{role}}}(?:[-–:~]{{last_{role}}})?$'`"
+                        if is_range
+                        else "correct the pattern or the table file"
+                    ),
                 )
                 return None
             made[role] = value
@@ -187,50 +221,6 @@ class FieldReader:
                 f"explain it in the profile: `types: {{{name[:30]}: {{type: uint, bits: 16}}}}`",
             )
         return found
-
-    def place(self, numbers: dict[str, int], roles: Roles) -> tuple[int, int] | None:
-        """Number of the first bit and size of the range, 0 if only its beginning is given; None without a position."""
-        if "byte" not in numbers and "bit" not in numbers:
-            return None
-        first_bit = numbers.get("bit", 0)
-        size = 0
-        if "last_bit" in numbers:
-            first_bit, last = sorted((first_bit, numbers["last_bit"]))
-            size = last - first_bit + 1
-        first_byte = numbers.get("byte", 0)
-        if "last_byte" in numbers:
-            first_byte, last = sorted((first_byte, numbers["last_byte"]))
-            size = size if "bit" in numbers else 8 * (last - first_byte + 1)
-        return 8 * (first_byte - self.rule.origin + roles.byte_shift) + first_bit, size
-
-    def window(self, numbers: dict[str, int], at: int, size: int, where: str, spot: Spot) -> tuple[int, int] | None:
-        """First byte and number of the bytes in which a big-endian value has its bit numbers; (0, 0) for a place that counts
-        through the frame. None, with a finding, if bytes and bit numbers do not agree.
-
-        Bit 15 of two big-endian bytes is the most significant bit of the first one.
-        """
-        if self.rule.what != "message" or "byte" not in numbers or "bit" not in numbers:
-            return 0, 0
-        printed = numbers["byte"], numbers.get("last_byte", numbers["byte"])
-        count = max(printed) - min(printed) + 1
-        start = at - min(numbers["bit"], numbers.get("last_bit", numbers["bit"]))  # bit 0 of the bytes
-        highest = max(numbers["bit"], numbers.get("last_bit", 0))
-        order = f"byte_order: {self.order.byte_order}, bit_order: {self.order.bit_order}"
-        is_ambiguous = self.order in (Order("big", "lsb0"), Order("little", "msb0"))
-        help = ""
-        if "last_byte" in numbers and max(highest + 1, at + size - start) > 8 * count:
-            help = (
-                f"bits are numbered from 0 to {8 * count - 1} in these bytes; give the position by bytes or bits only"
-            )
-        elif "last_byte" not in numbers and highest > 7 and is_ambiguous:
-            help = f"with `{order}`, state all bytes in which the bits are numbered: the roles `byte` and `last_byte`"
-        elif count > 1 and self.order == Order("little", "msb0"):
-            help = f"with `{order}`, bit numbers in several bytes have no order: state that of the source under `node:`"
-        if help:
-            bytes_ = f"byte {printed[0]}" if count == 1 else f"bytes {printed[0]} to {printed[1]}"
-            self.error("IMP105", f"{where}: the place of bit {highest} in {bytes_} is not clear", spot, help)
-            return None
-        return (start // 8, count) if count > 1 and is_ambiguous else (0, 0)
 
     def size(
         self, numbers: dict[str, int], printed: TypeName, roles: Roles, where: str, spot: Spot
@@ -273,7 +263,7 @@ class FieldReader:
         if self.profile.reads_descriptions:
             made = descriptions.read(text, self.profile, is_enum=kind == "enum")
         for problem in made.problems:
-            self.notes.warn("IMP040", f"{where}: {problem}: `{text[-160:]}`", spot, "read the page")
+            self.warn("IMP040", f"{where}: {problem}: `{text[-160:]}`", spot, "read the page")
         unit = _IN_PARENTHESES.sub(r"\1", tidy_unit(roles.get("unit")))
         if unit.casefold() not in _EMPTY:
             made.unit = unit
@@ -401,7 +391,6 @@ class FieldReader:
                     f"{where}: its range has the {role} {made.facts[role]}, its raw values give {low:f} to {high:f}",
                     spot,
                     "`offset` is added after scaling, `bias` is subtracted before: is one the other?",
-                    self.rule.place,
                 )
 
 

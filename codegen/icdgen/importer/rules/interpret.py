@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 from icdgen.import_results.findings import Spot, Trouble
 from icdgen.importer.document import SourceTable
-from icdgen.importer.model import BACKGROUND, UNKNOWN, Found, Survey
+from icdgen.importer.model import BACKGROUND, UNKNOWN, Found, ReadMessage, Survey
 from icdgen.importer.profile import Profile
 from icdgen.importer.rules import attach, build, lists
 from icdgen.importer.rules.bit_order import Order
-from icdgen.importer.rules.cells import Roles, read_roles
+from icdgen.importer.rules.cells import RoleReader, Roles
 from icdgen.importer.rules.fields import FieldReader
 from icdgen.importer.rules.language import MESSAGE_ROLES, Pattern, cell_text, normalised, take, whole_number
 from icdgen.importer.rules.notes import Notes
@@ -60,12 +60,11 @@ class _Interpreter:
                 if rule.what != "ignore":
                     self.read(rule, choice.table)
         self.check_use(choices)
+        made = build.Builder(self.profile, self.order, self.notes).build(self.parts)
+        attach.check_index([part for part in self.parts if part.rule.what == "index"], made, self.notes)
+        self.check_orders(made)
+        self.notes.finish(self.profile.rules)
         survey = Survey(troubles=[*extra, *self.notes.troubles])
-        made, notes = build.Builder(self.profile, self.order).build(self.parts)
-        attach.check_index([part for part in self.parts if part.rule.what == "index"], made, notes)
-        notes.dropped = self.notes.dropped
-        notes.finish(self.profile.rules)
-        survey.troubles += notes.troubles
         things: dict[int, list[Found]] = {}
         for found in [*self.found, *made]:
             things.setdefault(found.table.number, []).append(found)
@@ -87,8 +86,9 @@ class _Interpreter:
             rows = []  # the table describes a message without parameters
         given = self.around(rule, table)
         self.attributes[table.number] = given
+        role_reader = RoleReader(rule, table, titles, self.known, self.profile.empty, self.notes)
         if rule.what in ("list", "loggable"):
-            listed = read_roles(rule, table, titles, rows, self.known, self.notes)
+            listed = role_reader.read(rows)
             is_list = rule.what == "list"
             self.found.append(
                 lists.list_of(rule, table, given, listed, self.notes)
@@ -103,7 +103,7 @@ class _Interpreter:
         of_message = set(MESSAGE_ROLES)
         if rule.what in ("message", "registers"):
             of_message.remove("enumeration")  # the name of the enumeration of a field
-        for roles in read_roles(rule, table, titles, rows, self.known, self.notes):
+        for roles in role_reader.read(rows):
             is_field = not set(roles.given) <= of_message | set(rule.each)
             roles.given = {**shared, **roles.given}
             own = {role: roles.given.pop(role) for role in list(roles.given) if role in of_message}
@@ -140,9 +140,7 @@ class _Interpreter:
             return
         if not part.rule.has_fields and what in ("message", "registers"):
             return
-        draft = reader.read(roles)
-        if draft is not None:
-            part.drafts.append(draft)
+        part.drafts += reader.read(roles)
 
     def around(self, rule: Rule, table: SourceTable) -> dict[str, str]:
         """The roles that the rule states, or finds in texts around the table and in its rows; the nearest text first."""
@@ -228,6 +226,29 @@ class _Interpreter:
                         "correct `where:`, or remove the entry",
                         correction.place,
                     )
+
+    def check_orders(self, made: list[Found]) -> None:
+        """Report fields whose bits depend on a byte or bit order that the profile does not state."""
+        fields = [f for found in made if isinstance(found.thing, ReadMessage) for f in found.thing.all_fields]
+        numbers = [f for f in fields if f.type in ("uint", "int", "enum", "float", "bool")]
+        dependent = {
+            "byte_order": ("several bytes", [f for f in numbers if f.at % 8 + f.bits > 8], "`big` or `little`"),
+            "bit_order": (
+                "a part of a byte",
+                [f for f in numbers if f.at % 8 or f.bits % 8],
+                "`lsb0` if bit 0 is the least significant bit of a byte, else `msb0`",
+            ),
+        }
+        for key, (size, affected, values) in dependent.items():
+            if affected and not self.profile.states_order(key):
+                others = f" and {len(affected) - 1} more fields" if affected[1:] else ""
+                self.notes.error(
+                    "IMP109",
+                    f"the profile does not state `{key}`, on which `{affected[0].name}`{others} of {size} depend"
+                    f"{'' if others else 's'}; read with `{key}: {getattr(self.order, key)}`",
+                    affected[0].spot._replace(order=None, table=None),
+                    f"look for it in the document and state it under `node:` of the profile: {values}",
+                )
 
     def report_unread(self, choices: list[Choice], survey: Survey) -> None:
         """List the tables without a rule by kind, and what rules ignore."""

@@ -10,6 +10,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from icdgen.diagnostics import Place
+from icdgen.importer.rules import positions
 from icdgen.importer.words import join, plain
 
 INTEGER = r"(?:0[xX][0-9A-Fa-f]+|[0-9A-Fa-f]+[hH]\b|[0-9]+)"
@@ -22,6 +23,7 @@ PLACE_ROLES = {
     "last_byte": "last byte",
     "bit": "lowest bit",
     "last_bit": "highest bit",
+    "end_bit": "bit of the last byte at which the field ends: `0.4-1.3`",
     "bytes": "size in bytes",
     "bits": "size in bits",
     "count": "number of elements of an array",
@@ -47,7 +49,7 @@ TEXT_ROLES = {
     "members": "values and names in one cell",
     "member": "name of a value",
     "text": "description",
-    "group": "name of the repeated " "group",
+    "group": "name of the repeated group",
     "rest": "marks a field that extends to the end of the frame",
     "counter": "name of the field that counts elements",
     "default": "initial value (not represented in an ICD)",
@@ -58,10 +60,10 @@ MESSAGE_ROLES = {
     "message": "name of the message",
     "id": "id of the message",
     "set_id": "id that sets a configuration",
-    "get_id": "id that reads " "a configuration",
+    "get_id": "id that reads a configuration",
     "kind": "telecommand, telemetry or configuration",
     "length": "length in bytes",
-    "of": "name of the field to " "which an enumeration, a lookup table or bits belong",
+    "of": "name of the field to which an enumeration, a lookup table or bits belong",
     "message_text": "description of the message",
     "section": "group heading of the message in a list",
     "node": "name of the node that a list is about",
@@ -121,12 +123,17 @@ class Pattern:
         """The roles that it may give."""
         return frozenset({self.text}) if self.regex is None else frozenset(self.regex.groupindex)
 
+    def order_of(self, *roles: str) -> list[str]:
+        """Those of the roles that the pattern gives, in the order in which it takes them."""
+        return [] if self.regex is None else [role for role in self.regex.groupindex if role in roles]
+
 
 class Taken(NamedTuple):
     """Roles that a pattern took out of a text, and the text that no group or literal of it covers."""
 
     roles: dict[str, str]
     left: str
+    listed: str = ""  # a list of numbers, such as `0, 2`, that the pattern takes for a range
 
 
 def compile_pattern(text: str, place: Place) -> Pattern:
@@ -171,8 +178,21 @@ def take(patterns: Sequence[Pattern], text: str) -> Taken | None:
         match = pattern.regex.search(text)
         if match is not None:
             roles = {role: value.strip() for role, value in match.groupdict().items() if value and value.strip()}
-            return Taken(roles, normalised(f"{text[: match.start()]} {text[match.end() :]}"))
+            left = normalised(f"{text[: match.start()]} {text[match.end() :]}")
+            return Taken(roles, left, _listed(match, text))
     return None
+
+
+def _listed(match: re.Match[str], text: str) -> str:
+    """The part of a text in which a pattern takes two numbers that are listed, not consecutive, as the ends of a range."""
+    for first, last in (("byte", "last_byte"), ("bit", "last_bit")):
+        if match.groupdict().get(first) and match.groupdict().get(last):
+            (start, end), (begin, stop) = match.span(first), match.span(last)
+            numbers = whole_number(match[first]), whole_number(match[last])
+            is_apart = None not in numbers and abs((numbers[0] or 0) - (numbers[1] or 0)) > 1
+            if is_apart and positions.is_separator(text[end:begin]):
+                return text[start:stop]
+    return ""
 
 
 @lru_cache(maxsize=1 << 16)

@@ -9,22 +9,72 @@ from icdgen.diagnostics import Place
 from icdgen.import_results.findings import DOUBTFUL, LIKELY, Spot, Trouble
 from icdgen.importer.rules.rule import Rule
 
+MOST_EXAMPLES = 4
+
+
+@dataclass
+class Group:
+    """Findings with the same cause: the first one, and the places and examples of the others."""
+
+    first: Trouble
+    spots: list[Spot] = field(default_factory=list)
+    examples: list[str] = field(default_factory=list)
+
+    def add(self, spot: Spot, example: str) -> None:
+        """Count one more row."""
+        self.spots.append(spot)
+        self.examples.append(example)
+
+    def as_trouble(self) -> Trouble:
+        """One finding at the place of the first row; `also` has the places of the others."""
+        more = len(self.spots) - 1
+        if not more:
+            return self.first
+        tables = len({spot.order for spot in self.spots})
+        others = list(dict.fromkeys(text for text in self.examples[1:] if text != self.examples[0]))
+        shown = ", ".join(f"`{text[:40]}`" for text in others[:MOST_EXAMPLES])
+        shown += ", ..." if len(others) > MOST_EXAMPLES else ""
+        rows = f"{more} more row{'s' if more > 1 else ''}{f' of {tables} tables' if tables > 1 else ''}"
+        message = f"{self.first.message}; the same in {rows}{f': {shown}' if shown else ''}"
+        return self.first._replace(message=message, also=tuple(self.spots[1:]))
+
 
 @dataclass
 class Notes:
     """Findings so far. ``dropped`` are the texts of rows that a rule drops on purpose, by rule and operation."""
 
-    troubles: list[Trouble] = field(default_factory=list)
+    single: list[Trouble] = field(default_factory=list)
+    groups: dict[tuple[object, ...], Group] = field(default_factory=dict)
     dropped: dict[tuple[str, str], list[str]] = field(default_factory=lambda: defaultdict(list))
     used_corrections: set[Place] = field(default_factory=set)
 
-    def error(self, code: str, message: str, spot: Spot, help: str, place: Place | None = None) -> None:
-        """Report that something is missing from the result, or wrong in it."""
-        self.troubles.append(Trouble(code, message, spot, help, "error", DOUBTFUL, place))
+    def error(
+        self, code: str, message: str, spot: Spot, help: str, place: Place | None = None, example: str = ""
+    ) -> None:
+        """Report that something is missing from the result, or wrong in it.
 
-    def warn(self, code: str, message: str, spot: Spot, help: str, place: Place | None = None) -> None:
-        """Report that something must be compared with the source."""
-        self.troubles.append(Trouble(code, message, spot, help, "warning", LIKELY, place))
+        Findings with an ``example`` (a text or the name of a field) that agree in code, rule and help have the same cause and
+        become one finding, which lists the examples.
+        """
+        self._add(Trouble(code, message, spot, help, "error", DOUBTFUL, place), example)
+
+    def warn(
+        self, code: str, message: str, spot: Spot, help: str, place: Place | None = None, example: str = ""
+    ) -> None:
+        """Report that something must be compared with the source. ``example`` as for `error`."""
+        self._add(Trouble(code, message, spot, help, "warning", LIKELY, place), example)
+
+    def _add(self, trouble: Trouble, example: str) -> None:
+        if not example:
+            self.single.append(trouble)
+            return
+        key = (trouble.code, trouble.severity, trouble.help, trouble.place)
+        self.groups.setdefault(key, Group(trouble)).add(trouble.spot, example)
+
+    @property
+    def troubles(self) -> list[Trouble]:
+        """All findings, those of one cause as one."""
+        return [*self.single, *(group.as_trouble() for group in self.groups.values())]
 
     def drop(self, rule: Rule, operation: str, text: str) -> None:
         """Count a row that the rule drops on purpose."""
@@ -37,7 +87,7 @@ class Notes:
             kinds = list(dict.fromkeys(texts))
             shown = ", ".join(f"`{text[:50]}`" for text in kinds[:3]) + (" ..." if len(kinds) > 3 else "")
             rows = f"{len(texts)} row{'s' if len(texts) != 1 else ''}"
-            self.troubles.append(
+            self.single.append(
                 Trouble(
                     "IMP108",
                     f"rule `{name}`: `{operation}` drops {rows}: {shown}",

@@ -90,6 +90,12 @@ class Rule:
         return not given <= set(MESSAGE_ROLES)
 
     @property
+    def has_byte_range(self) -> bool:
+        """Whether one text gives the first and the last byte, so that bit numbers of other texts count in all of them."""
+        columns = (*self.columns, *self.lines)
+        return any({"byte", "last_byte"} <= p.roles for column in columns for p in column.patterns)
+
+    @property
     def heading_titles(self) -> list[str]:
         """The headings that `head` names; empty if it has patterns, or a single heading, which many texts have."""
         titles = [title.strip() for title in re.split(r"\s\|\s", self.head)] if self.head not in ("", "none") else []
@@ -256,9 +262,19 @@ class _Reader:
         for index, text in enumerate(value if isinstance(value, Seq) else [value]):
             where = value.item_at(index) if isinstance(value, Seq) else place
             try:
-                made.append(compile_pattern(str(text), where))
+                pattern = compile_pattern(str(text), where)
             except PatternError as error:
                 self.add(error.message, where, error.help)
+                continue
+            order = pattern.order_of("byte", "bit", "last_byte", "last_bit")
+            if order[:3] == ["byte", "bit", "last_byte"] and "end_bit" not in pattern.roles:
+                self.add(
+                    f"the pattern `{text}` takes a bit of the first byte and a bit of the last byte; `bit` and `last_bit` are "
+                    "numbered in all bytes of a range",
+                    where,
+                    "write `{end_bit}` for the bit of the last byte: `{byte}.{bit}-{last_byte}.{end_bit}`",
+                )
+            made.append(pattern)
         return tuple(made)
 
     def regex(self, text: Any, place: Place) -> re.Pattern[str]:

@@ -44,7 +44,7 @@ def joined_parts(
     for draft in made:
         parts = pieces[draft.name] if draft.part is not None else [draft]
         bits = [bit for piece in parts for bit in _bits(piece, order, is_register, length)]
-        if draft.count and draft.window[1]:
+        if draft.count and draft.frame_bits:
             notes.error(
                 "IMP105",
                 f"the elements of the array `{draft.name}` have bit numbers in a range of bytes",
@@ -75,8 +75,4 @@ def joined_parts(
 def _bits(piece: Draft, order: Order, is_register: bool, length: int) -> list[Bit]:
     if is_register:
         return bit_order.bits_of_register(piece.at, piece.size, length, order.byte_order)
-    first, count = piece.window
-    if count:
-        counted = bit_order.bits_of_register(piece.at - 8 * first, piece.size, count, order.byte_order)
-        return [(first + byte, weight) for byte, weight in counted]
-    return bit_order.bits_of(piece.at, piece.size, order)
+    return piece.frame_bits or bit_order.bits_of(piece.at, piece.size, order)

@@ -100,8 +100,8 @@ async function show(wanted) {
 function drawHeader() {
   byId("document").textContent = state.document;
   const node = byId("node").elements;
-  node.byte_order.value = state.node.byte_order || "little";
-  node.bit_order.value = state.node.bit_order || "lsb0";
+  node.byte_order.value = state.node.byte_order || "";
+  node.bit_order.value = state.node.bit_order || "";
   node.id_bits.value = state.node.id_bits || "";
   document.title = `${state.is_saved ? "" : "• "}${state.document} – icdgen workbench`;
   document.querySelector("main").classList.toggle("textual", !state.has_pictures);
@@ -303,7 +303,8 @@ byId("save").onclick = async () => {
 };
 byId("node").onchange = () => {
   const inputs = byId("node").elements;
-  const node = { ...state.node, byte_order: inputs.byte_order.value, bit_order: inputs.bit_order.value };
+  const node = { ...state.node };
+  for (const key of ["byte_order", "bit_order"]) put(node, key, inputs[key].value);
   put(node, "id_bits", number_or_text(inputs.id_bits.value.trim()));
   send("/api/node", node);
 };

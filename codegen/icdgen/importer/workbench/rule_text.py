@@ -12,7 +12,7 @@ ORDER = (
     "rule", "like", "tables", "what", "message", "columns", "lines", "melt", "each", "map", "set", "skip", "stop", "keep", "join",
     "fill", "glue", "ignore", "absent", "head_rows", "group_rows", "transpose", "also", "width", "origin", "base",
 )  # fmt: skip
-NEW = "profile: 1\nnode: {byte_order: little, bit_order: lsb0}\nrules: []\n"
+NEW = "profile: 1\nnode: {}\nrules: []\n"
 _PLAIN = re.compile(r"[A-Za-z_(][\w (|)./+-]*[\w)]|[A-Za-z]")
 _WORDS = {"y", "n", "yes", "no", "on", "off", "true", "false", "null"}
 _INDENT = "  "

@@ -93,7 +93,7 @@ class Session:
 
     def summary(self, table: SourceTable, applied: dict[int, list[int]], troubles: list[Trouble]) -> dict[str, Any]:
         """A line of the list of tables."""
-        own = [trouble.severity for trouble in troubles if trouble.spot.order == table.number - 1]
+        own = [trouble.severity for trouble in troubles if trouble.is_about_table(table.number - 1)]
         parts = self.parts(table)
         return {
             "number": table.number, "title": table.title, "page": table.page,
@@ -125,7 +125,7 @@ class Session:
                 "rows": [[[cell.text, cell.columns, cell.rows] for cell in row.cells] for row in table.rows],
                 "rules": self.rules_by_table().get(number, []), "reasons": reasons,
                 "messages": [_message(part) for part in self.parts(table)],
-                "findings": [_finding(t) for t in troubles if t.spot.order == number - 1],
+                "findings": [_finding(t) for t in troubles if t.is_about_table(number - 1)],
             }  # fmt: skip
 
     def head(self, table: SourceTable) -> int:
