@@ -28,7 +28,8 @@ def _main() -> None:
         sys.exit(0)
     import gc
 
-    # A short run makes many small objects. The garbage collector doubles its time and frees nothing.
+    # A short run makes many small objects. The garbage collector doubles its time and
+    # frees nothing.
     gc.disable()
     from icdgen import cli
 

@@ -17,8 +17,9 @@ from icdgen.errors import UserError
 from icdgen.reports.excerpt import shown
 from icdgen.suggest import close_words
 
-# Commands in the groups of `--help`. Each is a module of ``icdgen.commands`` with a click command of the same name. The module
-# of `import` is `import_`, because `import` is a keyword of Python.
+# Commands in the groups of `--help`. Each is a module of ``icdgen.commands`` with a
+# click command of the same name. The module of `import` is `import_`, because `import`
+# is a keyword of Python.
 _GROUPS = {
     "Describe a device": ("init", "check", "fmt", "show", "rule", "units", "schema"),
     "Generate": ("generate", "docs"),
@@ -98,7 +99,8 @@ def _folder(name: str, what: str, place: str) -> Callable[[Callable[..., None]],
         if is_set:
             from icdgen import shipped
 
-            click.echo(getattr(shipped, place)().as_posix())  # CMake expects slashes, also on Windows
+            # CMake expects slashes, also on Windows
+            click.echo(getattr(shipped, place)().as_posix())
             ctx.exit()
 
     help = f"Show the folder of {what}, and exit."

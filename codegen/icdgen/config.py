@@ -37,7 +37,8 @@ class Config:
     out: Path | None = None
     templates: Path | None = None
     name: str = ""  # of the project
-    packages: dict[str, str] = field(default_factory=dict)  # by section of `PACKAGES`, if given
+    # By section of `PACKAGES`, if given.
+    packages: dict[str, str] = field(default_factory=dict)
     looked_at: dict[Path, str] = field(
         default_factory=dict
     )  # fingerprints of the file, and of all paths tried before it

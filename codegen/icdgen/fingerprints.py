@@ -13,7 +13,9 @@ from hashlib import sha256
 ABSENT = "-"
 _CHUNK = 1 << 16  # bytes
 _READ = os.O_RDONLY | getattr(os, "O_BINARY", 0)
-UNKNOWN = "?"  # of a path that cannot be read, or only once, such as a pipe; records with it are never valid
+# Of a path that cannot be read, or only once, such as a pipe; records with it are never
+# valid.
+UNKNOWN = "?"
 
 
 def of_path(path: str) -> str:
@@ -33,14 +35,16 @@ def of_path(path: str) -> str:
 
 def _of_file(path: str, size: int) -> str:
     """Return the SHA-256 of a file of ``size`` bytes."""
-    # Every start reads a thousand files, so this uses the calls of the operating system, and not one more than necessary.
+    # Every start reads a thousand files, so this uses the calls of the operating
+    # system, and not one more than necessary.
     digest = sha256()
     handle = os.open(path, _READ)
     try:
         while data := os.read(handle, _CHUNK):
             digest.update(data)
             size -= len(data)
-            # Saves the call that would return no data. If the file has grown meanwhile, the digest is that of its start.
+            # Saves the call that would return no data. If the file has grown meanwhile,
+            # the digest is that of its start.
             if size == 0:
                 break
     finally:

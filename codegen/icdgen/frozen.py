@@ -24,7 +24,8 @@ else:
         """Return a decorator for frozen classes, with the options of `dataclasses.dataclass`."""
 
         def decorate(plain: type[Any]) -> type[Any]:
-            # Without a docstring, `dataclasses` would compute the signature, which is slow.
+            # Without a docstring, `dataclasses` would compute the signature, which is
+            # slow.
             plain.__doc__ = plain.__doc__ or plain.__name__
             kind = dataclasses.dataclass(init=False, eq=False, repr=False, **options)(plain)
             _begin_late(kind)
@@ -65,7 +66,8 @@ def _begin_late(kind: type[Any]) -> None:
 def _initialiser(kind: type[Any]) -> Callable[..., None]:
     """Return the ``__init__`` of a class, equivalent to the one that `dataclasses` generates."""
     fields = sorted(dataclasses.fields(kind), key=lambda field: field.kw_only is True)
-    scope: dict[str, Any] = {}  # default or factory of each field, by its name with a leading underscore
+    # Default or factory of each field, by its name with a leading underscore.
+    scope: dict[str, Any] = {}
     factories: set[str] = set()
     parameters, lines = ["self"], []
     for field in fields:

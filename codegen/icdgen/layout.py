@@ -112,7 +112,8 @@ class Gap(NamedTuple):
 
 def gaps(message: Message | Struct, node: Node) -> tuple[Gap, ...]:
     """Return the runs of bits of the longest frame that no field covers, in order."""
-    # One byte per bit of the frame, in the bit order of the node; 1 if no field has the bit.
+    # One byte per bit of the frame, in the bit order of the node; 1 if no field has the
+    # bit.
     free = bytearray(b"\1" * (message.length * 8))
     for field in frame_fields(message.layout, node.orders):
         if not field.has_bits:

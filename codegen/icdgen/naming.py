@@ -55,7 +55,9 @@ def _humps(chunk: str) -> tuple[str, ...]:
 
 def _split(chunk: str, vocabulary: list[str]) -> Iterable[str]:
     """Yield the words of a text. Words of the vocabulary, with the digits after them, are not split."""
-    stack = [(chunk, False)]  # parts of the text, the next one last, and whether a part is a word of the vocabulary
+    # Parts of the text, the next one last, and whether a part is a word of the
+    # vocabulary.
+    stack = [(chunk, False)]
     while stack:
         text, is_word = stack.pop()
         word = None if is_word else next((word for word in vocabulary if word in text), None)

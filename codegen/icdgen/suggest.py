@@ -6,9 +6,12 @@ import re
 from collections.abc import Iterable
 
 _WORD = re.compile(r"[^\W_]+")
-_LONGEST = 200  # characters; longer names are not compared, because the time is quadratic
+# Characters; longer names are not compared, because the time is quadratic.
+_LONGEST = 200
 _LEAST = 3  # characters; shorter words are similar to half of all words
-_PER_EDIT = 4  # characters of the longer word per allowed edit, so that `yellow` is not similar to `below`
+# Characters of the longer word per allowed edit, so that `yellow` is not similar to
+# `below`.
+_PER_EDIT = 4
 
 
 def close_words(wanted: str, names: Iterable[str], most: int = 3) -> list[str]:
@@ -51,7 +54,8 @@ def _edits(word: str, other: str) -> int | None:
     allowed = max(1, longest // _PER_EDIT) if longest >= _LEAST else 0
     if abs(len(word) - len(other)) > allowed:
         return None
-    # Dynamic programming over the prefixes of both words, with the last three rows of the matrix.
+    # Dynamic programming over the prefixes of both words, with the last three rows of
+    # the matrix.
     previous: list[int] = []
     row = list(range(len(other) + 1))
     for i, character in enumerate(word, 1):

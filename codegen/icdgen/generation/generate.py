@@ -15,7 +15,8 @@ from icdgen.icd.loaded import Loaded
 from icdgen.model_cache import load_checked
 from icdgen.render import Renderer
 
-Files = Iterable[tuple[PurePosixPath, str | bytes]]  # path below the folder of a language, and content
+# Path below the folder of a language, and content.
+Files = Iterable[tuple[PurePosixPath, str | bytes]]
 
 
 @dataclass(eq=False, repr=False)
@@ -33,7 +34,8 @@ class Job:
     configs: dict[Path, str] = field(
         default_factory=dict
     )  # fingerprints of configuration files that exist or were absent
-    watch: Callable[[Files], Files] = iter  # passes generated files on, for example to show the progress
+    # Passes generated files on, for example to show the progress.
+    watch: Callable[[Files], Files] = iter
 
 
 @dataclass(eq=False, repr=False)
@@ -41,9 +43,11 @@ class Outcome:
     """Result of a run."""
 
     loaded: Loaded
-    may_be_remembered: bool = True  # the output depends only on `inputs` and on icdgen itself
+    # The output depends only on `inputs` and on icdgen itself.
+    may_be_remembered: bool = True
     plans: list[write.Plan] = field(default_factory=list)
-    inputs: dict[Path, str] = field(default_factory=dict)  # fingerprint of each file that the output depends on
+    # Fingerprint of each file that the output depends on.
+    inputs: dict[Path, str] = field(default_factory=dict)
 
     @property
     def changes(self) -> bool:

@@ -23,7 +23,8 @@ class Plan:
     digests: dict[str, str] = field(default_factory=dict)  # of ``files``
     write: list[str] = field(default_factory=list)
     remove: list[str] = field(default_factory=list)
-    edited: list[str] = field(default_factory=list)  # no longer generated, but edited by a user: not removed
+    # No longer generated, but edited by a user: not removed.
+    edited: list[str] = field(default_factory=list)
     manifest: str = ""
 
     @property
@@ -79,7 +80,8 @@ def apply(changes: Plan) -> None:
     written = manifest.read(out, changes.language)
     target = manifest.path(out, changes.language)
     try:
-        # First extend the manifest: after an interruption, the next run must know all files that this run wrote.
+        # First extend the manifest: after an interruption, the next run must know all
+        # files that this run wrote.
         if not changes.files.keys() <= written.keys():
             extended = written | {name: written.get(name, "") for name in changes.files}
             replace(target, manifest.text(extended).encode())

@@ -133,7 +133,8 @@ class Builder:
         visited: set[str] = set()
 
         def add(name: str) -> None:
-            # A struct that contains itself is not visited twice: `node_of` omits its field, and a rule reports the cycle.
+            # A struct that contains itself is not visited twice: `node_of` omits its
+            # field, and a rule reports the cycle.
             visited.add(name)
             for row in self.items("fields", items[name]):
                 if row.get("struct") in items and row["struct"] not in visited:
@@ -144,7 +145,8 @@ class Builder:
         for name in items:
             if name not in visited:
                 add(name)
-        # A rule reports duplicate names. The first struct of a name is the one that fields refer to.
+        # A rule reports duplicate names. The first struct of a name is the one that
+        # fields refer to.
         structs += (self.struct(item) for item in listed if item is not items[item["name"]])
         return tuple(structs)
 

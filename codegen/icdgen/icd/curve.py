@@ -18,7 +18,8 @@ from typing import Any, NamedTuple
 
 from icdgen.icd import formula
 
-# Up to this width all raw values are tried, to see whether a curve is invertible. Wider fields with a curve are read-only.
+# Up to this width all raw values are tried, to see whether a curve is invertible. Wider
+# fields with a curve are read-only.
 MOST_BITS = 16
 MOST_POINTS = 1024
 CLAMP, EXTRAPOLATE, REFUSE = "clamp", "extrapolate", "refuse"
@@ -42,9 +43,9 @@ class Curve(NamedTuple):
 
     pieces: tuple[Piece, ...]
     points: Points = ()  # of a lookup table: (raw, physical)
-    outside: str = (
-        ""  # of a lookup table: CLAMP, EXTRAPOLATE, REFUSE, or empty if no raw value is outside of the points
-    )
+    # Of a lookup table: CLAMP, EXTRAPOLATE, REFUSE, or empty if no raw value is
+    # outside.
+    outside: str = ""
 
     @property
     def coefficients(self) -> tuple[float, ...]:
@@ -182,7 +183,8 @@ def is_finite(curve: Curve, low: int, high: int) -> bool:
     for start, terms in curve.pieces:
         difference = largest + abs(Fraction(start))
         bound = sum(abs(Fraction(term)) * difference**power for power, term in enumerate(terms))
-        # The sum of the absolute values bounds each step. Rounding errors are far below 2^24, the margin to overflow.
+        # The sum of the absolute values bounds each step. Rounding errors are far below
+        # 2^24, the margin to overflow.
         if bound >= 1 << 1000:
             return False
     return True

@@ -36,7 +36,9 @@ class Derivation(NamedTuple):
     value is the result.
     """
 
-    fields: tuple[str, ...]  # names of the operands: physical values, or raw values without a formula, as doubles
+    # Names of the operands: physical values, or raw values without a formula, as
+    # doubles.
+    fields: tuple[str, ...]
     numbers: tuple[float, ...]
     steps: tuple[Operation, ...]
 
@@ -117,7 +119,8 @@ class _Trees(Arithmetic[_Tree]):
     """Arithmetic that builds a tree of the operations on fields, and computes operations on numbers exactly."""
 
     def __init__(self, names: frozenset[str]) -> None:
-        # The longest name first, because names can contain spaces and operators, and one can be the start of another.
+        # The longest name first, because names can contain spaces and operators, and
+        # one can be the start of another.
         self.names = sorted(sorted(names), key=len, reverse=True)
 
     def name_at(self, text: str, at: int) -> str:

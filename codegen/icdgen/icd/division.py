@@ -9,7 +9,8 @@ from icdgen.icd.located import Map
 from icdgen.icd.roles import SPLIT, reasons_against
 from icdgen.icd.trees import mappings
 
-# Keys for the meaning of a value. The parts of a split field have them instead of the field.
+# Keys for the meaning of a value. The parts of a split field have them instead of the
+# field.
 VALUE_KEYS = ("unit", "formula", "points", "outside", "const", "special", "min", "max", "above", "below", "display")
 
 _WITHIN = "correct `at` or `bits`: `at` counts from the start of the split field"

@@ -21,8 +21,10 @@ class Applied:
     def __init__(self) -> None:
         self.entries: list[Erratum] = []
         self.notes: list[Erratum] = []
-        self.of: dict[int, list[Erratum]] = {}  # id() of a mapping -> its entries and notes
-        self.accepts: list[tuple[str, Place, Map]] = []  # accepted code, its place in the overlay, and the mapping
+        # id() of a mapping -> its entries and notes
+        self.of: dict[int, list[Erratum]] = {}
+        # Accepted code, its place in the overlay, and the mapping.
+        self.accepts: list[tuple[str, Place, Map]] = []
         self.findings: list[Finding] = []
 
     def about(self, item: object) -> tuple[Erratum, ...]:
@@ -47,7 +49,8 @@ def apply(tree: Map, overlay: Map | None, broken: Set[int] = frozenset()) -> App
         return applied
     seen: dict[str, Place] = {}
     named = _ByName()
-    # Notes come first, because they are about the values that the manual prints, before entries change them.
+    # Notes come first, because they are about the values that the manual prints, before
+    # entries change them.
     notes = mappings(overlay.get("notes"))
     for entry in (*notes, *mappings(overlay.get("entries"))):
         if broken and _is_broken(entry, broken):
@@ -89,7 +92,8 @@ def _apply_entry(tree: Map, entry: Map, applied: Applied, named: _ByName) -> Non
             applied.of.setdefault(id(target), []).append(erratum)
             for code, place in entry["accept"].placed() if "accept" in entry else ():
                 applied.accepts.append((code, place, target))
-    # With a wildcard, the number of places must be stated: a new message could match without being meant.
+    # With a wildcard, the number of places must be stated: a new message could match
+    # without being meant.
     expected = entry.get("places")
     if wildcard and len(matched) != expected:
         message = f"`printed` matches {len(matched)} places" + (f", not {expected}" if expected else "")
@@ -207,7 +211,8 @@ def _change(target: Map, changes: Map) -> None:
             target.pop(key, None)
         else:
             target[key] = value
-            # Findings about the value point to the overlay, findings about the key to the ICD.
+            # Findings about the value point to the overlay, findings about the key to
+            # the ICD.
             key_spot = target.spots[key][0] if key in target.spots else target.spot
             target.spots[key] = key_spot, changes.spots[key][1]
 

@@ -7,11 +7,13 @@ from typing import NamedTuple
 
 from icdgen.icd.formula import Scale
 
-# Limits for arithmetic of 256 bits: with them no product with a 64-bit raw value or a double's significand overflows.
+# Limits for arithmetic of 256 bits: with them no product with a 64-bit raw value or a
+# double's significand overflows.
 MAX_FACTOR = 1 << 180
 MAX_OFFSET = 1 << 240
 
-# Limits for arithmetic of 128 bits, which is faster and sufficient for nearly every formula.
+# Limits for arithmetic of 128 bits, which is faster and sufficient for nearly every
+# formula.
 USUAL_FACTOR = 1 << 32
 USUAL_OFFSET = 1 << 63
 

@@ -13,7 +13,8 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Generic, NamedTuple, TypeVar
 
-# Limits on input that an ICD never needs, so that a hostile text cannot exhaust the stack or the memory.
+# Limits on input that an ICD never needs, so that a hostile text cannot exhaust the
+# stack or the memory.
 MAX_DEPTH = 50
 MAX_DIGITS = 40
 

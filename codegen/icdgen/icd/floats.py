@@ -34,7 +34,8 @@ def nearest(value: Fraction, bits: int) -> int:
     Computes them from the exact value, because a conversion by way of a double would round twice.
     """
     sign, value = value < 0, abs(value)
-    # Bits of the significand, and the exponents of its lowest bit in the smallest and in the largest float.
+    # Bits of the significand, and the exponents of its lowest bit in the smallest and
+    # in the largest float.
     precision, lowest, highest = (24, -149, 104) if bits == 32 else (53, -1074, 971)
     if not value:
         return 0

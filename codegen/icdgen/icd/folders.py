@@ -12,7 +12,8 @@ from icdgen.icd import source
 
 MOST_FOLDERS = 5000  # limit of one search, to stop `icdgen check /`
 
-# Subfolders with build output or with files of tools. A folder that the user names is searched whatever its name is.
+# Subfolders with build output or with files of tools. A folder that the user names is
+# searched whatever its name is.
 _SKIPPED = frozenset(
     {"__pycache__", "_build", "build", "dist", "errata", "generated", "node_modules", "site", "target", "venv"}
 )
@@ -27,7 +28,8 @@ class Search:
 
     icds: list[Path] = field(default_factory=list)
     folders: list[Path] = field(default_factory=list)
-    overlays: list[Path] = field(default_factory=list)  # errata overlays in the folder itself
+    # Errata overlays in the folder itself.
+    overlays: list[Path] = field(default_factory=list)
     other_files: list[Path] = field(default_factory=list)  # other *.yaml files
     is_complete: bool = True  # whether the search ended before `MOST_FOLDERS`
 

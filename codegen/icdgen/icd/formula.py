@@ -27,12 +27,14 @@ class Scale(NamedTuple):
     offset: Fraction = Fraction(0)
 
     def __hash__(self) -> int:
-        # Fraction.__hash__ computes a modular inverse, which is slow. Few scales differ in the offset alone.
+        # Fraction.__hash__ computes a modular inverse, which is slow. Few scales differ
+        # in the offset alone.
         return hash(self[0].as_integer_ratio())
 
     def physical(self, raw: int | Fraction) -> Fraction:
         """Return the physical value of a raw value."""
-        # One division instead of a sum and a product of Fractions: this runs for each value of each vector.
+        # One division instead of a sum and a product of Fractions: this runs for each
+        # value of each vector.
         a, b = self.factor, self.offset
         top = raw.numerator * a.numerator * b.denominator + b.numerator * a.denominator * raw.denominator
         return Fraction(top, raw.denominator * a.denominator * b.denominator)

@@ -36,10 +36,12 @@ from icdgen.icd.layout import (
 from icdgen.icd.units import Unit
 from icdgen.once import cached_property, kept_by_owner
 
-# Limit of cached frames per layout, one for each combination of sizes: a log repeats few sizes.
+# Limit of cached frames per layout, one for each combination of sizes: a log repeats
+# few sizes.
 _CACHED_FRAMES = 64
 
-# Limit of scalars in all cached frames of a layout, about 50 MB: arrays can have thousands of elements.
+# Limit of scalars in all cached frames of a layout, about 50 MB: arrays can have
+# thousands of elements.
 _CACHED_SCALARS = 100_000
 
 

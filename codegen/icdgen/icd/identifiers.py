@@ -10,7 +10,8 @@ from icdgen.icd.located import Map
 from icdgen.icd.model import Icd
 
 
-# Not frozen: large ICDs have very many identifiers, and a frozen class or a tuple takes twice as long to construct.
+# Not frozen: large ICDs have very many identifiers, and a frozen class or a tuple takes
+# twice as long to construct.
 @dataclass(slots=True, eq=False, repr=False)
 class Identifier:
     """A name that generated code declares. Two equal names in one scope clash."""

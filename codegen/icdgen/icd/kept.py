@@ -17,7 +17,8 @@ def kept(compute: Callable[[Icd, Node], Result]) -> Callable[[Icd, Node], Result
     ICDs and nodes are compared by identity: comparing or hashing a whole model would take longer than the function.
     """
     last: list[Icd] = []
-    # id() of a node -> the node and the result. The reference to the node prevents the reuse of its id().
+    # id() of a node -> the node and the result. The reference to the node prevents the
+    # reuse of its id().
     results: dict[int, tuple[Node, Result]] = {}
 
     @wraps(compute)

@@ -100,7 +100,9 @@ class LayoutNode:
     """A line of the ICD: attributes that all kinds of nodes have."""
 
     name: str
-    at: int = 0  # first bit in the layout, counted in its own bit order; in a sequence: the end of the fixed part
+    # First bit in the layout, counted in its own bit order; in a sequence: the end of
+    # the fixed part.
+    at: int = 0
     identifier: str | None = None
     aliases: tuple[str, ...] = ()  # other names that a search matches
     summary: str = ""
@@ -116,7 +118,8 @@ class Scalar(LayoutNode):
 
     type: str  # uint | int | bool | enum | float | bytes | text
     bits: int  # 8 for bytes and text of variable length
-    length: Counted | Rest | None = None  # number of bytes of variable-length bytes and text
+    # Number of bytes of variable-length bytes and text.
+    length: Counted | Rest | None = None
     enum: Enum | None = None
     unit: Unit | None = None
     formula: str = ""  # as printed
@@ -274,7 +277,8 @@ class VariablePart(NamedTuple):
 
     node: VariableNode
     counter: str  # name of the field that counts the elements
-    is_rest: bool  # the counter has no bits: its value follows from the length of the frame
+    # The counter has no bits: its value follows from the length of the frame.
+    is_rest: bool
     begin: int  # offset in bytes
     step: int  # bytes of an element
     most: int  # elements
@@ -385,7 +389,8 @@ class Visit(NamedTuple):
     """A node that `walk` visits."""
 
     node: LayoutNode
-    owners: tuple[LayoutNode, ...]  # arrays and struct references that contain it, the outermost first
+    # Arrays and struct references that contain it, the outermost first.
+    owners: tuple[LayoutNode, ...]
     orders: Orders  # in effect
 
 

@@ -74,11 +74,13 @@ class _Loader:
         self.findings: list[Finding] = []
         self.inputs: dict[Path, str] = {}
         self.contents: dict[Path, bytes] = {}
-        self.first: dict[Path, Path] = {}  # resolved path -> the path by which the file was read
+        # Resolved path -> the path by which the file was read.
+        self.first: dict[Path, Path] = {}
         self.texts: dict[str, str] = {}
         self.applied: list[errata.Applied] = []
         self.broken: set[int] = set()
-        # References to all trees, because ``broken`` and `Applied.of` have the id() of mappings, which could be reused.
+        # References to all trees, because ``broken`` and `Applied.of` have the id() of
+        # mappings, which could be reused.
         self.trees: list[Map] = []
         self.unreadable = False
 
@@ -112,7 +114,8 @@ class _Loader:
         """
         key = _resolved(path)
         if key in self.by_path:
-            # Two paths can lead to one file. The cache checks both, because a link can change.
+            # Two paths can lead to one file. The cache checks both, because a link can
+            # change.
             self.inputs[path] = self.inputs[self.first[key]]
             return self.by_path[key]
         self.by_path[key], self.first[key] = None, path

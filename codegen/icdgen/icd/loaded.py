@@ -15,8 +15,10 @@ class Loaded:
 
     icd: Icd
     findings: list[Finding]
-    inputs: dict[Path, str]  # fingerprint of each file and folder that was read, or that was absent
-    texts: dict[str, str] = field(default_factory=dict)  # text of each file, by its name in findings, for excerpts
+    # Fingerprint of each file and folder that was read, or that was absent.
+    inputs: dict[Path, str]
+    # Text of each file, by its name in findings, for excerpts.
+    texts: dict[str, str] = field(default_factory=dict)
 
     @property
     def ok(self) -> bool:

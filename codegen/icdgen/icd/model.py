@@ -88,7 +88,8 @@ class Message:
     assumptions: tuple[tuple[str, str], ...] = ()  # key and reason of each assumption
     contains: tuple[Part, ...] = ()
     reserved: int = 0  # reserved bytes at the end
-    may_end_early: str = ""  # "zeros": frames may be sent without their trailing zeros; else empty
+    # "zeros": frames may be sent without their trailing zeros; else empty
+    may_end_early: str = ""
     node: str = ""  # name of the node that declares it
     aliases: tuple[str, ...] = ()  # other names that a search matches
     errata: tuple[Erratum, ...] = ()
@@ -151,10 +152,12 @@ class Node:
     protocol: dict[str, Any] = field(default_factory=dict, hash=False)
     loggable: tuple[Loggable, ...] = ()
     missing: tuple[Missing, ...] = ()
-    errata: tuple[Erratum, ...] = ()  # all entries of its overlay, in order, then all notes
+    # All entries of its overlay, in order, then all notes.
+    errata: tuple[Erratum, ...] = ()
     digest: str = ""  # SHA-256 over the file, its overlay and its included files
     file: str = ""
-    id_bits: int = 8  # of each message id; sent as whole bytes, the most significant first
+    # Of each message id; sent as whole bytes, the most significant first.
+    id_bits: int = 8
     source: Map = field(default_factory=unread, compare=False, repr=False)
 
     @property

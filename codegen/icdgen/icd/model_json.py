@@ -49,7 +49,8 @@ class _Writer:
     """Converts objects of a model to values that `json` can write."""
 
     def __init__(self) -> None:
-        self.numbers: dict[int, int] = {}  # id() of an object -> its number, in the order of writing
+        # id() of an object -> its number, in the order of writing
+        self.numbers: dict[int, int] = {}
 
     def plain(self, value: Any) -> Any:
         """Return a value of the model as a value for JSON."""

@@ -44,10 +44,12 @@ class NodePlace(OfScalar):
     struct: Layout | None  # of a struct or an array of structs: its layout
     at: int  # first bit, counted in the bit order in effect
     bits: int  # of an array: of an element; of variable-length bytes and text: the most
-    declared_orders: Orders  # of the node or an owner; empty if the defaults of the ICD node apply
+    # Of the node or an owner; empty if the defaults of the ICD node apply.
+    declared_orders: Orders
     count: int = 0  # elements of an array; 0 for an element and for any other node
     smallest_raw: int = 0  # of a field that counts elements
-    is_count: bool = False  # it has no bits: its value follows from the length of the frame
+    # It has no bits: its value follows from the length of the frame.
+    is_count: bool = False
 
     @cached_property
     def name(self) -> str:

@@ -27,7 +27,8 @@ def with_prefix(icd: Icd, prefix: str) -> Icd:
     """Return ICDs with ``prefix`` before the name of each node; the same object if the prefix is empty."""
     if not prefix:
         return icd
-    # id() of an object -> the object and its copy. The reference to the object prevents the reuse of its id().
+    # id() of an object -> the object and its copy. The reference to the object prevents
+    # the reuse of its id().
     copies: dict[int, tuple[Any, Any]] = {}
 
     def renamed(part: Any) -> Any:

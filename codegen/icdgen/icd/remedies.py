@@ -46,7 +46,8 @@ _BOOLEANS = dict.fromkeys(("true", "yes", "y", "on"), "true") | dict.fromkeys(("
 _PLAIN = re.compile(r"[-+.:\w]+")
 _PREFIXED_NUMBER = re.compile(r"0[xX][0-9A-Fa-f]+|0[bB][01]+|0[oO][0-7]+")
 _SCIENTIFIC = re.compile(r"(-?)([0-9]*)(?:\.([0-9]*))?(?:[eE](?=[-+]?([0-9]+)\Z)([-+]?)[0-9]+)?")
-# Text before a value and the value itself, in block style and in flow style (within brackets).
+# Text before a value and the value itself, in block style and in flow style (within
+# brackets).
 _BEFORE_BLOCK, _BLOCK_VALUE = re.compile(r":[ ]+|-[ ]+(?=[^ \w])"), re.compile(r"[^'\"{\[].*?(?=\s*(?:\s#.*)?\Z)")
 _BEFORE_FLOW, _FLOW_VALUE = re.compile(r"(?<=[:,]) |[{\[]"), re.compile(r"[^'\"{}\[\],]+")
 _RENAMED = re.compile(r"`(\w+):`")

@@ -62,7 +62,8 @@ EXPONENT = Role(("uint", "int"), ("scaled",), most_bits=16)
 # Field with `bitfields`.
 SPLIT = Role(("uint",), ("array",), most_bits=64)
 
-# Roles in procedures of the protocol section, by the key that names the field. Other keys allow any integer.
+# Roles in procedures of the protocol section, by the key that names the field. Other
+# keys allow any integer.
 _BYTES = Role(("bytes", "text"))
 PROTOCOL: dict[str, Role] = {
     "bytes": _BYTES,

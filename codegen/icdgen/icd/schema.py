@@ -12,10 +12,12 @@ from icdgen.icd.located import Map, Seq
 
 PATH = Path(__file__).with_name("schema.json")
 COPY = "icdgen.schema.json"  # copy of the schema in the folder of the ICDs, for editors
-LINE = f"# yaml-language-server: $schema={COPY}"  # first line of an ICD, which tells editors the schema
+# First line of an ICD, which tells editors the schema.
+LINE = f"# yaml-language-server: $schema={COPY}"
 CODE = "ICD010"
 
-# Keywords of JSON Schema whose violation concerns the keys of a mapping and not a value in it.
+# Keywords of JSON Schema whose violation concerns the keys of a mapping and not a value
+# in it.
 _ABOUT_KEYS = ("required", "additionalProperties", "minProperties")
 
 # Types of JSON Schema in words.
@@ -40,7 +42,8 @@ def check(tree: Map, document: str, lines: Lines | None = None) -> tuple[list[Fi
     for error in _validator(document).iter_errors(tree):
         path = list(error.instance_path)
         holder, owner, place = locate(tree, path)
-        # If a value must not be a mapping, the mapping around it is invalid, not the value itself.
+        # If a value must not be a mapping, the mapping around it is invalid, not the
+        # value itself.
         broken.add(id(owner if error.kind.name in _ABOUT_KEYS else holder))
         findings += _explain(error, path, owner, place, lines or Lines(""))
     return findings, broken

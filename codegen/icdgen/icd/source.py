@@ -16,7 +16,8 @@ from icdgen.icd.located import Map, Mark, Seq, Spot, place_of
 
 AMBIGUOUS = "ICD003"
 
-# Limits far above any ICD, so that a hostile file cannot exhaust the memory or the stack.
+# Limits far above any ICD, so that a hostile file cannot exhaust the memory or the
+# stack.
 MAX_BYTES = 4_000_000
 MAX_DEPTH = 40
 MAX_SCALAR = 20_000
@@ -24,16 +25,20 @@ MAX_SCALAR = 20_000
 _NUMBER = re.compile(
     r"(?:(?P<whole>-?(?:0|[1-9][0-9]*))|(?P<hex>0x[0-9A-Fa-f]+)|(?P<decimal>-?(?:0|[1-9][0-9]*)\.[0-9]+(?:[eE][-+][0-9]{1,2})?))\Z"
 )
-# Error of libyaml, which has its own limit and looks ahead, so it can report the depth before `Builder` does.
+# Error of libyaml, which has its own limit and looks ahead, so it can report the depth
+# before `Builder` does.
 _DEEPER_THAN_LIBYAML = "exceeded maximum nesting depth"
 
-# Length of the longest word that a reader of YAML can interpret as something other than text.
+# Length of the longest word that a reader of YAML can interpret as something other than
+# text.
 _LONGEST_WORD = len("false")
 _WORDS = {"true": True, "false": False, "null": None, "~": None, "": None}
-# Characters that YAML 1.2, section 5.1, does not allow. Not compiled here: that is slow, and it is seldom needed.
+# Characters that YAML 1.2, section 5.1, does not allow. Not compiled here: that is
+# slow, and it is seldom needed.
 _UNPRINTABLE = "[^\t\n\r -~\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"
 
-# Unquoted scalars that some readers of YAML 1.1 or 1.2 interpret as a number, a truth value, null or a date.
+# Unquoted scalars that some readers of YAML 1.1 or 1.2 interpret as a number, a truth
+# value, null or a date.
 _AMBIGUOUS = re.compile(
     r"""(?: [-+.][-+0-9_.:eExXobA-Fa-f]*
           | 0[bBoOxX][0-9A-Fa-f_]+
@@ -54,7 +59,8 @@ def read(path: Path, name: str | None = None) -> Map:
 
 def contents(path: Path, name: str) -> bytes:
     """Return the bytes of a file. Raises `Findings` if it cannot be read or has more than `MAX_BYTES`."""
-    # Read with a limit instead of checking the size first: the path can be a pipe or a device.
+    # Read with a limit instead of checking the size first: the path can be a pipe or a
+    # device.
     try:
         with open(path, "rb") as file:
             data = file.read(MAX_BYTES + 1)
@@ -115,7 +121,8 @@ class Event(Protocol):
 class EventParser(Protocol):
     """Parser of PyYAML, in Python or in C."""
 
-    def get_event(self) -> Any: ...  # an object of a class in `yaml.events`, with the attributes of `Event`
+    # An object of a class in `yaml.events`, with the attributes of `Event`.
+    def get_event(self) -> Any: ...
 
 
 class Builder:
@@ -124,7 +131,8 @@ class Builder:
     def __init__(self, text: str, name: str) -> None:
         self.text, self.name = text, name
         self.findings: list[Finding] = []
-        self.scalars: dict[str, object] = {}  # values of unquoted scalars, by their text
+        # Values of unquoted scalars, by their text.
+        self.scalars: dict[str, object] = {}
 
     def build(self) -> tuple[object, list[Finding]]:
         """Return the root of the tree and the findings. After a syntax error, the root is None."""
@@ -143,7 +151,8 @@ class Builder:
         next_event = event_parser(self.text, self.name).get_event
         scalar, mapping, sequence = events.ScalarEvent, events.MappingStartEvent, events.SequenceStartEvent
         try:
-            # This loop runs once per event, tens of thousands of times. Inline code is faster than calls here.
+            # This loop runs once per event, tens of thousands of times. Inline code is
+            # faster than calls here.
             while True:
                 event = next_event()
                 kind = type(event)
@@ -326,7 +335,8 @@ def event_parser(text: str, name: str) -> EventParser:
         from yaml.reader import Reader
         from yaml.scanner import Scanner
 
-        # `yaml.Loader` without its composer, constructor and resolver, which this module replaces.
+        # `yaml.Loader` without its composer, constructor and resolver, which this
+        # module replaces.
         class PythonParser(Reader, Scanner, Parser):
             def __init__(self, stream: StringIO) -> None:
                 Reader.__init__(self, stream)

@@ -165,7 +165,8 @@ def _reason_against(counter: Map, message: Map) -> str:
 def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Fault]:
     """Yield the faults of the position and the type of a variable-length field."""
     name, fixed = f"`{item['name']}`", 8 * message["length"]
-    # `faults_of_count` reports an unknown counter. The field may be meant as a fixed array, so its position is not checked.
+    # `faults_of_count` reports an unknown counter. The field may be meant as a fixed
+    # array, so its position is not checked.
     if _is_unknown(message, item):
         return
     parts = open_parts(message)

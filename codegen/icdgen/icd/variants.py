@@ -15,7 +15,9 @@ from icdgen.icd.frames import FrameField, frame_fields
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Icd, Message, Node
 
 DeclaredMessage = tuple[Message, Node]  # a message and the node that declares it
-Place = tuple[int, ...]  # bit of the frame for each bit of a value; bit w (0: least significant) of byte b is 8 * b + w
+# Bit of the frame for each bit of a value; bit w (0: least significant) of byte b is 8
+# * b + w.
+Place = tuple[int, ...]
 
 
 class Variant(NamedTuple):
@@ -23,7 +25,8 @@ class Variant(NamedTuple):
 
     message: Message
     node: Node  # the node that declares the message
-    constants: tuple[FrameField, ...] = ()  # without constants that all messages of the id have in common
+    # Without constants that all messages of the id have in common.
+    constants: tuple[FrameField, ...] = ()
 
 
 class Ids(NamedTuple):
@@ -60,7 +63,8 @@ def variants(messages: Sequence[DeclaredMessage]) -> tuple[Variant, ...]:
         distinctive = {place for place, value in own.items() if (place, value) not in common}
         fields = (field for field in constants(message, node) if _place(field) in distinctive)
         ranked.append((len(own), Variant(message, node, tuple(fields))))
-    # A narrower message has more constants. The sort is stable, so other messages stay in the order of the ICD.
+    # A narrower message has more constants. The sort is stable, so other messages stay
+    # in the order of the ICD.
     return tuple(variant for _, variant in sorted(ranked, key=lambda entry: -entry[0]))
 
 

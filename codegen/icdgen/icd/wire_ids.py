@@ -8,7 +8,8 @@ DEFAULT_BITS = 8
 MOST_BITS = 32
 # `id_bits` of a node whose CAN frames have 11-bit ids, 29-bit ids, or both.
 CAN_STANDARD, CAN_EXTENDED, CAN_BOTH = 11, 29, 32
-# Marks 29-bit ids if a node has both kinds, as in DBC files and in SocketCAN (CAN_EFF_FLAG).
+# Marks 29-bit ids if a node has both kinds, as in DBC files and in SocketCAN
+# (CAN_EFF_FLAG).
 CAN_EXTENDED_FLAG = 1 << 31
 
 

@@ -12,7 +12,8 @@ TAB = "    "
 CUT = "..."
 LONGEST = 1000  # characters of a message; a hostile name may have thousands
 
-# Unicode categories of control, format, private and unassigned characters, and of line separators.
+# Unicode categories of control, format, private and unassigned characters, and of line
+# separators.
 _UNPRINTABLE = ("Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp")
 
 

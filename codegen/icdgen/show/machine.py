@@ -132,7 +132,8 @@ def _field(field: NodePlace) -> _Object:
         formula=field.formula if field.has_formula else None,
         special=[_attributes(special) for special in field.special],
         display=field.display.plain if field.display else None,
-        limits={bound.key: str(bound.value) for bound in bounds(field.limits)},  # exact, like `scale`
+        # Exact, like `scale`.
+        limits={bound.key: str(bound.value) for bound in bounds(field.limits)},
         view=True if field.view else None,
         when={condition.field: list(condition.values) for condition in field.when},
         **_ids(field.errata),

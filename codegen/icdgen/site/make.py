@@ -26,8 +26,10 @@ class Site:
     ok: bool
     findings: list[Finding]
     texts: dict[str, str]
-    files: dict[str, str] = field(default_factory=dict)  # by path relative to the top of the site
-    inputs: dict[Path, str] = field(default_factory=dict)  # fingerprint of each file that the site depends on
+    # By path relative to the top of the site.
+    files: dict[str, str] = field(default_factory=dict)
+    # Fingerprint of each file that the site depends on.
+    inputs: dict[Path, str] = field(default_factory=dict)
 
 
 def make(

@@ -14,7 +14,8 @@ from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import KEYS_OF_IDS, TELECOMMAND, TELEMETRY, Icd, Node
 from icdgen.icd.rules.protocol_names import MESSAGES
 
-# Protocol sections about links. The other sections are about files, logs and programs of the node itself.
+# Protocol sections about links. The other sections are about files, logs and programs
+# of the node itself.
 _SECTIONS = ("message_id", "errors", "client", "identification", "uart", "i2c", "can", "crc8", "stream", "checksums")
 # Keys of these sections that name messages of the node, which are not copied.
 _KEYS_ABOUT_MESSAGES = {"stream": ("replies",)}

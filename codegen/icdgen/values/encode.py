@@ -159,7 +159,8 @@ def split(
     An array is assigned as ``temperatures=[1, 2.5, 3]``. `fields` are the scalars of the longest frame. Raises `NotFound`,
     `Ambiguous` or `BadValue`.
     """
-    # The name of a field can contain "=", so try exact names first, the longest of them.
+    # The name of a field can contain "=", so try exact names first, the longest of
+    # them.
     exact = [field for field in fields if assignment.startswith(field.name + "=")]
     if exact:
         field = max(exact, key=lambda field: len(field.name))

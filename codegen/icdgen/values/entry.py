@@ -143,7 +143,8 @@ def _integer(field: FrameField, text: str) -> int:
         return value
     exact = _exact(field, text)
     if field.scale:
-        return round(field.scale.raw(exact))  # ties to even, as `codec.raw_from_physical`
+        # Ties to even, as `codec.raw_from_physical`.
+        return round(field.scale.raw(exact))
     if exact.denominator != 1:
         raise BadValue(f"{text} is not a whole number")
     return exact.numerator

@@ -111,12 +111,15 @@ class Row:
 class Frame:
     """A decoded frame."""
 
-    node: Node  # the node that the message was looked up in; an included node can declare the message
+    # The node that the message was looked up in; an included node can declare the
+    # message.
+    node: Node
     message: Message
     data: bytes
     rows: tuple[Row, ...]
     remarks: tuple[str, ...] = ()  # about the frame, not about one field
-    form: Stream | None = dataclass_field(default=None, compare=False, repr=False)  # framing of the node
+    # Framing of the node.
+    form: Stream | None = dataclass_field(default=None, compare=False, repr=False)
 
     @property
     def wrong_constants(self) -> list[Row]:

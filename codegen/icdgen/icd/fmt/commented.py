@@ -13,7 +13,8 @@ class Text:
     spelling: str  # in the file; the formatter preserves it for numbers
 
 
-NOTHING = Text(None, "")  # value of a key before it is read; key of an item of a sequence
+# Value of a key before it is read; key of an item of a sequence.
+NOTHING = Text(None, "")
 
 
 @dataclass(slots=True)
@@ -35,7 +36,8 @@ class Branch:
     column: int  # of its entries in block style, from 0
     children: list[Child] = field(default_factory=list)
     tail: list[str] = field(default_factory=list)  # comments after the last child
-    header: list[str] = field(default_factory=list)  # of the root only: comments about the file
+    # Of the root only: comments about the file.
+    header: list[str] = field(default_factory=list)
 
     def commented(self) -> bool:
         """Return whether there is a comment in it, at any depth."""

@@ -7,7 +7,8 @@ from typing import Any
 
 from icdgen.icd import schema
 
-# Kinds that are always written on one line, at any length: they are rows of tables in the manual.
+# Kinds that are always written on one line, at any length: they are rows of tables in
+# the manual.
 ROWS = frozenset({"field", "derived", "member", "loggable", "unit"})
 # Kinds that are always written with one key per line.
 BLOCKS = frozenset({"icd", "errata", "node", "enum", "message", "erratum", "note", "protocol", "section"})
@@ -21,7 +22,8 @@ class Kind:
     __slots__ = ("_children", "_rule", "keys", "name")
 
     def __init__(self, name: str, rule: dict[str, Any]) -> None:
-        self.name, self._rule = name, rule  # the name is empty if the schema has no definition for it
+        # The name is empty if the schema has no definition for it.
+        self.name, self._rule = name, rule
         self.keys = {key: index for index, key in enumerate(rule.get("properties", {}))}
         self._children: dict[tuple[str | None, bool], Kind] = {}
 

@@ -98,7 +98,8 @@ class _Reader:
         else:
             child = self.attach(text)
         end = event.end_mark.index
-        # The end mark of a block scalar is at the start of the next line; use the end of the line before.
+        # The end mark of a block scalar is at the start of the next line; use the end
+        # of the line before.
         if event.style in _BLOCK:
             child.trailing += _header_comment(self.text, event)
             breaks = _BREAK.finditer(self.text, event.start_mark.index, end)
@@ -173,7 +174,8 @@ class _Reader:
         """Assign the comments between ``reached`` and an event to elements of the tree."""
         closing = closing and not self.stack[-1].flow
         previous_end = self.reached
-        limit = None  # column of the container that the previous comment was assigned to
+        # Column of the container that the previous comment was assigned to.
+        limit = None
         earlier: list[str] | None = None
         for start, end in _comments_in(self.text, self.reached, event.start_mark.index):
             breaks = self.breaks(previous_end, start)

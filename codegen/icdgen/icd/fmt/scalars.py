@@ -13,8 +13,9 @@ WIDTH = 120
 BLOCK_HEADERS = frozenset({"|", "|-", ">"})
 
 _WORDS = frozenset({"y", "yes", "n", "no", "on", "off", "true", "false", "null"})
-# Start of unquoted text: a letter or digit, or a sign without meaning in YAML; a dash only before a letter or digit.
-# Text that looks like a prefixed number (`0b0010 0100`) is quoted, too.
+# Start of unquoted text: a letter or digit, or a sign without meaning in YAML; a dash
+# only before a letter or digit. Text that looks like a prefixed number (`0b0010 0100`)
+# is quoted, too.
 _START = re.compile(r"(?!0[xXbBoO])[^\W_]|[(/_$+^;]|\.(?!\.)|-[^\W_]")
 _NOT_IN_BLOCK = re.compile(r":(?: |\Z)| #")
 _NOT_IN_FLOW = re.compile(r"[,\[\]{}:?]| #")

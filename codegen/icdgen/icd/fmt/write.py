@@ -77,7 +77,8 @@ def _value(lines: list[str], child: Child, head: str, kind: Kind, indent: int, i
     body: list[str] = []
     if isinstance(value, Text):
         scalar = scalars.block(value, column, indent + 2)
-        # In the lines of a block scalar, a comment would be text; it can only follow the header.
+        # In the lines of a block scalar, a comment would be text; it can only follow
+        # the header.
         at = 0 if scalar[0] in scalars.BLOCK_HEADERS and len(scalar) > 1 else -1
         scalar[at] += trailing
         body = [head + " " + scalar[0], *scalar[1:]]

@@ -53,7 +53,8 @@ def optional_fields_can_be_absent(ctx: Context) -> Iterator[Fault]:
 @rule("ICD163")
 def optional_fields_are_supported(ctx: Context) -> Iterator[Fault]:
     """Report optional fields on links and in composite messages, which read every field of a message."""
-    optional = {id(line.owner.source) for _, line in ctx.fields_with["when"]}  # messages with optional fields
+    # Messages with optional fields.
+    optional = {id(line.owner.source) for _, line in ctx.fields_with["when"]}
     for node in filter(ctx.is_linked, ctx.icd.nodes):
         for message in ctx.messages_of(node):
             if id(message.source) in optional:

@@ -18,7 +18,8 @@ from icdgen.once import cached_property
 if TYPE_CHECKING:
     from icdgen.icd.identifiers import Language
 
-# Keys of a field that only few fields have, so that rules about them need not look at all fields.
+# Keys of a field that only few fields have, so that rules about them need not look at
+# all fields.
 RARE_KEYS = frozenset({"enum", "unit", "formula", "formula_for", "points", "outside", "const", "special", "bitfields",
     "byte_order", "bit_order", "view", "when", "display",
 })  # fmt: skip
@@ -72,16 +73,20 @@ class Context:
         self.applied = tuple(applied)
         self._accepted = {(code, id(owner)) for overlay in self.applied for code, _, owner in overlay.accepts}
         self.complete = complete
-        self.raised: list[tuple[str, Fault]] = []  # code and fault, of the rules that ran already
+        # Code and fault, of the rules that ran already.
+        self.raised: list[tuple[str, Fault]] = []
         self.messages: list[tuple[Message, Node]] = [(message, node) for node in icd.nodes for message in node.messages]
         self.structs: list[tuple[Struct, Node]] = [(struct, node) for node in icd.nodes for struct in node.structs]
         self.enums: list[Enum] = [enum for node in icd.nodes for enum in node.enums]
-        self.owners: list[tuple[Owner, Node]] = [*self.messages, *self.structs]  # of lines
-        # Nodes of all messages and structs, without derived values. The nodes of a struct are listed once, with the struct.
+        # Of lines.
+        self.owners: list[tuple[Owner, Node]] = [*self.messages, *self.structs]
+        # Nodes of all messages and structs, without derived values. The nodes of a
+        # struct are listed once, with the struct.
         self.lines: list[Line] = []
         # Lines with a scalar. For an array it is its element.
         self.fields: list[tuple[Scalar, Line]] = []
-        # Fields by key. Fields with the keys `unit` and `display` include derived values.
+        # Fields by key. Fields with the keys `unit` and `display` include derived
+        # values.
         self.fields_with: dict[str, list[tuple[Scalar, Line]]] = {key: [] for key in RARE_KEYS}
         derived: list[tuple[Scalar, Line]] = []
         for owner, icd_node in self.owners:

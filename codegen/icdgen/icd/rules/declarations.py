@@ -79,5 +79,6 @@ def _sound_icd(ctx: Context) -> Icd:
 
     first = {node.name: node for node in reversed(ctx.icd.nodes)}
     nodes = tuple(sound_node(node) for node in ctx.icd.nodes if first[node.name] is node)
-    # If nothing was removed, return the same object: descriptions are cached per ICD, and the backends reuse them.
+    # If nothing was removed, return the same object: descriptions are cached per ICD,
+    # and the backends reuse them.
     return ctx.icd if all(map(is_, nodes, ctx.icd.nodes)) and len(nodes) == len(ctx.icd.nodes) else Icd(nodes)

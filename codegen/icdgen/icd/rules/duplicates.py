@@ -73,13 +73,15 @@ def field_names_are_unique(ctx: Context) -> Iterator[Fault]:
     for owner, _ in ctx.owners:
         nodes = owner.layout.nodes
         names = {node.name for node in nodes}
-        # A name can also equal the name of an element, such as `Satellites[0].GNSS`, or of a counter.
+        # A name can also equal the name of an element, such as `Satellites[0].GNSS`, or
+        # of a counter.
         is_path = any("[" in name or "." in name for name in names)
         if len(names) == len(nodes) and not owner.layout.sequence and not is_path:
             continue
         places = places_in(owner.layout)
         fields = [element for place in places for element in place.elements()]
-        # If two structs or arrays have the same name, so have all their fields: report only the structs or arrays.
+        # If two structs or arrays have the same name, so have all their fields: report
+        # only the structs or arrays.
         if len({field.name for field in fields}) == len(fields):
             fields = list(scalars_in(owner.layout))
         reported = set()
@@ -111,7 +113,8 @@ def enumeration_values_are_unique(ctx: Context) -> Iterator[Fault]:
 def _members_with_common_values(enum: Enum) -> Iterator[tuple[Member, Member]]:
     """Yield pairs of members that have a value in common, sorted by the order of the second in the file."""
     order = {id(member): index for index, member in enumerate(enum.members)}
-    furthest: Member | None = None  # of the members with smaller values, the one with the largest last value
+    # Of the members with smaller values, the one with the largest last value.
+    furthest: Member | None = None
     pairs = []
     for member in sorted(enum.members, key=lambda member: member.value):
         if furthest is not None and member.value <= furthest.last:

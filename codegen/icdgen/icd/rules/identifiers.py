@@ -38,7 +38,8 @@ class _Clashes:
     """Faults of identifiers, joined so that each line of the ICD has one finding for all languages."""
 
     def __init__(self) -> None:
-        # Each value has an identifier, the other identifier of a clash, and the languages by the text of the identifier.
+        # Each value has an identifier, the other identifier of a clash, and the
+        # languages by the text of the identifier.
         self.entries: dict[tuple[int, ...], tuple[Identifier, Identifier | None, dict[str, list[str]]]] = {}
 
     def add(self, language: str, identifier: Identifier, other: Identifier | None = None) -> None:
@@ -83,7 +84,8 @@ def identifiers_do_not_clash(ctx: Context) -> Iterator[Fault]:
     for identifier, other, texts in clashes:
         if other is None:
             continue
-        # Report the clash at the later line; generated names without a line have no place.
+        # Report the clash at the later line; generated names without a line have no
+        # place.
         is_earlier = other.source is not None and (
             identifier.source is None or _place(ctx, other) > _place(ctx, identifier)
         )
@@ -110,7 +112,8 @@ def _is_file(text: str) -> bool:
 def names_give_identifiers(ctx: Context) -> Iterator[Fault]:
     clashes = _Clashes()
     for names in declared(ctx):
-        # Two passes of C functions over hundreds of thousands of texts; the few that remain are checked in Python.
+        # Two passes of C functions over hundreds of thousands of texts; the few that
+        # remain are checked in Python.
         suspects = chain(filterfalse(str.isidentifier, names.texts), filterfalse(str.isascii, names.texts))
         for identifier in names.spelled(set(filterfalse(_is_name, suspects))):
             clashes.add(names.language, identifier)

@@ -222,7 +222,8 @@ def uart_ids_determine_the_direction(ctx: Context) -> Iterator[Fault]:
         first, last = declared.get(TELEMETRY, (min(ids, default=0), max(ids, default=-1)))
         for use in uses:
             if use.direction == TELECOMMAND and first <= use.id <= last and id(use.source) not in reported:
-                reported.add(id(use.source))  # once, although several nodes can include the message
+                # Once, although several nodes can include the message.
+                reported.add(id(use.source))
                 among = f"{_id(ctx, use)} is in the range of telemetry ids, {first} to {last}"
                 message = f"{among}: on a UART only the id tells the direction, so an acknowledge is taken for a reply"
                 help = "give each direction ids of its own, one range before the other; or leave `uart: framing` out"

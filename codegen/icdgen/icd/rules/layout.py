@@ -37,7 +37,8 @@ class Overlap(NamedTuple):
 
     first: NodePlace
     second: NodePlace
-    bits: str = ""  # in words; empty if they are the bits from the later start to the earlier end
+    # In words; empty if they are the bits from the later start to the earlier end.
+    bits: str = ""
 
 
 @rule("ICD020")
@@ -76,7 +77,8 @@ def _overlaps(ctx: Context) -> Iterator[Overlap]:
             understood = (element for element in elements if are_understood(element.node))
             yield from _overlaps_among(owner, icd_node, understood)
             continue
-        end, furthest = -1, -1  # of the elements before: the largest end, and the index of that element
+        # Of the elements before: the largest end, and the index of that element.
+        end, furthest = -1, -1
         for index in sorted(range(len(elements)), key=lambda index: elements[index].at):
             element = elements[index]
             if element.at < end:

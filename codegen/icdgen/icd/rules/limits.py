@@ -36,7 +36,8 @@ class Bounds(NamedTuple):
 def bounds(field: Scalar) -> Bounds:
     """Return the interval that satisfies all limits of a field."""
     limits = field.limits or Limits()
-    # Of equal limits, the tuples sort the open one as the higher lower limit and as the lower upper limit.
+    # Of equal limits, the tuples sort the open one as the higher lower limit and as the
+    # lower upper limit.
     lows = ((value, is_open) for value, is_open in ((limits.min, False), (limits.above, True)) if value is not None)
     highs = (
         (value, is_closed) for value, is_closed in ((limits.max, True), (limits.below, False)) if value is not None

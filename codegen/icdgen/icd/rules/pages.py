@@ -22,7 +22,8 @@ class Page(NamedTuple):
 
     title: str
     why: str
-    wrong: str  # violates the rule and no other; for a rule of the diff: the ICD before the change
+    # Violates the rule and no other; for a rule of the diff: the ICD before the change.
+    wrong: str
     right: str  # violates no rule; for a rule of the diff: the ICD after the change
 
 

@@ -14,7 +14,8 @@ from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, quote
 from icdgen.icd.trees import at_path, mappings
 
-# Input of the check value of a CRC, in the Rocksoft model and the catalogues that follow it.
+# Input of the check value of a CRC, in the Rocksoft model and the catalogues that
+# follow it.
 CHECKED = b"123456789"
 MAX_WIDTH = 64
 

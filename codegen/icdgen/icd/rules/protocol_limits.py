@@ -38,7 +38,8 @@ def packet_counter_fits_a_byte(ctx: Context) -> Iterator[Fault]:
         most = extended.get("max_packets", CAN_PACKETS)
         if not isinstance(last, int) or not isinstance(most, int):
             continue
-        # Without `max_packets`, only the messages below show how many packets there are.
+        # Without `max_packets`, only the messages below show how many packets there
+        # are.
         if ("max_packets" in extended or last > BYTE) and last + most - 1 > BYTE:
             key = "max_packets" if "max_packets" in extended else "packets_left_in_last"
             text = f"the first of {count(most, 'packet')} would count {last + most - 1} left, a byte holds {BYTE}"
@@ -153,7 +154,8 @@ def roles_occur_once(
     for row in mappings(section[key]):
         key_of_role = "role" if "role" in row else "name"
         role = row.get(key_of_role)
-        # The schema check reports the part. It may be the one that is missing, so nothing else is reported.
+        # The schema check reports the part. It may be the one that is missing, so
+        # nothing else is reported.
         if not isinstance(role, str):
             return
         if role in roles and role in seen:

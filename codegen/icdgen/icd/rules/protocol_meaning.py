@@ -17,7 +17,8 @@ from icdgen.icd.rules.wording import count, line_of, quote
 from icdgen.icd.trees import at_path, mappings
 
 ACKNOWLEDGE_ROLES = ("id", "error")
-# Keys of the CAN message types for data in each direction, in one packet and in several packets.
+# Keys of the CAN message types for data in each direction, in one packet and in several
+# packets.
 CAN_TYPES = {TELECOMMAND: ("request", "extended_request"), TELEMETRY: ("response", "extended_response")}
 
 

@@ -128,7 +128,8 @@ def named_nodes_exist(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         for section in sections(node):
             for name, place in _values(section, "nodes", str):
-                # Only the given ICDs are loaded; the node can be in another file of the same folder.
+                # Only the given ICDs are loaded; the node can be in another file of the
+                # same folder.
                 if name not in names and not Path(place.file).with_name(f"{name}.yaml").exists():
                     help, fix = suggestion(name, names, "correct it, or load the node's file too")
                     yield Fault.of_place(section, place, f"there is no node {quote(name)}", help, fix)

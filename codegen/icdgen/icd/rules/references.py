@@ -53,7 +53,8 @@ def enumerations_are_used(ctx: Context) -> Iterator[Fault]:
     used = {id(field.enum) for field, _ in ctx.fields_with["enum"]}
     named = set()
     for field, (_, _, node) in ctx.fields_with["enum"]:
-        # A misspelt name counts as a use of the similar enumeration, which ICD040 suggests.
+        # A misspelt name counts as a use of the similar enumeration, which ICD040
+        # suggests.
         if field.enum is None:
             scope = ctx.scope(node)
             close = close_to(field.source["enum"], (enum.name for owner in scope for enum in owner.enums))

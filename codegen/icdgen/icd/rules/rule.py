@@ -22,7 +22,8 @@ class Rule(NamedTuple):
     theme: str  # name of its module
     check: Check | None = None  # None if its findings are raised while files are read
     severity: str = "error"  # "error" | "warning"
-    needs_complete: bool = False  # reports what is absent, so it needs a model from which nothing was left out
+    # Reports what is absent, so it needs a model from which nothing was left out.
+    needs_complete: bool = False
     runs_last: bool = False  # depends on the findings of other rules
 
     @property

@@ -105,9 +105,11 @@ def struct_names_are_unique(ctx: Context) -> Iterator[Fault]:
 @rule("ICD144", severity="warning", needs_complete=True)
 def structs_are_used(ctx: Context) -> Iterator[Fault]:
     names = [struct.name for struct, _ in ctx.structs]
-    # Look at the tree and not at the model: a message with errors uses its structs, too.
+    # Look at the tree and not at the model: a message with errors uses its structs,
+    # too.
     structs = {id(item) for node in ctx.icd.nodes for item in mappings(node.source.get("structs"))}
-    used_by: dict[str, set[str]] = {}  # structs that each struct uses; under "" those that messages use
+    # Structs that each struct uses; under "" those that messages use.
+    used_by: dict[str, set[str]] = {}
     for row, owner, node in _uses(ctx):
         declared = [struct.name for declaring in ctx.scope(node) for struct in declaring.structs]
         # A misspelt name counts as a use of the similar struct, which ICD140 suggests.

@@ -59,7 +59,8 @@ def variable_parts_are_at_the_end(ctx: Context) -> Iterator[Fault]:
             yield Fault.at(item, "at", text, help, related=related)
         layout = message.layout
         for overlay in layout.fixed if layout.sequence else ():
-            # The position of the second part depends on the size of the first, so an overlay can only read the fixed part.
+            # The position of the second part depends on the size of the first, so an
+            # overlay can only read the fixed part.
             always = layout.length if len(layout.sequence) > 1 else layout.shortest
             end = overlay.at + stride(overlay)
             if isinstance(overlay, Overlay) and end > 8 * always:
