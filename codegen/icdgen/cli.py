@@ -15,7 +15,7 @@ import click
 from icdgen import __version__
 from icdgen.errors import UserError
 from icdgen.reports.excerpt import shown
-from icdgen.suggest import close_words
+from icdgen.suggest import close_words, question
 
 # Commands in the groups of `--help`. Each is a module of ``icdgen.commands`` with a
 # click command of the same name. The module of `import` is `import_`, because `import`
@@ -87,9 +87,8 @@ def _refuse_mistyped(word: str) -> None:
     """Raise `UserError` for a first argument that looks like a command but is neither a command nor a file or folder."""
     if not word.isidentifier() or os.path.lexists(word):
         return
-    close = close_words(word, _COMMANDS)
-    meant = "did you mean " + " or ".join(f"`{name}`" for name in close) + "?" if close else ""
-    raise UserError(f"`{word}` is neither a command nor a file", meant or "`icdgen --help` lists the commands")
+    help = question(close_words(word, _COMMANDS)) or "`icdgen --help` lists the commands"
+    raise UserError(f"`{word}` is neither a command nor a file", help)
 
 
 def _folder(name: str, what: str, place: str) -> Callable[[Callable[..., None]], Callable[..., None]]:

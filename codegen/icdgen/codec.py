@@ -6,7 +6,7 @@ they are doubles.
 
 `decode_frame` returns the values that a frame has. Objects of generated code have room for the longest frame. Therefore
 `decode` returns and `encode` takes the values of the longest frame: elements that a frame does not have are 0, and
-bytes or text of variable length are padded with zeros. `decode` and `_shortened` convert between the two forms.
+bytes or text of variable length are padded with zeros. `decode` and `frame_with` convert between the two forms.
 """
 
 from __future__ import annotations
@@ -256,22 +256,17 @@ def frame_with(node: Node, message: Message, raw: Mapping[str, Raw]) -> bytes:
     layout, bits = message.layout, 0
     sizes = sizes_of_values(message, raw)
     for field in frame_fields(layout, node.orders, sizes):
-        if field.is_raw and field.name in raw and is_present(field, raw):
-            bits |= _written(field, _shortened(field, raw[field.name]))
+        if not field.is_raw or field.name not in raw or not is_present(field, raw):
+            continue
+        value = raw[field.name]
+        # Cut variable-length bytes, which have the length of the longest frame.
+        if field.scalar.length is not None and isinstance(value, (bytes, bytearray)):
+            if len(value) != field.scalar.length.most:
+                raise CodecError(f"{field.name!r} takes {field.scalar.length.most} bytes")
+            value = value[: field.bits // 8]
+        bits |= _written(field, value)
     length = layout.length + sum(sizes[part.name] * part.step for part in layout.parts)
     return bits.to_bytes(length, "little")
-
-
-def _shortened(field: FrameField, value: Raw) -> Raw:
-    """Return a value of the longest frame, cut to the size of `field` if it is variable-length bytes.
-
-    Raises `CodecError` if the value does not have the length of the longest frame.
-    """
-    if field.scalar.length is None or not isinstance(value, (bytes, bytearray)):
-        return value
-    if len(value) != field.scalar.length.most:
-        raise CodecError(f"{field.name!r} takes {field.scalar.length.most} bytes")
-    return value[: field.bits // 8]
 
 
 def check_raw(field: AnyScalar, value: int | bytes) -> None:

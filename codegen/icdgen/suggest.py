@@ -40,6 +40,12 @@ def close_to(wanted: str, names: Iterable[str]) -> str:
     return next(iter(close_words(wanted, names, 1)), "")
 
 
+def question(names: Iterable[str]) -> str:
+    """Return the help "did you mean `a` or `b`?" with similar names; empty without names."""
+    quoted = [f"`{name}`" for name in names]
+    return f"did you mean {' or '.join(quoted)}?" if quoted else ""
+
+
 def _has_words_of(name: str, part: str) -> bool:
     """Return whether ``name`` has all words of ``part``."""
     words = set(_WORD.findall(part))

@@ -271,12 +271,7 @@ class Builder:
         elif text in _WORDS:
             value = _WORDS[text]
         elif (number := _NUMBER.match(text)) is not None:
-            kind = number.lastgroup
-            value = (
-                text
-                if len(text) >= 40
-                else int(text, 16) if kind == "hex" else int(text) if kind == "whole" else _number(text)
-            )
+            value = _number(text, str(number.lastgroup))
         elif _AMBIGUOUS.match(text) and text not in (".", "-"):
             from icdgen.icd import remedies
 
@@ -310,8 +305,16 @@ def _too_deep(place: Place) -> Finding:
     return Finding("ICD001", f"nested more than {MAX_DEPTH} deep", place, "an ICD needs five levels")
 
 
-def _number(text: str) -> int | float:
-    """Return a decimal number; ``4.0`` is the integer 4, as in JSON Schema."""
+def _number(text: str, kind: str) -> int | float | str:
+    """Return the value of a number that matches `_NUMBER`; ``kind`` is the name of the group."""
+    # Longer texts are not numbers of an ICD. As text, the schema check reports them.
+    if len(text) >= 40:
+        return text
+    if kind == "hex":
+        return int(text, 16)
+    if kind == "whole":
+        return int(text)
+    # ``4.0`` is the integer 4, as in JSON Schema.
     integer, _, fraction = text.partition(".")
     return float(text) if fraction.strip("0") else int(integer)
 

@@ -23,7 +23,7 @@ def report(findings: Iterable[Finding], texts: Mapping[str, str], colour: bool =
 def _object(finding: Finding) -> dict[str, object]:
     """Return a finding as values for JSON."""
     place = finding.place
-    return {
+    result: dict[str, object] = {
         "code": finding.code,
         "severity": finding.severity,
         "message": finding.message,
@@ -32,12 +32,7 @@ def _object(finding: Finding) -> dict[str, object]:
         "line": place.line,
         "column": place.column,
         "length": place.length,
-    } | _optional(finding)
-
-
-def _optional(finding: Finding) -> dict[str, object]:
-    """Return the fix and the related place of a finding, if it has them."""
-    result: dict[str, object] = {}
+    }
     if finding.fix is not None:
         result["fix"] = finding.fix.place._asdict() | {"text": finding.fix.text}
     if finding.related is not None:

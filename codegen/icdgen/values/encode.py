@@ -46,8 +46,13 @@ def encode(
                 given[field.name] = text
     has_wrong_names = bool(errors.messages)
     values, notes = _values(message, fields, given, raw, errors)
-    required = (field for field in fields if field.is_raw and field.const is None and _is_needed(field, given, values))
-    missing = [field.name for field in required if field.name not in given]
+    missing: list[str] = []
+    for field in fields:
+        # An optional field is required only if the fields that it depends on are given, and meet its conditions.
+        is_decided = all(condition.field in given for condition in field.conditions)
+        is_required = field.is_raw and field.const is None and is_decided and codec.is_present(field, values)
+        if is_required and field.name not in given:
+            missing.append(field.name)
     with errors.collect():
         _check_presence(message, fields, given, values)
     for part in message.layout.parts:
@@ -67,11 +72,6 @@ def _require(names: list[str]) -> None:
     """Raise `BadValue` if there are names of fields without a value."""
     if names:
         raise BadValue("no value for " + ", ".join(f"`{name}`" for name in names), _EACH)
-
-
-def _is_needed(field: FrameField, given: dict[str, str], values: dict[str, int | bytes]) -> bool:
-    """Return whether a field needs a value; of an optional field, whether its conditions are given and met."""
-    return all(condition.field in given for condition in field.conditions) and codec.is_present(field, values)
 
 
 def _check_presence(

@@ -14,7 +14,7 @@ from icdgen.icd.frames import FrameField, PathStep, alias_of_steps, name_of_step
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Icd, Message, Node
 from icdgen.protocol import facts
 from icdgen.protocol.envelope import Stream
-from icdgen.suggest import close_words
+from icdgen.suggest import close_words, question
 from icdgen.values.errors import Ambiguous, NotFound
 
 KINDS = (TELECOMMAND, TELEMETRY, CONFIGURATION)
@@ -64,7 +64,7 @@ def find_node(icd: Icd, name: str) -> Node:
         if node.name == name.strip().lower():
             return node
     names = [node.name for node in icd.nodes]
-    raise NotFound(f"there is no node `{name}`", _suggest(name, names) or f"nodes: {', '.join(names)}")
+    raise NotFound(f"there is no node `{name}`", question(close_words(name, names)) or f"nodes: {', '.join(names)}")
 
 
 def is_part(icd: Icd, node: Node) -> bool:
@@ -288,11 +288,4 @@ def _list_fields(fields: Sequence[FrameField]) -> str:
 def _suggest_named(key: str, items: Sequence[_HasName] | Sequence[FrameField]) -> str:
     """Return a question with similar names; an item with a similar alias is listed by its name."""
     names = {alias: item.name for item in items for alias in _aliases(item)} | {item.name: item.name for item in items}
-    close = dict.fromkeys(names[text] for text in close_words(key, names))
-    return "did you mean " + " or ".join(f"`{name}`" for name in close) + "?" if close else ""
-
-
-def _suggest(key: str, names: Iterable[str]) -> str:
-    """Return a question with similar names; empty without similar names."""
-    close = close_words(key, names)
-    return "did you mean " + " or ".join(f"`{name}`" for name in close) + "?" if close else ""
+    return question(dict.fromkeys(names[text] for text in close_words(key, names)))

@@ -86,7 +86,9 @@ class Row:
             value = codec.text(self.raw) if kind == "text" else raw
         elif kind == "float":
             raw = f"{self.raw:0{self.field.bits // 4}x}"
-            value = _json_number(self.number or 0.0)
+            number = self.number or 0.0
+            # JSON has no NaN and no infinity.
+            value = number if math.isfinite(number) else repr(number)
         elif kind == "bool":
             raw = value = bool(self.raw)
         elif kind == "enum":
@@ -208,8 +210,3 @@ def _reserved(node: Node, message: Message, data: bytes) -> list[str]:
         if any(data[piece.byte] & piece.mask for piece in pieces if piece.byte < len(data)):
             reasons.append(f"reserved {bit_range(gap.at, gap.bits)} {'is' if gap.bits == 1 else 'are'} not 0")
     return reasons
-
-
-def _json_number(value: float) -> float | str:
-    """Return a number for JSON; NaN and infinity as text, because JSON does not have them."""
-    return value if math.isfinite(value) else repr(value)

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from itertools import takewhile
-
 WIDEST = 40  # wider cells are ignored in the alignment of their column
 
 
 def aligned(rows: list[dict[str, str]]) -> list[str]:
     """Return each row in flow style: ``{at: 0,  bits: 16, ...}``. The leading columns that all rows have are padded."""
-    columns = _common_keys(rows)
-    widths = [_width(rows, key, position) for position, key in enumerate(columns)]
+    widths: list[int] = []
+    # zip() ends with the shortest row, so these are the keys at the same position of all rows.
+    for position, keys in enumerate(zip(*rows, strict=False)):
+        if len(set(keys)) > 1:
+            break
+        # In a row that ends with this column, nothing needs to be aligned after it.
+        sizes = (len(row[keys[0]]) for row in rows if len(row) > position + 1)
+        widths.append(max((size for size in sizes if size <= WIDEST), default=0))
     lines = []
     for row in rows:
         cells = [cell + "," for cell in row.values()]
@@ -19,15 +23,3 @@ def aligned(rows: list[dict[str, str]]) -> list[str]:
             cells[index] = cells[index].ljust(width + 1)
         lines.append("{" + " ".join(cells))
     return lines
-
-
-def _width(rows: list[dict[str, str]], key: str, position: int) -> int:
-    """Return the width of a column, of the rows in which another cell follows."""
-    widths = (len(row[key]) for row in rows if len(row) > position + 1)
-    return max((width for width in widths if width <= WIDEST), default=0)
-
-
-def _common_keys(rows: list[dict[str, str]]) -> list[str]:
-    """Return the leading keys that all rows have in common."""
-    columns = zip(*rows, strict=False)  # ends with the shortest row
-    return [keys[0] for keys in takewhile(lambda keys: len(set(keys)) == 1, columns)]

@@ -9,7 +9,6 @@ from icdgen.icd.derived_values import check_operands
 from icdgen.icd.fault import Fault
 from icdgen.icd.formula import FormulaError
 from icdgen.icd.layout import LayoutNode
-from icdgen.icd.located import Map
 from icdgen.icd.model import Message
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.layout import is_read
@@ -32,7 +31,12 @@ def _faults(message: Message) -> Iterator[Fault]:
     # Possible operands: all fields, and the derived values before an item.
     nodes: list[LayoutNode] = [*message.layout.fixed, *message.layout.sequence]
     derived_nodes = {id(node.source): node for node in message.layout.derived}
-    items = [item for item in mappings(message.source["derived"]) if _has_formula(item)]
+    # The schema check reports items without a name or a formula.
+    items = [
+        item
+        for item in mappings(message.source["derived"])
+        if isinstance(item.get("name"), str) and isinstance(item.get("formula"), str)
+    ]
     failed: set[str] = set()  # names of values with a fault
     for index, item in enumerate(items):
         if id(item) in derived_nodes:
@@ -47,8 +51,3 @@ def _faults(message: Message) -> Iterator[Fault]:
             message_text = f"{quote(item['name'])} cannot be derived by {quote(text)}: {error}"
             yield Fault.at(item, "formula", message_text, _HELP)
         failed.add(item["name"])
-
-
-def _has_formula(item: Map) -> bool:
-    """Return whether a derived value has a name and a formula; the schema reports others."""
-    return isinstance(item.get("name"), str) and isinstance(item.get("formula"), str)

@@ -70,7 +70,8 @@ def numbers_fit_their_bits(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         yield from _on_can(ctx, node)
     for errors in ctx.sections("errors"):
-        yield from _codes(errors)
+        for first, role, code in of_one_number(errors, "none", "unknown_id", "length", "parameter", "checksum"):
+            yield Fault.at(errors, role, f"{code} stands for both `{first}` and `{role}`", "give each its own code")
     for name in ("crc8", "crc16"):
         for crc in ctx.sections(name):
             yield from _checksum(crc)
@@ -82,7 +83,10 @@ def _on_can(ctx: Context, node: Node) -> Iterator[Fault]:
     """Yield the faults of numbers that do not fit their part of a CAN identifier."""
     own = section_of(node, "can")
     can = in_force(ctx, node, "can")
-    bits = _widths(can) if can is not None else {}
+    bits: dict[str, int] = {}  # of each part of a CAN identifier, by role or name
+    for row in mappings(can.get("identifier")) if can is not None else ():
+        if isinstance(row.get("bits"), int):
+            bits[str(row.get("role", row.get("name")))] = row["bits"]
     if own is not None:
         for row in mappings(own_fact(node, "can", "message_types", "values")):
             yield from _fits(ctx, row, "value", bits.get("type"), "a message type")
@@ -93,24 +97,12 @@ def _on_can(ctx: Context, node: Node) -> Iterator[Fault]:
             yield from _fits(ctx, message.source, key, bits.get("channel"), "the channel of a CAN identifier")
 
 
-def _widths(can: Map) -> dict[str, int]:
-    """Return the bits of each part of a CAN identifier, by role or name."""
-    rows = [row for row in mappings(can.get("identifier")) if isinstance(row.get("bits"), int)]
-    return {str(row.get("role", row.get("name"))): row["bits"] for row in rows}
-
-
 def _fits(ctx: Context, owner: Map, key: str, bits: int | None, what: str) -> Iterator[Fault]:
     """Yield a fault if the number of a key has more than ``bits`` bits."""
     value = owner.get(key)
     if bits is not None and isinstance(value, int) and value >= 1 << bits:
         message = f"{what} has {count(bits, 'bit')}: 0 to {(1 << bits) - 1}, not {ctx.written(owner, key)}"
         yield Fault.at(owner, key, message, f"correct `{key}`, or `bits` of the identifier")
-
-
-def _codes(errors: Map) -> Iterator[Fault]:
-    """Yield a fault for each error code that has two meanings."""
-    for first, role, code in of_one_number(errors, "none", "unknown_id", "length", "parameter", "checksum"):
-        yield Fault.at(errors, role, f"{code} stands for both `{first}` and `{role}`", "give each its own code")
 
 
 def _checksum(crc: Map) -> Iterator[Fault]:

@@ -134,16 +134,12 @@ def split_fields_have_the_same_orders(ctx: Context) -> Iterator[Fault]:
         struct, home = ctx.struct_of.get(id(struct_layout_of(node)), (None, None))
         if struct is None or home is None or line.orders == home.orders:
             continue
-        for split in _split_fields(struct.source):
+        for split in mappings(struct.source.get("fields")):
+            if not isinstance(split.get("name"), str) or not division.parts_of(split):
+                continue
             if "byte_order" not in split or "bit_order" not in split:
                 line_of_split = line_of(split.at("bitfields"), node.source.place)
                 bits = f"the bits of {quote(split['name'])} ({line_of_split}), which is divided, would lie elsewhere"
                 message = f"{quote(node.name)} has other orders than `{home.name}`, so {bits}"
                 help = f"give {quote(split['name'])} a `byte_order` and a `bit_order`, or make its parts fields"
                 yield Fault.at(node.source, "struct", message, help)
-
-
-def _split_fields(struct: Map) -> Iterator[Map]:
-    """Yield the fields of a struct that are split into parts."""
-    rows = (row for row in mappings(struct.get("fields")) if isinstance(row.get("name"), str))
-    return filter(division.parts_of, rows)

@@ -8,7 +8,7 @@ from icdgen.diagnostics import Related
 from icdgen.icd import tails
 from icdgen.icd.fault import Fault
 from icdgen.icd.layout import Array, Overlay, stride
-from icdgen.icd.model import Message, Node
+from icdgen.icd.model import Message
 from icdgen.icd.places import places_in
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
@@ -30,11 +30,6 @@ def counts_are_determined(ctx: Context) -> Iterator[Fault]:
             yield Fault.at(source, "up_to", text, help)
 
 
-def _lengths(ctx: Context, node: Node) -> dict[str, int]:
-    """Return the lengths in bytes of the structs that messages of a node can use, by name."""
-    return {struct.name: struct.length for owner in ctx.scope(node) for struct in owner.structs}
-
-
 @rule("ICD121")
 def variable_parts_are_at_the_end(ctx: Context) -> Iterator[Fault]:
     for line in ctx.lines:
@@ -44,8 +39,9 @@ def variable_parts_are_at_the_end(ctx: Context) -> Iterator[Fault]:
             help = "remove `after`; only a variable-length field can follow another one"
             yield Fault.at(source, "after", text, help)
     for message, node in ctx.messages:
+        lengths = {struct.name: struct.length for owner in ctx.scope(node) for struct in owner.structs}
         for item in tails.open_parts(message.source):
-            yield from tails.faults_of_place(message.source, item, _lengths(ctx, node))
+            yield from tails.faults_of_place(message.source, item, lengths)
         for item in tails.fixed_behind(message.source):
             first = tails.open_parts(message.source)[0]
             text = (
