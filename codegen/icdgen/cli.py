@@ -148,7 +148,7 @@ def main(arguments: list[str], run: str = "") -> None:
         status = _complain(error.format_message(), help)
     except (click.Abort, KeyboardInterrupt):
         _complain("interrupted")
-        status = 130
+        status = 130  # 128 + SIGINT, as shells report it
     except BrokenPipeError:
         status = 141
     except OSError as error:

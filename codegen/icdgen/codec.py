@@ -61,7 +61,8 @@ def decode_frame(node: Node, message: Message, frame: bytes) -> dict[str, Raw]:
     """
     sizes = sizes_of_frame(node, message, frame)
     fields = frame_fields(message.layout, node.orders, sizes)
-    # A frame that ends early lacks trailing zeros only, and missing bits of the number read as 0.
+    # A frame that ends early lacks trailing zeros only, and missing bits of the number
+    # read as 0.
     bits = int.from_bytes(frame, "little")
     raw: dict[str, Raw] = {}
     optional = []
@@ -131,7 +132,8 @@ def _counters(node: Node, layout: Layout, frame: bytes) -> dict[str, int]:
     if not names:
         return {}
     bits = int.from_bytes(frame, "little")
-    fields = frame_fields(layout, node.orders, {part.name: 0 for part in layout.parts})  # the fixed part
+    # The fixed part.
+    fields = frame_fields(layout, node.orders, {part.name: 0 for part in layout.parts})
     return {field.name: _number(_read(field, bits)) for field in fields if field.name in names}
 
 
@@ -310,7 +312,8 @@ def raw_from_physical(field: AnyScalar, value: Fraction | int | float) -> int:
     if field.curve is not None:
         return _raw_on_curve(field, field.curve, value if isinstance(value, float) else to_double(Fraction(value)))
     exact = Fraction(value)
-    raw = round(field.scale.raw(exact) if field.scale else exact)  # Fraction rounds ties to even
+    # Fraction rounds ties to even.
+    raw = round(field.scale.raw(exact) if field.scale else exact)
     if not field.raw_min <= raw <= field.raw_max:
         low, high = sorted(float(field.scale.physical(r)) if field.scale else r for r in (field.raw_min, field.raw_max))
         raise CodecError(f"{field.name!r} takes {low:g} to {high:g}, not {float(exact):g}")
@@ -376,11 +379,13 @@ def float_bits(field: AnyScalar, value: float) -> int:
 
 def to_double(exact: Fraction) -> float:
     """Return the nearest double, ties to even."""
-    # Python rounds int / int once, correctly, also for integers that are too large for a double.
+    # Python rounds int / int once, correctly, also for integers that are too large for
+    # a double.
     return exact.numerator / exact.denominator
 
 
-# Below, a frame is one number: bit w (0: least significant) of byte b is bit 8 * b + w of the number.
+# Below, a frame is one number: bit w (0: least significant) of byte b is bit 8 * b + w
+# of the number.
 
 
 @lru_cache(maxsize=1 << 16)
@@ -390,7 +395,8 @@ def _runs(at: int, bits: int, byte_order: str, bit_order: str) -> tuple[tuple[in
     for number in range(at, at + bits):
         byte, bit = divmod(number, 8)
         places.append((byte, bit if bit_order == "lsb0" else 7 - bit))
-    # Sort by significance: first the byte with the least significant bits, and in it the least significant bit.
+    # Sort by significance: first the byte with the least significant bits, and in it
+    # the least significant bit.
     places.sort(key=lambda place: (place[0] if byte_order == "little" else -place[0], place[1]))
     runs: list[tuple[int, int, int]] = []
     for index, (byte, weight) in enumerate(places):
@@ -429,7 +435,8 @@ def _written(field: FrameField, value: Raw) -> int:
     return frame
 
 
-_Place: TypeAlias = tuple[tuple[tuple[int, int, int], ...], int]  # runs of bits, and the value that a message has there
+# Runs of bits, and the value that a message has there.
+_Place: TypeAlias = tuple[tuple[tuple[int, int, int], ...], int]
 
 
 def _constants(node: Node, message: Message) -> dict[_Place, FrameField]:

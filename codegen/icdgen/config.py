@@ -72,6 +72,7 @@ def find(start: Path) -> Config:
             config = _read(path)
             config.looked_at = looked_at
             return config
+        # The configuration of another repository around this one does not apply.
         if os.path.exists(folder / ".git"):
             break
     return Config(looked_at=looked_at)

@@ -55,6 +55,7 @@ def pieces_at(at: int, bits: int, byte_order: str, bit_order: str) -> tuple[Piec
         shift = first if bit_order == "lsb0" else 8 - first - count
         runs.append((byte, shift, count))
         start += count
+    # In big-endian order, the last run has the least significant bits.
     pieces, below = [], 0
     for byte, shift, count in runs if byte_order == "little" else reversed(runs):
         pieces.append(Piece(byte, shift, count, below))

@@ -269,6 +269,7 @@ def _plain(value: object) -> object:
         return {_plain(key): _plain(item) for key, item in value.items() if key not in ("assumptions", "source")}
     if isinstance(value, list | tuple):
         return tuple(_plain(item) for item in value)
+    # Before `int`, because a bool is an int in Python.
     if isinstance(value, bool) or value is None:
         return value
     for kind in (str, int, float):

@@ -40,6 +40,8 @@ def load_checked(
     from icdgen.loading import load
 
     loaded = load(paths, languages=languages)
+    # Models with findings are not cached: the findings must be reported again in the
+    # next run.
     if not loaded.findings:
         files = {os.path.abspath(path): fingerprint for path, fingerprint in loaded.inputs.items()}
         cache.remember(KIND, name, model_json.text(loaded.icd, loaded.inputs), files)

@@ -66,6 +66,8 @@ def _split(chunk: str, vocabulary: list[str]) -> Iterable[str]:
         elif word is None:
             yield from _humps(text)
         else:
+            # Digits after a word belong to it: `GPS2` is one word, and not `gps` and
+            # `2`.
             before, _, after = text.partition(word)
             match = _DIGITS.match(after)
             digits = match.group() if match else ""

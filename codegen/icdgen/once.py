@@ -26,6 +26,7 @@ else:
         def __get__(self, instance: Any, owner: type[Any] | None = None) -> Any:
             if instance is None:
                 return self
+            # Python reads the value from __dict__ from now on, without calling __get__.
             value = instance.__dict__[self.name] = self.function(instance)
             return value
 

@@ -44,6 +44,8 @@ def render(columns: Sequence[Column], rows: Iterable[Sequence[str]], width: int 
         size = max(_width(column.title), *(_width(row[index]) for row in cells))
         widths.append(size)
         least.append(size if column.fixed else min(size, max(_width(column.title), NARROWEST)))
+    # If even the minimum widths do not fit, the terminal wraps complete lines, which is
+    # more readable.
     if width is not None and _total(least) <= width < _total(widths):
         return _wrapped(columns, cells, least, width)
     lines = [[column.title for column in columns], ["-" * size for size in widths], *cells]

@@ -63,6 +63,8 @@ def run(job: Job) -> Outcome:
     if job.measured is not None and not any(hasattr(backend, "measured") for backend in chosen):
         help = "add `--lang assurance`, or leave --measured out"
         raise UserError("measurements go into the assurance pack only", help)
+    # A plug-in can read other files, and a backend can need the places of lines, which
+    # a cached model lacks.
     plug_ins = [backend for backend in chosen if backend.name not in backends.names()]
     lined = any(getattr(backend, "needs_lines", False) for backend in chosen)
     outcome = Outcome(
@@ -124,6 +126,8 @@ def remember(name: str, note: str, job: Job, outcome: Outcome) -> None:
     if not name or outcome.loaded.findings or not outcome.may_be_remembered:
         return
     files = {os.path.abspath(path): fingerprint for path, fingerprint in outcome.inputs.items()}
+    # The record is valid only while all outputs, manifests and the dependency file are
+    # unchanged, too.
     for plan in outcome.plans:
         out = os.path.abspath(plan.out)
         for file, digest in plan.digests.items():

@@ -70,6 +70,8 @@ class Builder:
         if not isinstance(head, Map) or id(head) in self.broken:
             return None
         self.name = head["name"]
+        # Each kind of declaration enters the scope before the declarations that refer
+        # to it.
         units = tuple(map(unit, self.items("units")))
         self.scope.units.update((unit.symbol, unit) for unit in units)
         enums = tuple(map(self.enum, self.items("enums")))
@@ -190,6 +192,7 @@ class Builder:
             may_end_early="may_end_early" in item,
             owner=self.name,
         )
+        # A formula can use the fields, and the derived values before it.
         for row in self.items("derived", item):
             with suppress(formula.FormulaError):
                 derivation = derivation_of(row["formula"], layout.nodes)
@@ -210,6 +213,7 @@ class Builder:
                 node = self.node_of(item, item["at"], item.get("count"))
                 nodes += () if node is None else (node,)
             else:
+                # A split field is replaced by its parts.
                 nodes += self.parts_of_split_field(owner, item)
         return tuple(nodes)
 

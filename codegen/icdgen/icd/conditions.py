@@ -109,6 +109,7 @@ def _raw_value(field: Map, value: object, enums: Mapping[str, Enum]) -> int | No
             return None
         low, high = _raw_range(bits, enum is not None and enum.signed)
         return value if low <= value <= high else None
+    # In YAML a flag is true, false, 0 or 1, and in Python True is an int.
     if kind == "bool":
         return int(value) if value in (0, 1) and isinstance(value, int) else None
     low, high = _raw_range(bits, kind == "int")

@@ -65,6 +65,7 @@ class Curve(NamedTuple):
         start, terms = pieces[max(0, bisect_right(pieces, x, key=_START) - 1)] if len(pieces) > 1 else pieces[0]
         if x != x or not terms:
             return math.nan
+        # Horner's rule. Every language rounds each of these steps to a double.
         above, value = x - start, terms[-1]
         for term in terms[-2::-1]:
             value = value * above + term
@@ -94,6 +95,7 @@ class Curve(NamedTuple):
         rises = first < last
         if not (first <= physical <= last if rises else last <= physical <= first):
             return None
+        # Bisection, which is possible because the curve is monotonic.
         while high - low > 1:
             middle = (low + high) // 2
             value = self.double(middle)
@@ -127,6 +129,8 @@ def table(points: Sequence[tuple[float, float]], outside: str) -> Curve:
             problem = f"raw value {text} occurs twice" if text == text_before else f"{text} follows {text_before}"
             raise formula.FormulaError(f"{problem}: list points in the order of their raw values, each once")
     lines = [Piece(x0, (y0, _slope(x0, y0, x1, y1))) for (x0, y0), (x1, y1) in pairwise(points)]
+    # The pieces outside of the points are a constant (clamp), nothing (refuse), or
+    # continue the nearest line.
     (first, low), (last, high) = points[0], points[-1]
     before_first: dict[str, list[Piece]] = {CLAMP: [Piece(first, (low,))], REFUSE: [Piece(first, ())]}
     behind_last = {

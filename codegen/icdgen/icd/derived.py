@@ -187,6 +187,9 @@ def _in_steps(tree: _Tree) -> Derivation:
     numbers: dict[float, int] = {}
     steps: list[tuple[str, Any, Any]] = []
 
+    # An operand is first its kind and its index among operands of that kind. The index
+    # in the row of values is known only at the end, when all fields and numbers are
+    # collected.
     def place(node: _Tree) -> tuple[str, int]:
         if isinstance(node, str):
             return "field", fields.setdefault(node, len(fields))

@@ -81,6 +81,7 @@ def bits_of(at: int, count: int, byte_order: str, bit_order: str) -> list[int]:
     runs: dict[int, list[int]] = {}
     for bit in range(at, at + count):
         runs.setdefault(bit // 8, []).append(bit)
+    # In big-endian order, the last byte has the least significant bits.
     ordered = list(runs.values()) if byte_order == "little" else list(runs.values())[::-1]
     return [bit for run in ordered for bit in (run if bit_order == "lsb0" else run[::-1])]
 

@@ -87,6 +87,7 @@ def _apply_entry(tree: Map, entry: Map, applied: Applied, named: _ByName) -> Non
                 continue
             matched.append(target)
             _change(target, changes)
+            # The index has the old names and lists.
             if any(key == "name" or isinstance(value, Seq) for key, value in changes.items()):
                 named.forget()
             applied.of.setdefault(id(target), []).append(erratum)

@@ -80,6 +80,7 @@ def coefficients(text: str) -> tuple[Fraction, ...]:
         return polynomial
     if len(polynomial) > 2:
         raise FormulaError("it is not linear in `value`, so it cannot be solved for it")
+    # raw = constant + slope * value, solved for value.
     constant, slope = polynomial
     return -constant / slope, 1 / slope
 

@@ -220,6 +220,7 @@ def frame_fields(layout: Layout, orders: Orders, sizes: Sizes | None = None) -> 
     fields = frames.get(key)
     if fields is None:
         cached_scalars = sum(map(len, frames.values()))
+        # Remove the oldest entries first: a dict preserves the order of insertion.
         while frames and (len(frames) >= _CACHED_FRAMES or cached_scalars > _CACHED_SCALARS):
             cached_scalars -= len(frames.pop(next(iter(frames))))
         fields = frames[key] = tuple(flatten(layout, orders, sizes))

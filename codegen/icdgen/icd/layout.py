@@ -261,6 +261,8 @@ class Layout:
             is_rest = isinstance(size, Rest)
             counter, plus = (size.counter.name, 0) if isinstance(size, Rest) else (size.counter, size.plus)
             parts.append(VariablePart(node, counter, is_rest, begin, step, size.most, plus))
+            # Positions are those in the longest frame, in which each part has its most
+            # elements.
             begin += size.most * step
         return tuple(parts)
 
@@ -404,5 +406,7 @@ def walk(layout: Layout, orders: Orders, owners: tuple[LayoutNode, ...] = ()) ->
         own = node.orders.within(orders)
         yield Visit(node, owners, own)
         inner = struct_layout_of(node)
+        # The fields of a struct are visited for each use of it, because orders in
+        # effect can differ.
         if inner is not None:
             yield from walk(inner, own, (*owners, node))

@@ -69,6 +69,7 @@ def _lines(place: NodePlace, owners: tuple[Level, ...]) -> Iterator[Line]:
     """Yield the lines of a place: one, or for a struct one per field."""
     levels = (*owners, Level(place.node, place.count, place.bits if place.count else 0, place.struct))
     if place.struct is not None:
+        # All elements have the same lines, so take those of the first one.
         steps = (*place.steps[:-1], PathStep(place.node, 0 if place.count else None))
         for inner in replace(place, steps=steps, count=0).inner():
             yield from _lines(inner, levels)

@@ -36,6 +36,7 @@ def load(
             loader.node(file, ())
     icd = Icd(tuple(loader.nodes))
     findings = loader.findings
+    # With an unreadable file, the rules would report all that it declares as missing.
     if check and not loader.unreadable:
         from icdgen.icd import rules
 

@@ -35,6 +35,8 @@ from icdgen.once import cached_property, kept_by_owner
 _NO_SCALAR = Scalar(name="", type="struct", bits=0)
 
 
+# Compared by identity, as `places_in` caches the objects; comparing paths of nodes
+# would be slow.
 @dataclass(frozen=True, eq=False)
 class NodePlace(OfScalar):
     """A node, or an element of an array, at its position in the longest frame or in a struct."""
@@ -208,6 +210,8 @@ def places_of(layout: Layout, outer: Orders = UNDECLARED) -> tuple[NodePlace, ..
             places.append(_place_of_item(steps, node.item, at, own, part.most))
         else:
             places.append(NodePlace(steps, node, None, at, 8 * part.most, own))
+        # The count has no bits. It is placed at the end of the array, so that it sorts
+        # directly after it.
         if isinstance(size, Rest):
             counter, end = size.counter, 8 * (part.begin + part.most * part.step)
             places.append(NodePlace((PathStep(counter),), counter, None, end, counter.bits, UNDECLARED, is_count=True))

@@ -100,6 +100,8 @@ def of_value(key: str, value: object, owner: Mapping[str, Any], allowed: Iterabl
     if sized:
         bits = sized[2] or sized[4] or sized[5]
         kind = "float" if sized[5] else "uint" if sized[1] else "int"
+        # `u16` means a type and a width. The fix replaces only the type, so it needs
+        # the right width.
         is_complete = owner.get("bits") == int(bits)
         return Remedy(f"write `type: {kind}` with `bits: {bits}`", kind if is_complete else "")
     if key == "type" and word in _TYPES:
@@ -138,6 +140,7 @@ def plain_number(written: str) -> str:
     if _PREFIXED_NUMBER.fullmatch(text):
         return f"0x{text[2:]}" if text[1] in "xX" else str(int(text, 0))
     exact = _SCIENTIFIC.fullmatch(text)
+    # The format allows exponents of up to two digits.
     if exact is None or len(exact[4] or "") > 2:
         return ""
     sign, integer, fraction, exponent = exact[1], exact[2] or "0", exact[3], exact[4]

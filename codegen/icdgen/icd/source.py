@@ -155,6 +155,7 @@ class Builder:
             # faster than calls here.
             while True:
                 event = next_event()
+                # Classes are compared by identity, which is faster than isinstance().
                 kind = type(event)
                 spot = event.start_mark, event.end_mark
                 value: Any

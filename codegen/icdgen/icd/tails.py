@@ -129,6 +129,7 @@ def faults_of_count(message: Map, item: Map) -> Iterator[Fault]:
         help = "name an unsigned number without a formula, within the `length` of the message"
         yield Fault.at(item, key, text, help)
         return
+    # The largest number of elements that the counter can express.
     most, elements = (1 << counter["bits"]) - 1 + plus, "bytes" if key == "size" else "elements"
     if most < item["up_to"]:
         added = f" plus {plus}" if plus else ""
@@ -169,6 +170,8 @@ def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Fault
     # array, so its position is not checked.
     if _is_unknown(message, item):
         return
+    # Each fault below returns at once: further faults of the position would only follow
+    # from it.
     parts = open_parts(message)
     before = next((part for part, following in pairwise(parts) if following is item), None)
     names = [part["name"] for part in parts]

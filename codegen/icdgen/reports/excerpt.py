@@ -72,6 +72,8 @@ def marked(line: str, column: int, length: int, mark: str) -> tuple[str, str]:
     stretch = tail[: max(1, min(length, len(tail)))]
     before, under, after = map(_spread, (head, stretch, tail[len(stretch) :]))
     hidden_before, hidden_after = start > WIDTH, start + WIDTH < len(line)
+    # Short lines are shown completely. Of a long line, the marked text and a little
+    # before it are shown.
     if not hidden_before and not hidden_after and _columns(before + under + after) <= WIDTH:
         return before + under + after, _marks(before, under, mark)
     if hidden_before or _columns(before) > LEAD:

@@ -28,6 +28,7 @@ def _command(finding: Finding) -> str:
     }
     parameters = ",".join(f"{key}={_property(str(value))}" for key, value in properties.items())
     text = f"{finding.code}: {finding.message}" + (f"\nhelp: {finding.help}" if finding.help else "")
+    # Only the line breaks of the text itself remain; others could inject a command.
     text = "\n".join(map(printable, text.split("\n")))
     return f"::{COMMANDS[finding.severity]} {parameters}::{_data(text)}"
 

@@ -49,6 +49,8 @@ def document(findings: list[Finding], about: Callable[[str], dict[str, Any]]) ->
     driver = {"name": "icdgen", "semanticVersion": __version__, "rules": [about(code) for code in codes]}
     run = {
         "tool": {"driver": driver},
+        # Columns of findings are indices of Python strings. The default of SARIF is
+        # UTF-16 code units.
         "columnKind": "unicodeCodePoints",
         "results": [_result(finding, index[finding.code]) for finding in findings],
     }

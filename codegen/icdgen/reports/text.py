@@ -51,6 +51,7 @@ def _text(finding: Finding, texts: Mapping[str, Lines], paint: Paint) -> str:
     marks = [(place, "^", finding.severity, "")]
     if related is not None:
         marks.append((related.place, "-", "gutter", shown(related.label)))
+    # In the same file, show the excerpts in the order of the lines.
     if related is not None and related.place.file == place.file:
         marks.sort(key=lambda mark: mark[0].line)
     text = f"{heading}: {kind}: {shown(finding.message)}\n"

@@ -18,6 +18,7 @@ from icdgen.runtime_objects.messages import ModelMessages
 def link_of(icd: Icd, facts: Facts) -> Link:
     """Return the link of the node that the facts belong to."""
     node, description = facts.node.name, describe(icd)
+    # Names that the calls refer to; in generated code, these are module variables.
     names = {
         "TELECOMMANDS": ModelMessages(node, "telecommand", facts.telecommands, description),
         "TELEMETRY": ModelMessages(node, "telemetry", facts.telemetry, description),

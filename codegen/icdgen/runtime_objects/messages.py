@@ -88,6 +88,7 @@ def _class(description: MessageDescription) -> type[ModelMessage]:
         "BYTE_ORDER": description.node.byte_order,
         "BIT_ORDER": description.node.bit_order,
     }
+    # A subclass per message, because the runtime reads these facts from the class.
     return type("ModelMessage", (ModelMessage,), members)
 
 

@@ -46,6 +46,7 @@ def _row(field: Line, message: Message | Struct) -> tuple[str, ...]:
     unit = field.unit_symbol
     kind = field.enum.name if field.enum else field.type
     bits = f"{field.count} x {field.bits}" if field.count else str(field.bits)
+    # For the part itself, and not for a field of a struct in it.
     part = _variable_part(message, field)
     if part is not None and part.name == field.name:
         bits = f"up to {part.most} x {8 * part.step}"
@@ -88,6 +89,7 @@ def remarks(
         yield f"points {points_text(field.curve, 12)}"
     if field.const is not None:
         yield f"always {value_text(field.const)}"
+    # Inclusive limits are in the columns `from` and `to`.
     for bound in bounds(field.limits):
         if bound.key in ("above", "below"):
             yield f"{bound.kind.words} {number(bound.value)}"

@@ -35,6 +35,7 @@ _EXCEPTIONS = {
 
 def to_json(icd: Icd) -> _Object:
     """Return ICDs as values for JSON. A node has only its own messages and enumerations, and ``includes``."""
+    # A second list of all loggable frames spares programs the search in nodes.
     loggable = [{"node": node.name} | _row(row) for node in icd.nodes for row in node.loggable]
     return {"format": FORMAT, "nodes": [_node(node) for node in icd.nodes], "loggable": loggable}
 
@@ -80,6 +81,8 @@ def _node(node: Node) -> _Object:
 
 def _message(message: Message) -> _Object:
     """Return a message with its fields and derived values."""
+    # The last variable-length part is `tail`, those before it are `inner`: see
+    # ``show.schema.json``.
     parts = list(map(_variable_part, message.layout.parts))
     places = [place for place in places_in(message.layout) if not place.is_count]
     return _present(

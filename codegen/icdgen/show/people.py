@@ -113,6 +113,8 @@ def _node(icd: Icd, node: Node, width: int | None, kind: str | None) -> str:
 
 def _item(icd: Icd, node: Node, name: str, width: int | None, kind: str | None) -> str:
     """Return a message, or else the enumerations, structs or errata of a name. Raises `NotFound` or `Ambiguous`."""
+    # A message has precedence. If several messages match, `Ambiguous` is raised, and
+    # nothing else is searched.
     try:
         return _message(icd, node, find_message(icd, node.name, name, kind), width)
     except NotFound:

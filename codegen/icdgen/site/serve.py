@@ -101,6 +101,7 @@ def handler(source: Source) -> type[BaseHTTPRequestHandler]:
             self.send_response(status)
             self.send_header("Content-Type", f"{_TYPES.get(suffix, 'text/plain')}; charset=utf-8")
             self.send_header("Content-Length", str(len(data)))
+            # An ICD, and so every page, can change at any time.
             self.send_header("Cache-Control", "no-cache")
             for key, value in headers.items():
                 self.send_header(key, value)

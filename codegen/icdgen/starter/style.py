@@ -126,6 +126,7 @@ def _ranges(protocol: Tree) -> dict[str, tuple[int, int]]:
     """Return the first and last id of each direction."""
     section, rows = protocol.get("message_id") or {}, protocol.get("stream", {}).get("header", ())
     bits = min((row["bits"] for row in rows if row["role"] == "id"), default=8)
+    # Ids of the first ICD are small numbers, also if the link could carry larger ones.
     most = (1 << min(bits, 8)) - 1
     ranges: dict[str, tuple[int, int]] = {}
     for direction in _DIRECTIONS:

@@ -48,7 +48,8 @@ def encode(
     values, notes = _values(message, fields, given, raw, errors)
     missing: list[str] = []
     for field in fields:
-        # An optional field is required only if the fields that it depends on are given, and meet its conditions.
+        # An optional field is required only if the fields that it depends on are given,
+        # and meet its conditions.
         is_decided = all(condition.field in given for condition in field.conditions)
         is_required = field.is_raw and field.const is None and is_decided and codec.is_present(field, values)
         if is_required and field.name not in given:
@@ -133,8 +134,11 @@ def _count(
         octets = values[part.name]
         assert isinstance(octets, bytes)
         count = len(octets) if part.name in given else 0
+        # The codec takes the bytes of the longest frame, and cuts them to the number in
+        # the counter.
         values[part.name] = octets.ljust(part.most, b"\0")
     else:
+        # An element that is a struct has several fields with the same index.
         indexes = list(dict.fromkeys(field.steps[0].element or 0 for field in elements if field.name in given))
         count = len(indexes)
         if indexes and indexes[-1] != count - 1:
@@ -221,6 +225,8 @@ def _values(
             if isinstance(value, bytes):
                 continue
             _check(field, value, text, raw)
+            # A value with a formula is rounded to the nearest raw value, which the user
+            # should know.
             if not raw:
                 exact = numbers.rational(without_unit(field, text))
                 if field.has_formula and exact is not None and _differs(field, value, exact):

@@ -113,6 +113,8 @@ def _special(field: FrameField, text: str) -> int | None:
 
 def _float(field: FrameField, text: str, raw: bool = False) -> int:
     """Return the bits of a float field."""
+    # Hexadecimal digits are the bits of a float, which would be confused with a
+    # physical value.
     if text[:2] in ("0x", "0X"):
         value = numbers.integer(text)
         if raw and value is not None:
@@ -125,6 +127,8 @@ def _float(field: FrameField, text: str, raw: bool = False) -> int:
     try:
         value = numbers.float_bits(without_unit(field, text), field.bits)
     except OverflowError:
+        # If the limits exclude the value, too, they explain more than the width of the
+        # float.
         if not raw and not all(bound.holds(_exact(field, text)) for bound in bounds(field.limits)):
             raise BadValue(out_of_range(field, text)) from None
         raise BadValue(f"{text} is beyond what a {field.bits}-bit float can represent") from None
@@ -174,6 +178,7 @@ def without_unit(field: AnyScalar, text: str) -> str:
     symbol = field.unit_symbol
     if not symbol or not text.endswith(symbol):
         return text
+    # The symbol can also be the end of a word, such as `m` in `Alarm`.
     number = text[: -len(symbol)].rstrip()
     return number if number[-1:].isdigit() else text
 

@@ -110,6 +110,7 @@ def find_message(icd: Icd, node_name: str, key: str, kind: str | None = None) ->
     """
     node = find_node(icd, node_name)
     messages = [message for message in icd.messages_of(node) if kind is None or is_of_kind(message, kind)]
+    # Names come first: a message can be called like an id of another one.
     matches = by_name(messages, key, node.vocabulary) or _by_id(messages, key, kind)
     if len(matches) == 1:
         return matches[0]
@@ -164,6 +165,7 @@ def find_field(
 def find_array(fields: Sequence[FrameField], key: str, vocabulary: tuple[str, ...] = ()) -> list[FrameField]:
     """Return the elements of the array with this name (in any case) or identifier; an empty list without a match."""
     arrays: list[ArrayOfFields] = []
+    # The elements of an array are contiguous in `fields`, and the first has index 0.
     for field in fields:
         *before, last = field.steps
         if last.element == 0:
@@ -266,6 +268,7 @@ def _by_words(fields: Sequence[FrameField], key: str, vocabulary: tuple[str, ...
 
 def _message_help(icd: Icd, node: Node, messages: Sequence[Message], key: str, kind: str | None) -> str:
     """Return the help for an unknown message: its real kind, another node, or a similar name."""
+    # Without the kind there may be a match.
     if kind is not None:
         with suppress(NotFound, Ambiguous):
             other = find_message(icd, node.name, key)

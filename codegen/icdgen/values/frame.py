@@ -68,6 +68,8 @@ class Row:
             return self.member if self.member is not None else f"unknown {self.raw_text}"
         if kind == "bool":
             return "true" if self.raw else "false"
+        # Without a display format, a float is shown as the shortest decimal that
+        # identifies it.
         is_rounded = kind == "float" and digits_of(self.field) is not None
         if self.number is not None and (self.field.curve is not None or is_rounded):
             return number_text(self.field, self.number)
@@ -85,6 +87,7 @@ class Row:
             raw = self.raw.hex()
             value = codec.text(self.raw) if kind == "text" else raw
         elif kind == "float":
+            # Bits in hexadecimal, because JSON has no NaN.
             raw = f"{self.raw:0{self.field.bits // 4}x}"
             number = self.number or 0.0
             # JSON has no NaN and no infinity.
@@ -153,6 +156,7 @@ def frame(icd: Icd, node: Node, message: Message, data: bytes, notes: dict[str, 
     values = codec.decode_frame(owner, message, data)
     rows = []
     for field in codec.fields_of_frame(owner, message, values):
+        # A count without bits is visible as the number of elements.
         if field.role == "count":
             continue
         raw = values[field.name]
@@ -166,6 +170,7 @@ def remarks(field: AnyScalar, raw: int | bytes) -> list[str]:
     """Return the remarks about a value: its special meaning, or why the ICD does not allow it."""
     if isinstance(raw, bytes):
         return []
+    # A special value is allowed even if it is outside of the limits.
     special = codec.special_of(field, raw)
     return violations(field, raw) if special is None else [special.meaning]
 

@@ -35,6 +35,8 @@ def parse_hex(text: str) -> bytes:
         if digits is not None:
             if prefixed == at and len(digits) == 1:
                 digits = "0" + digits
+            # A letter directly after digits is an error, and not the start of a prefix
+            # as in `2ex`.
             after = text[token.end() : min(token.end() + 1, end)]
             if after.isalnum():
                 raise BadHex(f"{_place(text, token.end())}: {_show(after)} is not hexadecimal", HELP)

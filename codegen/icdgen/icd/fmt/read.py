@@ -180,13 +180,17 @@ class _Reader:
         for start, end in _comments_in(self.text, self.reached, event.start_mark.index):
             breaks = self.breaks(previous_end, start)
             target = self.pending
+            # A comment on the line of an element belongs to that element.
             if breaks == 0 and previous_end == self.reached and self.follows_something(start):
                 target = self.last.trailing if self.last else target
+            # After the last entry of a container, the column decides whether a comment
+            # belongs to the container or follows it.
             elif breaks and closing and not self.pending:
                 column = start - _line_start(self.text, previous_end, start)
                 holder = self.holder(column if limit is None else min(column, limit), event.start_mark.column)
                 if holder is not None:
                     target, limit = holder.tail, holder.column
+            # Preserve one blank line between two comments of the same element.
             if breaks > 1 and target is earlier:
                 target.append("")
             target.append(self.text[start:end].rstrip())

@@ -8,7 +8,8 @@ WIDEST = 40  # wider cells are ignored in the alignment of their column
 def aligned(rows: list[dict[str, str]]) -> list[str]:
     """Return each row in flow style: ``{at: 0,  bits: 16, ...}``. The leading columns that all rows have are padded."""
     widths: list[int] = []
-    # zip() ends with the shortest row, so these are the keys at the same position of all rows.
+    # zip() ends with the shortest row, so these are the keys at the same position of
+    # all rows.
     for position, keys in enumerate(zip(*rows, strict=False)):
         if len(set(keys)) > 1:
             break

@@ -62,6 +62,7 @@ def _entry(lines: list[str], child: Child, kind: Kind, indent: int) -> None:
     """Append an entry of a mapping in block style."""
     key = scalars.key(child.key, False)
     head = " " * indent + key + ":"
+    # A longer key needs the explicit form of YAML.
     if len(key) > LONGEST_KEY:
         head = " " * indent + "? " + key + "\n" + " " * indent + ":"
     inner = kind.child(scalars.name(child.key), child.value.mapping) if isinstance(child.value, Branch) else kind
@@ -83,6 +84,7 @@ def _value(lines: list[str], child: Child, head: str, kind: Kind, indent: int, i
         scalar[at] += trailing
         body = [head + " " + scalar[0], *scalar[1:]]
     elif (flow := _one_line(value, kind, column)) is not None:
+        # Comments inside of a value on one line move above it.
         before += value.comments()
         body = [head + " " + flow + trailing]
     elif (wrapped := _wrapped(value, column)) is not None:

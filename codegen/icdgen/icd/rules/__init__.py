@@ -75,6 +75,8 @@ def check(
         if rule.needs_complete and not complete:
             continue
         for fault in rule.check(context) if rule.check else ():
+            # Accepted faults count as raised, too: ICD084 reports acceptances of faults
+            # that are not raised.
             context.raised.append((rule.code, fault))
             if not context.accepts(rule.code, fault):
                 findings.append(fault.finding(rule.code, rule.severity))

@@ -20,6 +20,8 @@ def ids_and_checksums_form_no_other_telecommand(ctx: Context) -> Iterator[Fault]
             extra = _extra_bytes(ctx, node) or _extra_bytes(ctx, other)
             if node is other or not extra or not _share_a_line(ctx, node, other):
                 continue
+            # With its checksum, a telecommand has the length of one with as many more
+            # bytes of data.
             by_id = {each.telecommand_id: each for each in other.messages if each.telecommand_id is not None}
             for message in node.messages:
                 longer = by_id.get(message.telecommand_id) if message.telecommand_id is not None else None

@@ -82,6 +82,8 @@ def composites_match_their_parts(ctx: Context) -> Iterator[Fault]:
             if field.at >= end or field.at + field.bits <= start:
                 continue
             source = field.scalar.source
+            # Fields at the same bit are counterparts; those of the repeated frame that
+            # remain have none.
             counterpart = missing.pop(field.at, None)
             if id(source) in reported:
                 continue  # another element of the same array

@@ -149,6 +149,8 @@ def _places(link: Link) -> Iterator[Fault]:
         if size > MOST_SPAN:
             message = f"the {row['role']} spans {count(size, 'byte')}, more than {MOST_SPAN}"
             yield Fault.at(row, "bits", message, "make it narrower, or begin it at a whole byte")
+        # A field across bytes is contiguous only if the byte order continues the bit
+        # order: big with msb0, little with lsb0.
         order = row.get("byte_order", link.node.byte_order)
         if size > 1 and row["bits"] % 8 + row["at"] % 8 and (order == "big") != (link.node.bit_order == "msb0"):
             message = f"the {row['role']} crosses bytes in {order} order, though bits are {link.node.bit_order}"
@@ -181,6 +183,7 @@ def _contents(ctx: Context, link: Link) -> Iterator[Fault]:
     overhead = 0  # bytes of header and trailer
     for part in PARTS:
         ends = (row["at"] + row["bits"] for part_of_row, row in link.rows if part_of_row == part)
+        # Round up to whole bytes.
         overhead += -(-max(ends, default=0) // 8)
     empty = next((message for _, message in messages if message.layout.shortest == 0 and overhead == 0), None)
     if empty is not None:
@@ -289,6 +292,8 @@ def _covered(link: Link, part: str, row: Map, checksum: Map) -> Iterator[Fault]:
     end = last["at"] + last["bits"] if last else 0
     if begin is not None and begin % 8:
         yield Fault.at(covers, "from", "it begins within a byte", "begin with a field at a whole byte")
+    # A checksum in the header must come before the first covered byte, one in the
+    # trailer after the last.
     inside = part == "header" and begin is not None and row["at"] + row["bits"] > begin // 8 * 8
     if inside or (part == "trailer" and row["at"] // 8 < -(-end // 8)):
         message = "the checksum covers itself"

@@ -18,6 +18,7 @@ def accepted_findings_exist(ctx: Context) -> Iterator[Fault]:
     unmatched: dict[tuple[str, Place], list[Place]] = {}
     for applied in ctx.applied:
         for code, place, owner in applied.accepts:
+            # ICD085 reports codes that are not registered.
             if code in REGISTERED and (code, id(owner)) not in raised:
                 unmatched.setdefault((code, place), []).append(owner.place)
     for (code, place), targets in unmatched.items():

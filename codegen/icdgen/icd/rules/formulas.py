@@ -167,6 +167,7 @@ def formulas_are_computable(ctx: Context) -> Iterator[Fault]:
             yield Fault.at(field.source, key, message, "correct an exponent, or `bits`")
         if scale is None:
             continue
+        # Large ICDs have few different formulas.
         if field.formula not in checked:
             checked[field.formula] = exact.is_too_large(scale)
         if checked[field.formula]:

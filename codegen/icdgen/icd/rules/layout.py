@@ -46,6 +46,7 @@ def fields_end_within_the_message(ctx: Context) -> Iterator[Fault]:
     for node, owner, _ in ctx.lines:
         source, room = node.source, owner.length * 8
         end = node.at + _fixed_bits(node)
+        # ICD121 reports fields of fixed size after a variable-length field.
         if end > room and id(source) not in ctx.behind_variable_fields:
             is_array, size_key = isinstance(node, Array), "struct" if struct_layout_of(node) else "bits"
             key = "at" if node.at >= room else "count" if is_array else size_key
@@ -73,11 +74,14 @@ def _overlaps(ctx: Context) -> Iterator[Overlap]:
             continue
         own = [place for place in places_in(owner.layout) if _has_own_bits(place)]
         elements = [element for place in own for element in (place.elements() if place.count else (place,))]
+        # Positions of different bit orders, and optional fields, must be compared in
+        # pairs.
         if any("when" in place.source or place.bit_order not in ("", icd_node.bit_order) for place in own):
             understood = (element for element in elements if are_understood(element.node))
             yield from _overlaps_among(owner, icd_node, understood)
             continue
-        # Of the elements before: the largest end, and the index of that element.
+        # Otherwise, one pass in the order of positions finds each element that begins
+        # before the largest end of the elements before it. `furthest` is its index.
         end, furthest = -1, -1
         for index in sorted(range(len(elements)), key=lambda index: elements[index].at):
             element = elements[index]
@@ -146,6 +150,7 @@ def _bits_of(mask: int) -> str:
 
 def _mask(begin: int, bits: int, bit_order: str) -> int:
     """Return a mask of the bits of a field in the frame; bit w of byte b is bit 8 * b + w."""
+    # Whole bytes have the same mask in both bit orders.
     if bit_order == "lsb0" or begin % 8 == 0 == bits % 8:
         return ((1 << bits) - 1) << begin
     return sum(1 << (at // 8 * 8 + 7 - at % 8) for at in range(begin, begin + bits))

@@ -137,5 +137,6 @@ def _rows(section: Map, key: str, rows: Seq, at: str, size: str) -> Iterator[Fau
             message = f"{name} ends at {end}, but `{named}` is {room}"
             sizes = f"`{size}` or `{named}`" if named != size else f"or a `{size}`"
             yield Fault.at(row, size, message, f"correct `{at}`, {sizes}")
+        # A long row can end after the rows that follow it.
         if last is None or end > last[at] + last[size]:
             last = row

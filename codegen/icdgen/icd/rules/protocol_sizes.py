@@ -38,6 +38,7 @@ def markers_differ(ctx: Context) -> Iterator[Fault]:
             message = f"after the escape byte 0x{value:02X} stands for both `{first}` and `{key}`"
             yield Fault.at(framing, key, message, "use a different byte for each")
         for _, key, value in of_one_number(framing, "escape", "start_of_message", "end_of_message"):
+            # Other equal values are reported above.
             if value == framing["escape"]:
                 message = f"the escape byte 0x{value:02X} is also `{key}`"
                 help = "choose another byte: after a lost byte, the start of a message could not be found"

@@ -67,6 +67,7 @@ def special_values_fit(ctx: Context) -> Iterator[Fault]:
             if not isinstance(given, (int, float, str)) or isinstance(given, bool):
                 continue
             problem = _not_special(field, given)
+            # Two different numbers can be the same 32-bit float.
             value = given if problem or field.type != "float" else float_bits(given, field.bits)
             if problem:
                 yield Fault(field.source, item.at("value"), f"the special value {problem[0]}", problem[1])
