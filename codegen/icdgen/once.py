@@ -31,7 +31,7 @@ else:
             return value
 
 
-def kept_by_owner(function: Callable[[Owner], Result]) -> Callable[[Owner], Result]:
+def cached_by_owner(function: Callable[[Owner], Result]) -> Callable[[Owner], Result]:
     """Decorate a function of one object so that its result is cached in the ``__dict__`` of the object."""
     name = f"_{function.__name__}"
 

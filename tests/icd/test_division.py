@@ -48,7 +48,7 @@ def test_where_values_lie_in_one_run_of_bits_every_division_is_possible(orders, 
     cuts = sorted(data.draw(st.sets(st.integers(0, bits))) | {0, bits})
     parts = [item(name=f"P{a}", at=a, bits=b - a) for a, b in pairwise(cuts)]
     whole = item(name="Whole", at=at, bits=bits, type="uint", bitfields=parts)
-    assert list(division.obstacles(whole, *orders)) == []
+    assert list(division.faults(whole, *orders)) == []
 
 
 def test_parts_have_units_scales_and_the_words_of_the_whole(tmp_path: Path):

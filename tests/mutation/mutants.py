@@ -15,7 +15,7 @@ from icdgen.icd.build import plain
 from icdgen.icd.curve import OUTSIDE
 from icdgen.icd.model import Enum, Icd, Message, Node
 from icdgen.icd.places import NodePlace, places_in
-from icdgen.icd.tails import is_open, key_of
+from icdgen.icd.variable_length import count_key, is_variable
 
 Change = Callable[[dict], object]
 
@@ -172,7 +172,7 @@ def _swaps(fields: list[dict]) -> Iterator[tuple[str, Change]]:
     """Two neighbours of the same width and type in each other's place."""
     for index in range(1, len(fields)):
         one, other = fields[index - 1], fields[index]
-        if is_open(one) or is_open(other) or "struct" in one or "struct" in other:
+        if is_variable(one) or is_variable(other) or "struct" in one or "struct" in other:
             continue
         if (one["bits"], one["type"]) == (other["bits"], other["type"]):
             about = f"{one['name']!r} and {other['name']!r} in each other's place"
@@ -184,7 +184,7 @@ def _open(field: dict) -> Iterator[tuple[str, str, Change]]:
     """How many elements, or bytes, an open end has."""
     for step in (-1, 1):
         yield _number("up to", field, "up_to", step)
-    key = key_of(field)
+    key = count_key(field)
     said = field[key]
     if said != "rest":
         yield "counter", "up to the end", lambda f: f.update({key: "rest"})
@@ -197,7 +197,7 @@ def _open(field: dict) -> Iterator[tuple[str, str, Change]]:
 
 
 def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
-    if "struct" in field and is_open(field):
+    if "struct" in field and is_variable(field):
         yield from _open(field)
         return
     if "struct" in field:
@@ -205,14 +205,14 @@ def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
             for step in steps:
                 yield _number("offset" if key == "at" else "count", field, key, step)
         return
-    if is_open(field):
+    if is_variable(field):
         yield from _open(field)
         for step in (-8, 8) if "bits" in field else ():
             yield _number("width", field, "bits", step)
-    for step in (-8, -1, 1, 8) if not is_open(field) else ():
+    for step in (-8, -1, 1, 8) if not is_variable(field) else ():
         yield _number("offset", field, "at", step)
     for step in (-1, 1) if field["type"] not in ("bytes", "text") else (-8, 8):
-        if not is_open(field):
+        if not is_variable(field):
             yield _number("width", field, "bits", step)
     for step in (-1, 1) if type(field.get("count")) is int else ():
         yield _number("count", field, "count", step)
@@ -227,7 +227,7 @@ def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
         yield "view", "no view", lambda f: f.pop("view")
     for other in OTHER_TYPES[field["type"]]:
         if (other == "bytes" and field.get("view")) or (
-            is_open(field) and ("size" in field or other in ("bytes", "bool"))
+            is_variable(field) and ("size" in field or other in ("bytes", "bool"))
         ):
             continue
         yield "type", f"{field['type']} -> {other}", lambda f, o=other: _retype(f, o)

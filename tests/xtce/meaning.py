@@ -144,7 +144,7 @@ def _curve(field: NodePlace) -> dict | None:
     plain = field.curve.plain
     if field.type == "float" and field.curve.outside == CLAMP:
         return {**plain, "outside": "refuse"}
-    if field.type != "float" and field.curve.holds(field.raw_min, field.raw_max):
+    if field.type != "float" and field.curve.covers(field.raw_min, field.raw_max):
         plain = {"points": plain["points"]} if "points" in plain else plain  # nothing is outside
     return None if _is_line(field) else plain
 

@@ -13,7 +13,7 @@ from typing import Generic, NamedTuple, TypeVar
 
 from icdgen.definitions.frames import BIG, LITTLE
 from icdgen.definitions.model import Definitions, Item, NotHeld, again
-from icdgen.icd.tails import MOST_BYTES, REST
+from icdgen.icd.variable_length import MOST_BYTES, REST
 
 AS_BYTES = "IMP081"
 MOST_FIELDS = 5000  # of a message

@@ -17,7 +17,7 @@ from icdgen.definitions.frames import LITTLE
 from icdgen.definitions.model import Item, NotHeld, again
 from icdgen.definitions.reading import TooMuch
 from icdgen.definitions.wording import line, shortest
-from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS
+from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS
 
 UNCHECKED = "IMP082"
 _DEEPEST = 30  # containers that inherit or hold each other, and arrays of arrays

@@ -15,7 +15,7 @@ from icdgen.definitions.model import Item, NotHeld
 from icdgen.definitions.reading import Reading
 from icdgen.definitions.wording import line, summary, unit, without_type
 from icdgen.definitions.xtce_calibration import calibrated
-from icdgen.icd.tails import MOST_BYTES
+from icdgen.icd.variable_length import MOST_BYTES
 
 _BITS_ONLY = "its raw bits are imported as a number, without unit and limits"  # what a finding says
 CONTAINER, ARRAY, SUBRANGE = "ContainerDataType", "ArrayDataType", "SubRangeDataType"

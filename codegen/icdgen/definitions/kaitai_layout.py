@@ -16,7 +16,7 @@ from icdgen.definitions.model import Item, NotHeld, raws
 from icdgen.definitions.reading import TooMuch
 from icdgen.definitions.wording import line, summary, unit
 from icdgen.icd.located import Map
-from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS, REST
+from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS, REST
 
 RAW_ONLY = "IMP078"
 _DEEPEST = 50  # types that hold each other

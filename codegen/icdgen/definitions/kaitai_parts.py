@@ -12,7 +12,7 @@ from icdgen.definitions.kaitai_types import Piece, Type
 from icdgen.definitions.model import Item, NotHeld
 from icdgen.definitions.reading import Reading
 from icdgen.definitions.wording import line
-from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS
+from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS
 
 Key = tuple[tuple[str, ...], int, tuple[int, ...]]  # a field by its path, bits of it, and the values that are asked for
 

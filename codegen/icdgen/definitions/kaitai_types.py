@@ -13,7 +13,7 @@ from icdgen.definitions.kaitai_yaml import integer
 from icdgen.definitions.model import Definitions, Item, NotHeld
 from icdgen.definitions.wording import line
 from icdgen.icd.located import Map, Seq
-from icdgen.icd.tails import MOST_BYTES
+from icdgen.icd.variable_length import MOST_BYTES
 
 _NUMBER = re.compile(r"([usf])([1248])(le|be)?\Z")
 _BITS = re.compile(r"b([1-9][0-9]?)(le|be)?\Z")

@@ -12,7 +12,7 @@ from icdgen.definitions.enumerations import Enumerations
 from icdgen.definitions.frames import BIG, ORDERS
 from icdgen.definitions.model import Definitions, Item, Network, NotHeld, unreadable
 from icdgen.definitions.wording import formula, line, node_name, printed, summary, unit
-from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS, REST
+from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS, REST
 
 RAW_ONLY = "IMP078"
 _REGISTER = 16  # bits

@@ -24,7 +24,7 @@ from icdgen.definitions.xtce_calibration import fixed, number
 from icdgen.definitions.xtce_names import Names, beside, called
 from icdgen.definitions.xtce_types import Piece, Types, described, meant, repeated
 from icdgen.icd.roles import COUNTER, reasons_against
-from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS
+from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS
 
 OPEN = "IMP080"
 MOST_PLACED = 500  # of one whose fields say where they stand

@@ -17,7 +17,7 @@ from icdgen.definitions.reading import Reading
 from icdgen.definitions.wording import line, summary, unit, without_type
 from icdgen.definitions.xtce_calibration import NUMBER, calibration, decimal, ended, fixed, formula, number
 from icdgen.definitions.xtce_names import Names, alias, beside
-from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS
+from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS
 
 _MOST_NAMED = 1024  # values of a range of labels
 _DEEPEST = 20  # types that say what another says

@@ -7,8 +7,8 @@ from icdgen.describe.comments import Comment, enum_comment, member_comment
 from icdgen.describe.errata import Thing, first_owners, owners_elsewhere
 from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, holding
-from icdgen.icd.kept import kept
 from icdgen.icd.model import Enum, Icd, Member, Message, Node, Struct
+from icdgen.icd.node_cache import cached_by_node
 from icdgen.icd.places import places_in
 from icdgen.once import cached_property
 
@@ -30,7 +30,7 @@ def enum_widths(icd: Icd) -> dict[tuple[str, str], int]:
     return found
 
 
-@kept
+@cached_by_node
 def holders(icd: Icd, node: Node) -> dict[tuple[str, str], Users]:
     """Of each enumeration, by its node and its name, what of a node holds it."""
     found: dict[tuple[str, str], Users] = {}

@@ -11,7 +11,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
-from icdgen.icd import annex, conditions, curve, division, floats, formula, model, tails, wire_ids
+from icdgen.icd import annex, conditions, curve, division, floats, formula, model, variable_length, wire_ids
 from icdgen.icd.derived import Derivation
 from icdgen.icd.derived_values import derivation_of
 from icdgen.icd.display import display_of
@@ -204,11 +204,12 @@ class Builder:
         """Return the nodes at fixed positions of a message or struct; a split field has one node per part."""
         nodes: list[FixedNode] = []
         for item in self.items("fields", owner):
-            if tails.is_open(item) or any(id(item.get(key)) in self.broken for key in ("when", "count", "size")):
+            is_broken = any(id(item.get(key)) in self.broken for key in ("when", "count", "size"))
+            if is_broken or variable_length.is_variable(item):
                 continue
             if "when" in item and item.keys().isdisjoint(("struct", "count")):
-                scalar = self.scalar(item, item["at"])
-                nodes.append(_overlaid(replace(scalar, present_if=conditions.of(owner, item, self.scope.enums)), item))
+                present_if = conditions.conditions_of(owner, item, self.scope.enums)
+                nodes.append(_overlaid(replace(self.scalar(item, item["at"]), present_if=present_if), item))
             elif "struct" in item or "count" in item or "bitfields" not in item:
                 node = self.node_of(item, item["at"], item.get("count"))
                 nodes += () if node is None else (node,)
@@ -223,7 +224,7 @@ class Builder:
         declared = orders(item, orders(owner))
         effective = declared[0] or head["byte_order"], declared[1] or head["bit_order"]
         parts = division.parts_of(item)
-        if not parts or any(id(part) in self.broken for part in parts) or any(division.obstacles(item, *effective)):
+        if not parts or any(id(part) in self.broken for part in parts) or any(division.faults(item, *effective)):
             yield _overlaid(self.scalar(item, item["at"]), item)
             return
         for part in parts:
@@ -237,16 +238,16 @@ class Builder:
 
     def variable_nodes(self, message: Map) -> tuple[VariableNode, ...]:
         """Return the nodes of variable length; an empty tuple if one has an error, because their positions are dependent."""
-        items = tails.open_parts(message)
+        items = variable_length.variable_fields(message)
         lengths = {name: struct.length for name, struct in self.scope.structs.items()}
-        counters = [tails.counter_of(message, item) for item in items]
+        counters = [variable_length.counter_of(message, item) for item in items]
         if any(id(item) in self.broken for item in (*items, *counters)):
             return ()
-        if any(any(tails.obstacles(message, item, lengths)) for item in items):
+        if any(any(variable_length.faults(message, item, lengths)) for item in items):
             return ()
         nodes: list[VariableNode] = []
         for item in items:
-            counter, counting = tails.counter_of(message, item), tails.counting(item)
+            counter, counting = variable_length.counter_of(message, item), variable_length.counting(item)
             if counter is None:
                 most, is_array = item["up_to"], "count" in item
                 size: Size = Rest(counter_of_rest(item["name"], item.get("identifier"), is_array, most, item), most)

@@ -24,7 +24,7 @@ def _when(item: Map) -> Map:
     return when if isinstance(when, Map) else unread()
 
 
-def of(message: Map, item: Map, enums: Mapping[str, Enum]) -> tuple[Condition, ...]:
+def conditions_of(message: Map, item: Map, enums: Mapping[str, Enum]) -> tuple[Condition, ...]:
     """Return the valid conditions of a field."""
     fields = _fields(message)
     conditions = []
@@ -38,7 +38,7 @@ def of(message: Map, item: Map, enums: Mapping[str, Enum]) -> tuple[Condition, .
     return tuple(conditions)
 
 
-def are_understood(node: LayoutNode) -> bool:
+def are_valid(node: LayoutNode) -> bool:
     """Return whether all conditions of a node are valid.
 
     Each invalid condition has a finding. Further rules skip such a node, to avoid findings that only follow from it.
@@ -158,7 +158,7 @@ def _fields(message: Map) -> dict[str, Map]:
     return {item["name"]: item for item in reversed(named) if "struct" not in item}
 
 
-def exclude(first: tuple[Condition, ...], second: tuple[Condition, ...]) -> bool:
+def are_exclusive(first: tuple[Condition, ...], second: tuple[Condition, ...]) -> bool:
     """Return whether two fields with these conditions are never present in the same frame."""
     return any(
         condition.field == other.field and not set(condition.values) & set(other.values)

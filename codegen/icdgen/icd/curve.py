@@ -76,11 +76,11 @@ class Curve(NamedTuple):
         constant, slope = self.coefficients
         return (physical - constant) / slope
 
-    def holds(self, low: int, high: int) -> bool:
+    def covers(self, low: int, high: int) -> bool:
         """Return whether the points cover all raw values from ``low`` to ``high``."""
         return not self.points or (self.points[0][0] <= low and high <= self.points[-1][0])
 
-    def ends(self, low: int, high: int) -> tuple[int, int]:
+    def invertible_raws(self, low: int, high: int) -> tuple[int, int]:
         """Return the smallest and largest raw value from ``low`` to ``high`` that a physical value can be converted to."""
         if self.outside not in (CLAMP, REFUSE):
             return low, high
@@ -195,7 +195,7 @@ def is_finite(curve: Curve, low: int, high: int) -> bool:
 
 
 @lru_cache(maxsize=1024)
-def leads_back(curve: Curve, is_float: bool, low: int, high: int) -> bool:
+def has_inverse(curve: Curve, is_float: bool, low: int, high: int) -> bool:
     """Return whether a curve is strictly monotonic for the raw values from ``low`` to ``high``, so that it has an inverse.
 
     Returns False if there are more than 2^MOST_BITS raw values. Of floats only linear curves have an inverse. Raw values
@@ -205,7 +205,7 @@ def leads_back(curve: Curve, is_float: bool, low: int, high: int) -> bool:
         return len(curve.coefficients) == 2
     if high - low >= 1 << MOST_BITS:
         return False
-    low, high = curve.ends(low, high)
+    low, high = curve.invertible_raws(low, high)
     if low >= high:
         return False
     # A sample of 64 raw values is enough to reject most curves that are not monotonic.

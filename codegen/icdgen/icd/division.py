@@ -21,7 +21,7 @@ def parts_of(field: Map) -> list[Map]:
     return mappings(field.get("bitfields"))
 
 
-def obstacles(field: Map, byte_order: str, bit_order: str) -> Iterator[Fault]:
+def faults(field: Map, byte_order: str, bit_order: str) -> Iterator[Fault]:
     """Yield the faults of a split field: its own keys, and gaps and overlaps of its parts."""
     name, bits = f"`{field['name']}`", field["bits"]
     if reasons := reasons_against(field, SPLIT):

@@ -34,7 +34,7 @@ from icdgen.icd.layout import (
     stride,
 )
 from icdgen.icd.units import Unit
-from icdgen.once import cached_property, kept_by_owner
+from icdgen.once import cached_by_owner, cached_property
 
 # Limit of cached frames per layout, one for each combination of sizes: a log repeats
 # few sizes.
@@ -227,7 +227,7 @@ def frame_fields(layout: Layout, orders: Orders, sizes: Sizes | None = None) -> 
     return fields
 
 
-@kept_by_owner
+@cached_by_owner
 def _frames(layout: Layout) -> dict[tuple[Orders, tuple[int, ...] | None], tuple[FrameField, ...]]:
     """Return the cache of `frame_fields`, the oldest entry first."""
     return {}

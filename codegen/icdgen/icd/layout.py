@@ -16,7 +16,7 @@ from math import gcd
 from typing import Any, NamedTuple, TypeAlias
 
 from icdgen.frozen import dataclass
-from icdgen.icd.curve import Curve, leads_back
+from icdgen.icd.curve import Curve, has_inverse
 from icdgen.icd.derived import Derivation
 from icdgen.icd.display import Display
 from icdgen.icd.enumeration import Enum
@@ -170,13 +170,13 @@ class Scalar(LayoutNode):
     @property
     def is_invertible(self) -> bool:
         """Return whether each physical value has one nearest raw value; some lookup tables and polynomials fail this."""
-        return self.curve is None or leads_back(self.curve, self.type == "float", self.raw_min, self.raw_max)
+        return self.curve is None or has_inverse(self.curve, self.type == "float", self.raw_min, self.raw_max)
 
     @property
     def settable_raws(self) -> tuple[int, int]:
         """Return the smallest and the largest raw value that a physical value can be converted to."""
         raws = self.raw_min, self.raw_max
-        return raws if self.curve is None or self.type == "float" else self.curve.ends(*raws)
+        return raws if self.curve is None or self.type == "float" else self.curve.invertible_raws(*raws)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

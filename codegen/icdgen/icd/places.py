@@ -29,7 +29,7 @@ from icdgen.icd.layout import (
     stride,
 )
 from icdgen.icd.located import Map
-from icdgen.once import cached_property, kept_by_owner
+from icdgen.once import cached_by_owner, cached_property
 
 # A struct has no scalar; this one makes `NodePlace.type` of a struct "struct".
 _NO_SCALAR = Scalar(name="", type="struct", bits=0)
@@ -178,7 +178,7 @@ AnyScalar: TypeAlias = Scalar | FrameField | NodePlace
 """An object that gives a raw value its meaning: type, width, enumeration, unit, scale."""
 
 
-@kept_by_owner
+@cached_by_owner
 def places_in(layout: Layout) -> tuple[NodePlace, ...]:
     """Return the nodes of a message in the longest frame, in the order of `Layout.nodes`.
 
@@ -187,13 +187,13 @@ def places_in(layout: Layout) -> tuple[NodePlace, ...]:
     return places_of(layout)
 
 
-@kept_by_owner
+@cached_by_owner
 def scalars_in(layout: Layout) -> tuple[NodePlace, ...]:
     """Return all scalars of the longest frame: each array element and each field of a struct separately."""
     return tuple(scalar for place in places_in(layout) for scalar in place.scalars())
 
 
-@kept_by_owner
+@cached_by_owner
 def raw_fields_in(layout: Layout) -> tuple[NodePlace, ...]:
     """Return the scalars of the longest frame with a raw value: all except overlay fields and derived values."""
     return tuple(scalar for scalar in scalars_in(layout) if not scalar.view)

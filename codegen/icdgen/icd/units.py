@@ -112,7 +112,7 @@ _SIGN_NAMES = str.maketrans({"\u03a9": "ohm", "\u2126": "ohm", "\u00b5": "u", "\
 _PREFIXES = frozenset("fpnu\u00b5\u03bcmcdhkMGT")
 
 
-def meant(symbol: str, declared: Iterable[str]) -> str:
+def similar_unit(symbol: str, declared: Iterable[str]) -> str:
     """Return the standard or declared unit that an unknown symbol probably means.
 
     Returns an empty string for a symbol without a similar unit, and for ``kV``, which is not a misspelt ``V``.

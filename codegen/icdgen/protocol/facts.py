@@ -9,8 +9,8 @@ from math import ceil
 from typing import TypeVar
 
 from icdgen.frozen import dataclass
-from icdgen.icd.kept import kept
 from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.node_cache import cached_by_node
 from icdgen.protocol.envelope import Stream
 from icdgen.protocol.errors import Refused
 from icdgen.protocol.reading import Assumption, Reader
@@ -134,7 +134,7 @@ def need(part: T | None, name: str) -> T:
     return part
 
 
-@kept
+@cached_by_node
 def of(icd: Icd, node: Node) -> Facts:
     """The protocol facts that hold for a node."""
     reader = Reader(icd, node)

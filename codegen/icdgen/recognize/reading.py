@@ -8,8 +8,8 @@ from functools import cached_property
 from icdgen_runtime.wire.link import Link
 
 from icdgen.icd import wire_ids
-from icdgen.icd.kept import kept
 from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.node_cache import cached_by_node
 from icdgen.icd.variants import Ids, ids_of
 from icdgen.protocol import facts
 from icdgen.protocol.facts import Facts
@@ -44,7 +44,7 @@ class Speaker:
         return (wire_ids.number(body[:size]), body[size:]) if len(body) >= size else None
 
 
-@kept
+@cached_by_node
 def speaker_of(icd: Icd, node: Node) -> Speaker:
     """That node of the set."""
     return Speaker(icd, node, facts.of(icd, node))

@@ -167,7 +167,7 @@ def _formulas(node: LayoutNode, scalar: Scalar) -> Iterator[tuple[Change, Layout
 def _tables(node: LayoutNode, scalar: Scalar, old: Curve) -> Iterator[tuple[Change, LayoutNode]]:
     source, printed, outside = node.source, plain(node.source["points"]), node.source.get("outside", "")
     variants = [(Change("points", source, "points", printed, points), points, outside) for points in tables(printed)]
-    if outside and (scalar.type == "float" or not old.holds(scalar.raw_min, scalar.raw_max)):
+    if outside and (scalar.type == "float" or not old.covers(scalar.raw_min, scalar.raw_max)):
         words = (word for word in OUTSIDE if word != outside)
         variants += [(Change("outside", source, "outside", outside, word), printed, word) for word in words]
     for change, points, beyond in variants:

@@ -34,8 +34,8 @@ from icdgen.icd.rules import (  # noqa: F401  (importing a theme registers its r
     protocol_sizes,
     references,
     structs,
-    tails,
     values,
+    variable_length,
 )
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import REGISTERED, Rule, elsewhere

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen.icd import conditions, tails
+from icdgen.icd import conditions, variable_length
 from icdgen.icd.fault import Fault
 from icdgen.icd.model import Struct
 from icdgen.icd.rules.context import Context
@@ -45,7 +45,7 @@ def optional_fields_can_be_absent(ctx: Context) -> Iterator[Fault]:
         elif reason:
             text = f"{quote(field.name)} is {reason}, but only a number, a flag or an enumeration value can be optional"
             yield Fault.at(source, "when", text, "remove `when`")
-        elif tails.open_parts(message.source):
+        elif variable_length.variable_fields(message.source):
             text = f"{quote(message.name)} has a variable-length field, so its other fields cannot be optional"
             yield Fault.at(source, "when", text, "remove `when`")
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from icdgen.diagnostics import Lines
-from icdgen.icd import tails
+from icdgen.icd import variable_length
 from icdgen.icd.errata import Applied
 from icdgen.icd.fault import Fault
 from icdgen.icd.layout import Derived, LayoutNode, Orders, Scalar, scalar_of
@@ -113,7 +113,9 @@ class Context:
     @cached_property
     def behind_variable_fields(self) -> frozenset[int]:
         """Set of the id() of mappings of fixed-size fields that are placed after a variable-length field (ICD121)."""
-        return frozenset(id(item) for message, _ in self.messages for item in tails.fixed_behind(message.source))
+        return frozenset(
+            id(item) for message, _ in self.messages for item in variable_length.fixed_fields_after(message.source)
+        )
 
     def scope(self, node: Node) -> tuple[Node, ...]:
         """Return the nodes that a node includes, then the node itself; each name once."""

@@ -39,7 +39,7 @@ def in_scope(ctx: Context, node: Node, items: Callable[[Node], Iterable[T]]) -> 
     return [(owner, item) for owner in ctx.scope(node) for item in items(owner)]
 
 
-def is_news(ctx: Context, node: Node, first: Node, second: Node) -> bool:
+def brings_together(ctx: Context, node: Node, first: Node, second: Node) -> bool:
     """Return whether ``node`` is the first that has both nodes in its scope, so that a clash is reported once."""
     return second is node or (first is not second and first not in ctx.scope(second))
 
@@ -49,14 +49,14 @@ def together(node: Node, second: Node) -> str:
     return "" if second is node else f", and `{node.name}` includes both"
 
 
-def names_twice(
+def duplicate_names(
     ctx: Context, what: str, items: Callable[[Node], Iterable[Message | Enum | Struct]], help: str
 ) -> Iterator[Fault]:
     """Yield a fault for each name that two items in the scope of a node have."""
     for node in ctx.icd.nodes:
         pairs = _twice(in_scope(ctx, node, items), lambda pair: pair[1].name)
         for (first_node, first), (second_node, second) in pairs:
-            if is_news(ctx, node, first_node, second_node):
+            if brings_together(ctx, node, first_node, second_node):
                 line = line_of(first.source.at("name"), second.source.at("name"))
                 message = f"there is already {what} named {quote(second.name)}, in {line}{together(node, second_node)}"
                 related = Related(first.source.at("name"), "the first of this name")
@@ -65,7 +65,7 @@ def names_twice(
 
 @rule("ICD050")
 def message_names_are_unique(ctx: Context) -> Iterator[Fault]:
-    yield from names_twice(ctx, "a message", lambda node: node.messages, PRINTED_TWICE)
+    yield from duplicate_names(ctx, "a message", lambda node: node.messages, PRINTED_TWICE)
 
 
 @rule("ICD051")
@@ -97,7 +97,7 @@ def field_names_are_unique(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD052")
 def enumeration_names_are_unique(ctx: Context) -> Iterator[Fault]:
-    yield from names_twice(ctx, "an enumeration", lambda node: node.enums, "rename one, or use the other")
+    yield from duplicate_names(ctx, "an enumeration", lambda node: node.enums, "rename one, or use the other")
 
 
 @rule("ICD053")
@@ -206,7 +206,7 @@ def unit_symbols_are_unique(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         pairs = in_scope(ctx, node, _declared_units)
         for (first_node, first), (second_node, second) in _twice(pairs, lambda pair: pair[1]["symbol"]):
-            if is_news(ctx, node, first_node, second_node):
+            if brings_together(ctx, node, first_node, second_node):
                 line = line_of(first.at("symbol"), second.at("symbol"))
                 included = together(node, second_node)
                 message = f"the unit {quote(second['symbol'])} is already declared, in {line}{included}"

@@ -66,7 +66,7 @@ def tables_declare_outside(ctx: Context) -> Iterator[Fault]:
         table, source = field.curve, field.source
         if table is None or not table.points or "outside" in source:
             continue
-        if field.type == "float" or not table.holds(field.raw_min, field.raw_max):
+        if field.type == "float" or not table.covers(field.raw_min, field.raw_max):
             ends = "any number" if field.type == "float" else f"{field.raw_min:,} to {field.raw_max:,}"
             extent = " to ".join(f"{raw:g}" for raw in (table.points[0][0], table.points[-1][0]))
             message = (

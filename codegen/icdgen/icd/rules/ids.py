@@ -11,8 +11,8 @@ from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
 from icdgen.icd.model import KEYS_OF_IDS, TELECOMMAND, TELEMETRY, Message, Node
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.duplicates import is_news, together
-from icdgen.icd.rules.protocol_limits import in_force
+from icdgen.icd.rules.duplicates import brings_together, together
+from icdgen.icd.rules.protocol_limits import section_in_effect
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, line_of, listing, quote
 from icdgen.icd.trees import mappings
@@ -65,7 +65,7 @@ def messages_of_one_id_are_distinguishable(ctx: Context) -> Iterator[Fault]:
             for first in before:
                 if not is_linked and _are_distinguishable(first, use):
                     continue
-                if is_news(ctx, node, first.node, use.node) or (is_linked and not ctx.is_linked(use.node)):
+                if brings_together(ctx, node, first.node, use.node) or (is_linked and not ctx.is_linked(use.node)):
                     yield _same_id(ctx, node, first, use, is_linked)
                     break
             before.append(use)
@@ -82,7 +82,11 @@ def shared_ids_are_confirmed(ctx: Context) -> Iterator[Fault]:
         seen: dict[tuple[str, int], Use] = {}
         for use in (u for n in ctx.scope(node) for u in _uses(n) if u.message is not None):
             first = seen.setdefault((use.direction, use.id), use)
-            if first is use or not is_news(ctx, node, first.node, use.node) or not _are_distinguishable(first, use):
+            if (
+                first is use
+                or not brings_together(ctx, node, first.node, use.node)
+                or not _are_distinguishable(first, use)
+            ):
                 continue
             unconfirmed = [each for each in (first, use) if each.source.get("shares_id") is not True]
             if unconfirmed:
@@ -163,7 +167,7 @@ def _range_text(ctx: Context, node: Node, use: Use, ranges: dict[str, tuple[int,
     """Return the range of the protocol section in its spelling, ``0x80 to 0xFF``, or else the range of `id_bits`."""
     if use.direction not in ranges:
         return f"0 to {(1 << node.id_bits) - 1}"
-    section = in_force(ctx, node, "message_id", use.direction)
+    section = section_in_effect(ctx, node, "message_id", use.direction)
     assert section is not None
     return f"{ctx.written(section, 'first')} to {ctx.written(section, 'last')}"
 

@@ -8,9 +8,8 @@ from operator import attrgetter
 from typing import NamedTuple
 
 from icdgen.diagnostics import Related
-from icdgen.icd import tails
-from icdgen.icd.conditions import are_understood, exclude
-from icdgen.icd.division import obstacles
+from icdgen.icd import division, variable_length
+from icdgen.icd.conditions import are_exclusive, are_valid
 from icdgen.icd.fault import Fault
 from icdgen.icd.layout import Array, Derived, Layout, LayoutNode, stride, struct_layout_of
 from icdgen.icd.model import Message, Node
@@ -77,8 +76,8 @@ def _overlaps(ctx: Context) -> Iterator[Overlap]:
         # Positions of different bit orders, and optional fields, must be compared in
         # pairs.
         if any("when" in place.source or place.bit_order not in ("", icd_node.bit_order) for place in own):
-            understood = (element for element in elements if are_understood(element.node))
-            yield from _overlaps_among(owner, icd_node, understood)
+            with_valid_conditions = (element for element in elements if are_valid(element.node))
+            yield from _overlaps_among(owner, icd_node, with_valid_conditions)
             continue
         # Otherwise, one pass in the order of positions finds each element that begins
         # before the largest end of the elements before it. `furthest` is its index.
@@ -135,7 +134,7 @@ def _overlaps_among(owner: Owner, icd_node: Node, fields: Iterable[NodePlace]) -
         mask = _mask(field.at, field.bits, field.orders_in_effect(icd_node.orders).bit)
         for other, other_mask in before:
             shared = mask & other_mask
-            if shared and not exclude(other.when, field.when):
+            if shared and not are_exclusive(other.when, field.when):
                 yield Overlap(other, field, _bits_of(shared))
                 break
         before.append((field, mask))
@@ -268,7 +267,7 @@ def reserved_bytes_have_no_field(ctx: Context) -> Iterator[Fault]:
     for message, _ in ctx.messages:
         free = max(message.length - covered_bytes(message), 0) if message.reserved else 0
         # ICD121 reports `reserved` of messages of variable length.
-        if message.reserved > free and not tails.open_parts(message.source):
+        if message.reserved > free and not variable_length.variable_fields(message.source):
             text = f"{quote(message.name)} has {count(free, 'byte')} after its last field, but `reserved` is {message.reserved}"
             yield Fault.at(message.source, "reserved", text, "correct `reserved` or `length`, or the fields")
 
@@ -295,4 +294,4 @@ def all_bytes_are_described(ctx: Context) -> Iterator[Fault]:
 @rule("ICD025")
 def split_fields_are_valid(ctx: Context) -> Iterator[Fault]:
     for field, line in ctx.fields_with["bitfields"]:
-        yield from obstacles(field.source, line.orders.byte, line.orders.bit)
+        yield from division.faults(field.source, line.orders.byte, line.orders.bit)

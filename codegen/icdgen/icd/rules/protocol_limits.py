@@ -19,7 +19,7 @@ TIME_PARTS = ("year", "month", "day", "hour", "minute", "second")
 ROLES = ("type", "channel", "source", "destination")  # parts of a CAN identifier
 
 
-def in_force(ctx: Context, node: Node, *path: str) -> Map | None:
+def section_in_effect(ctx: Context, node: Node, *path: str) -> Map | None:
     """Return the mapping at a path of the protocol section in effect for a node: its own, or that of an included node."""
     for owner in reversed(ctx.scope(node)):
         if section_of(owner, path[0]) is not None:
@@ -30,7 +30,7 @@ def in_force(ctx: Context, node: Node, *path: str) -> Map | None:
 @rule("ICD099")
 def packet_counter_fits_a_byte(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
-        can, extended = in_force(ctx, node, "can"), in_force(ctx, node, "can", "extended")
+        can, extended = section_in_effect(ctx, node, "can"), section_in_effect(ctx, node, "can", "extended")
         size = extended.get("data_bytes") if extended is not None else None
         if can is None or extended is None or not isinstance(size, int) or size < 1:
             continue
@@ -82,7 +82,7 @@ def numbers_fit_their_bits(ctx: Context) -> Iterator[Fault]:
 def _on_can(ctx: Context, node: Node) -> Iterator[Fault]:
     """Yield the faults of numbers that do not fit their part of a CAN identifier."""
     own = section_of(node, "can")
-    can = in_force(ctx, node, "can")
+    can = section_in_effect(ctx, node, "can")
     bits: dict[str, int] = {}  # of each part of a CAN identifier, by role or name
     for row in mappings(can.get("identifier")) if can is not None else ():
         if isinstance(row.get("bits"), int):

@@ -10,7 +10,7 @@ from icdgen.icd.located import Map
 from icdgen.icd.model import CAN_DATA_BYTES, KEYS_OF_IDS, TELECOMMAND, TELEMETRY
 from icdgen.icd.rules.context import Context, own_fact, section_of
 from icdgen.icd.rules.protocol import sections
-from icdgen.icd.rules.protocol_limits import in_force, roles_occur_once
+from icdgen.icd.rules.protocol_limits import roles_occur_once, section_in_effect
 from icdgen.icd.rules.protocol_sizes import numbers
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, line_of, quote
@@ -104,7 +104,7 @@ def named_buses_exist(ctx: Context) -> Iterator[Fault]:
 def messages_fit_their_can_packets(ctx: Context) -> Iterator[Fault]:
     seen: set[int] = set()
     for node in ctx.icd.nodes:
-        can = in_force(ctx, node, "can")
+        can = section_in_effect(ctx, node, "can")
         # Messages that are too long for CAN can be sent over another bus.
         if can is None or not {"uart", "i2c"}.isdisjoint(ctx.protocol_of(node)):
             continue

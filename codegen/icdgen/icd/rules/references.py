@@ -12,7 +12,7 @@ from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import quote
 from icdgen.icd.suggestions import suggestion, yaml_text
-from icdgen.icd.units import SPELLINGS, meant
+from icdgen.icd.units import SPELLINGS, similar_unit
 from icdgen.suggest import close_to
 
 
@@ -85,7 +85,7 @@ def units_exist(ctx: Context) -> Iterator[Fault]:
             unit = field.source["unit"]
             help, fix = "declare it in `units:`; `icdgen units` lists the built-in units", ""
             symbols = (declared.symbol for owner in ctx.scope(node) for declared in owner.units)
-            if close := meant(unit, symbols):
+            if close := similar_unit(unit, symbols):
                 otherwise = "" if unit in SPELLINGS else " If not, declare it in `units:`"
                 help, fix = f"did you mean {quote(close)}?{otherwise}", yaml_text(close)
             yield Fault.at(field.source, "unit", f"the unit {quote(unit)} is unknown", help, fix)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen.icd import division, tails
+from icdgen.icd import division, variable_length
 from icdgen.icd.fault import Fault
 from icdgen.icd.layout import struct_layout_of
 from icdgen.icd.located import Map
 from icdgen.icd.model import Node
 from icdgen.icd.rules.context import Context, is_overlay
-from icdgen.icd.rules.duplicates import names_twice
+from icdgen.icd.rules.duplicates import duplicate_names
 from icdgen.icd.rules.references import undeclared
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, quote
@@ -88,9 +88,9 @@ def uses_have_no_keys_of_fields(ctx: Context) -> Iterator[Fault]:
                 yield Fault.at(row, key, message, f"move it to the fields of {quote(row['struct'])}, or remove it")
     for struct, _ in ctx.structs:
         for row in mappings(struct.source.get("fields")):
-            if tails.is_open(row) and isinstance(row.get("name"), str):
+            if variable_length.is_variable(row) and isinstance(row.get("name"), str):
                 message = f"{quote(row['name'])} has a variable length, which is not supported in a struct"
-                yield Fault.at(row, tails.key_of(row), message, "move it to the end of the message")
+                yield Fault.at(row, variable_length.count_key(row), message, "move it to the end of the message")
         for field in struct.layout.nodes:
             if is_overlay(field):
                 message = f"{quote(field.name)} is a view, and a struct has none: there is no frame that it would read"
@@ -99,7 +99,7 @@ def uses_have_no_keys_of_fields(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD049")
 def struct_names_are_unique(ctx: Context) -> Iterator[Fault]:
-    yield from names_twice(ctx, "a struct", lambda node: node.structs, "rename one, or use the other")
+    yield from duplicate_names(ctx, "a struct", lambda node: node.structs, "rename one, or use the other")
 
 
 @rule("ICD144", severity="warning", needs_complete=True)

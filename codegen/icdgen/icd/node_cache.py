@@ -11,7 +11,7 @@ from icdgen.icd.model import Icd, Node
 Result = TypeVar("Result")
 
 
-def kept(compute: Callable[[Icd, Node], Result]) -> Callable[[Icd, Node], Result]:
+def cached_by_node(compute: Callable[[Icd, Node], Result]) -> Callable[[Icd, Node], Result]:
     """Decorate a function of a node so that its results are cached for the nodes of the most recent ICD.
 
     ICDs and nodes are compared by identity: comparing or hashing a whole model would take longer than the function.

@@ -29,40 +29,40 @@ class Counting(NamedTuple):
     plus: int = 0  # number of elements minus value of the counter
 
 
-def is_open(item: Map) -> bool:
+def is_variable(item: Map) -> bool:
     """Return whether a field has a variable length: up to the end of the frame, or counted by another field."""
-    count = item.get(key_of(item))
+    count = item.get(count_key(item))
     if isinstance(count, dict):
         return isinstance(count.get("field"), str) and type(count.get("plus")) is int
     return isinstance(count, str)
 
 
-def key_of(item: Map) -> str:
+def count_key(item: Map) -> str:
     """Return the key for the number of elements: `size` for bytes and text, else `count`."""
     return "size" if "size" in item else "count"
 
 
 def counting(item: Map) -> Counting:
     """Return the source of the number of elements of a variable-length field."""
-    count = item[key_of(item)]
+    count = item[count_key(item)]
     return Counting(count["field"], count["plus"]) if isinstance(count, dict) else Counting(count)
 
 
-def open_parts(message: Map) -> list[Map]:
+def variable_fields(message: Map) -> list[Map]:
     """Return the variable-length fields of a message, in the order of the file."""
-    return [item for item in _fields(message, is_open) if type(item.get("up_to", 0)) is int]
+    return [item for item in _fields(message, is_variable) if type(item.get("up_to", 0)) is int]
 
 
-def fixed_behind(message: Map) -> list[Map]:
+def fixed_fields_after(message: Map) -> list[Map]:
     """Return the fields of fixed size that are placed at or after the start of the first variable-length field."""
-    first = next(iter(open_parts(message)), None)
+    first = next(iter(variable_fields(message)), None)
     if first is None or _is_unknown(message, first):
         return []
-    fixed = _fields(message, lambda item: not is_open(item) and not item.get("view") and "after" not in item)
+    fixed = _fields(message, lambda item: not is_variable(item) and not item.get("view") and "after" not in item)
     return [item for item in fixed if item["at"] >= first["at"]]
 
 
-def unit(item: Map, structs: Lengths) -> int:
+def element_bits(item: Map, structs: Lengths) -> int:
     """Return the bits of an element of a variable-length field: 8 for bytes and text, 0 for an unknown struct."""
     if "struct" in item:
         return 8 * structs.get(item["struct"], 0)
@@ -98,7 +98,7 @@ def _is_sized(item: Map) -> bool:
 def faults_of_count(message: Map, item: Map) -> Iterator[Fault]:
     """Yield the faults of the number of elements of a variable-length field: its counter, `plus` and `up_to`."""
     name = f"`{item['name']}`"
-    key, (counter_name, plus) = key_of(item), counting(item)
+    key, (counter_name, plus) = count_key(item), counting(item)
     if _is_unknown(message, item):
         text = f"`{message['name']}` has no field `{counter_name}` that could count {name}"
         numbers = "a number, " if key == "count" else ""
@@ -118,7 +118,7 @@ def faults_of_count(message: Map, item: Map) -> Iterator[Fault]:
         return
     counter = counter_of(message, item)
     assert counter is not None
-    earlier_parts = takewhile(lambda part: part is not item, open_parts(message))
+    earlier_parts = takewhile(lambda part: part is not item, variable_fields(message))
     earlier = next((part for part in earlier_parts if counting(part).name == counter_name), None)
     if earlier is not None:
         text = f"`{counter_name}` counts both `{earlier['name']}` and {name}"
@@ -172,7 +172,7 @@ def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Fault
         return
     # Each fault below returns at once: further faults of the position would only follow
     # from it.
-    parts = open_parts(message)
+    parts = variable_fields(message)
     before = next((part for part, following in pairwise(parts) if following is item), None)
     names = [part["name"] for part in parts]
     if item.get("after") in names[names.index(item["name"]) + 1 :]:
@@ -215,14 +215,14 @@ def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Fault
     if "size" in item and not is_octets:
         text = f"{name} is `{item.get('type')}`: `size` is for bytes and text"
         yield Fault.at(item, "size", text, "for numbers, write the `bits` of an element and `count`")
-    elif unit(item, structs) % 8:
-        text = f"an element of {name} has {unit(item, structs)} bits, but a frame has whole bytes"
+    elif element_bits(item, structs) % 8:
+        text = f"an element of {name} has {element_bits(item, structs)} bits, but a frame has whole bytes"
         yield Fault.at(item, "bits", text, "describe elements of whole bytes, or the data as `bytes` with `size`")
     for key in ("view", "bitfields"):
         if item.get(key):
             text = f"{name} has a variable length, so it cannot have `{key}`"
             yield Fault.at(item, key, text, f"remove `{key}`")
-    longest = message["length"] + sum(part.get("up_to", 0) * unit(part, structs) // 8 for part in parts)
+    longest = message["length"] + sum(part.get("up_to", 0) * element_bits(part, structs) // 8 for part in parts)
     if longest > MOST_BYTES and item is parts[-1]:
         text = (
             f"`{message['name']}` can have {longest:,} bytes with all of {name}, more than the limit of {MOST_BYTES:,}"
@@ -230,7 +230,7 @@ def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Fault
         yield Fault.at(item, "up_to", text, "correct `up_to`")
 
 
-def obstacles(message: Map, item: Map, structs: Lengths) -> Iterator[Fault]:
+def faults(message: Map, item: Map, structs: Lengths) -> Iterator[Fault]:
     """Yield all faults of a variable-length field."""
     yield from faults_of_count(message, item)
     yield from faults_of_place(message, item, structs)

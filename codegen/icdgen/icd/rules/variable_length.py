@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.diagnostics import Related
-from icdgen.icd import tails
+from icdgen.icd import variable_length
 from icdgen.icd.fault import Fault
 from icdgen.icd.layout import Array, Overlay, stride
 from icdgen.icd.model import Message
@@ -19,11 +19,11 @@ from icdgen.icd.trees import mappings, named
 @rule("ICD120")
 def counts_are_determined(ctx: Context) -> Iterator[Fault]:
     for message, _ in ctx.messages:
-        for item in tails.open_parts(message.source):
-            yield from tails.faults_of_count(message.source, item)
+        for item in variable_length.variable_fields(message.source):
+            yield from variable_length.faults_of_count(message.source, item)
     for line in ctx.lines:
         node, source = line.node, line.node.source
-        if "up_to" in source and not tails.is_open(source):
+        if "up_to" in source and not variable_length.is_variable(source):
             size = f"`count: {node.size}`" if isinstance(node, Array) else "`bits`"
             text = f"{quote(node.name)} has a fixed size ({size}), so `up_to` has no effect"
             help = "remove `up_to`; the largest value of a number is `max`"
@@ -34,16 +34,16 @@ def counts_are_determined(ctx: Context) -> Iterator[Fault]:
 def variable_parts_are_at_the_end(ctx: Context) -> Iterator[Fault]:
     for line in ctx.lines:
         source = line.node.source
-        if "after" in source and not tails.is_open(source):
+        if "after" in source and not variable_length.is_variable(source):
             text = f"{quote(line.node.name)} has a fixed size, so its place is `at` and it cannot have `after`"
             help = "remove `after`; only a variable-length field can follow another one"
             yield Fault.at(source, "after", text, help)
     for message, node in ctx.messages:
         lengths = {struct.name: struct.length for owner in ctx.scope(node) for struct in owner.structs}
-        for item in tails.open_parts(message.source):
-            yield from tails.faults_of_place(message.source, item, lengths)
-        for item in tails.fixed_behind(message.source):
-            first = tails.open_parts(message.source)[0]
+        for item in variable_length.variable_fields(message.source):
+            yield from variable_length.faults_of_place(message.source, item, lengths)
+        for item in variable_length.fixed_fields_after(message.source):
+            first = variable_length.variable_fields(message.source)[0]
             text = (
                 f"{quote(item['name'])} follows {quote(first['name'])}, whose length varies, so it has no fixed place"
             )
@@ -96,7 +96,7 @@ def messages_can_end_early(ctx: Context) -> Iterator[Fault]:
 
 def _reason_against_early_end(message: Message, is_linked: bool) -> str:
     """Return why no frame of a message can omit trailing zeros, as the end of a sentence; empty if a frame can."""
-    if tails.open_parts(message.source):
+    if variable_length.variable_fields(message.source):
         return "has a variable-length field, and the zeros at the end of a frame belong to it"
     if message.length < 2:
         return f"has {count(message.length, 'byte')}, and the first byte is always sent"
