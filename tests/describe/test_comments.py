@@ -80,5 +80,7 @@ def test_an_enumeration_says_which_fields_hold_it(tmp_path):
         encoding="utf-8",
     )  # fmt: skip
     mode, other = describe(load([tmp_path / "demo.yaml"]).icd).node("demo").enums
-    assert mode.comment.rest == ("Held by F0 in M1, M2, M3, M4, M5 and 3 others; F1 in Last; F2 in Last; F3 in Last.",)
+    assert mode.comment.details == (
+        "Held by F0 in M1, M2, M3, M4, M5 and 3 others; F1 in Last; F2 in Last; F3 in Last.",
+    )
     assert other.comment.paragraphs == ("Other: an enumeration.",)

@@ -117,7 +117,7 @@ def test_every_byte_of_a_frame_is_written_once_in_order(parts, random):
         add(*arguments)
     segments = list(frame.segments())
     assert [n for one in segments for n in range(one.byte, one.byte + one.length)] == list(range(frame_length))
-    assert all(one.parts in ((), ("bit 0", "bit 5")) for one in segments)
-    assert [one.whole for one in segments if one.whole] == sorted(
+    assert all(one.terms in ((), ("bit 0", "bit 5")) for one in segments)
+    assert [one.statement for one in segments if one.statement] == sorted(
         (arguments[2] for add, arguments in added if add == frame.add_whole), key=lambda text: int(text.split()[1])
     )

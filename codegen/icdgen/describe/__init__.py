@@ -1,7 +1,14 @@
-"""What every output says of an ICD, worked out once and in no language: names in words, widths of integers, steps of scales,
-values with names, and the paragraphs of comments. A backend only spells it.
+"""Decisions that all outputs share. A backend only spells them.
 
-`describe` gives the `Description` of a set of ICDs; from there ``node``, ``message`` and ``enum`` lead to the parts.
+`describe` returns the `Description` of a set of ICDs, with its nodes, messages, fields, structs and enumerations.
+
+| decisions | modules |
+|---|---|
+| the set, its nodes, messages and members | `nodes`, `description`, `scalar`, `enums`, `named` |
+| integers that store raw values; physical values | `storage`, `steps`, `integer_scale`, `arithmetic`, `derived`, `bounds` |
+| loops, groups of members, bytes of a frame, lengths | `arrays`, `groups`, `lengths`, `contained` |
+| constants, errata, comments, numbers for people | `constants`, `errata`, `comments`, `shared_ids`, `numbers`, `display`, `ids` |
+| links, examples | `links`, `examples` |
 """
 
 from __future__ import annotations

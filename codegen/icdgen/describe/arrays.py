@@ -1,6 +1,7 @@
-"""The arrays of a message that are read and written by a loop, or by a function for an element.
+"""Arrays that code reads and writes in a loop, or by a function for an element.
 
-Of structs, and of flags and numbers that are no words: as many of these as are whole bytes are read and written alike, in rounds.
+These are arrays of structs, and arrays of numbers that are not whole words. Elements that do not end at a byte, such as flags
+or numbers of 12 bits, are taken in rounds: as many at once as are whole bytes. Every round has the same code.
 """
 
 from __future__ import annotations
@@ -13,19 +14,19 @@ from typing import Any, NamedTuple
 from icdgen.describe.description import Composite, FieldDescription, Into, StructDescription
 
 MANY_ENOUGH = 4
-"""From this many elements on there are rounds; of fewer, each is read and written by itself."""
+"""Smallest number of elements for which a loop is shorter than a statement for each."""
 
 
 class StructArray(NamedTuple):
-    """An array of structs, of a message or of an element of another array of it."""
+    """Array of structs in a message, or in an element of another array of the message."""
 
-    field: FieldDescription  # the array as one
-    element_struct: StructDescription  # in the orders that hold here
-    name: str  # from the message on: ``satellites_signals``
+    field: FieldDescription
+    element_struct: StructDescription  # in the orders in effect here
+    name: str  # with the names of enclosing arrays: ``satellites_signals``
 
     @property
     def begin(self) -> int:
-        """The first byte, counted in what it stands in."""
+        """First byte, counted from the start of the message or element that has the array."""
         return self.field.model.at // 8
 
     @property
@@ -34,66 +35,66 @@ class StructArray(NamedTuple):
         return self.element_struct.model.length
 
 
-def struct_arrays_in(one: Composite[Any], within: str = "") -> tuple[StructArray, ...]:
-    """Those of a message or struct itself, its open end among them; ``within`` is where their names begin."""
+def struct_arrays_in(composite: Composite[Any], prefix: str = "") -> tuple[StructArray, ...]:
+    """Return the arrays of structs of a message or struct, without arrays in their elements. Names start with ``prefix``."""
     return tuple(
-        StructArray(part, part.element_struct, within + part.name)
-        for part in one.walk(Into.STRUCTS)
-        if part.element_struct is not None
+        StructArray(field, field.element_struct, prefix + field.name)
+        for field in composite.walk(Into.STRUCTS)
+        if field.element_struct is not None
     )
 
 
-def all_struct_arrays(one: Composite[Any]) -> Iterator[StructArray]:
-    """All of a message, those in others before them."""
-    for part, name in named_arrays(one, lambda part: part.element_struct is not None):
-        if part.element_struct is not None:
-            yield StructArray(part, part.element_struct, name)
+def all_struct_arrays(composite: Composite[Any]) -> Iterator[StructArray]:
+    """List all arrays of structs of a message; arrays in elements of an array come before it."""
+    for field, name in named_arrays(composite, lambda field: field.element_struct is not None):
+        if field.element_struct is not None:
+            yield StructArray(field, field.element_struct, name)
 
 
 def named_arrays(
-    one: Composite[Any], wanted: Callable[[FieldDescription], bool], within: str = ""
+    composite: Composite[Any], is_wanted: Callable[[FieldDescription], bool], prefix: str = ""
 ) -> Iterator[tuple[FieldDescription, str]]:
-    """The arrays of a message that are wanted, arrays of structs among them, and their names; those in others come first."""
-    for part in one.walk(Into.STRUCTS):
-        if wanted(part):
-            name = within + part.name
-            if part.element_struct is not None:
-                yield from named_arrays(part.element_struct, wanted, f"{name}_")
-            yield part, name
+    """List the arrays for which ``is_wanted`` holds, and their names; arrays in elements of an array come before it."""
+    for field in composite.walk(Into.STRUCTS):
+        if is_wanted(field):
+            name = prefix + field.name
+            if field.element_struct is not None:
+                yield from named_arrays(field.element_struct, is_wanted, f"{name}_")
+            yield field, name
 
 
 class ElementRounds(NamedTuple):
-    """``repetitions`` rounds of ``in_round`` elements, as many as are whole bytes; elements behind the last round are not in it."""
+    """Rounds over an array, each of as many elements as are whole bytes. Elements behind the last round are not included."""
 
-    in_round: int
-    repetitions: int
-    begin: int  # the first byte of the first
-    step: int  # bytes of each
+    in_round: int  # elements of a round
+    repetitions: int  # rounds
+    begin: int  # first byte of the first round
+    step: int  # bytes of a round
 
     @property
     def elements(self) -> int:
-        """How many there are in all rounds."""
+        """Number of elements in all rounds."""
         return self.repetitions * self.in_round
 
     @property
     def length(self) -> int:
-        """Bytes of all rounds."""
+        """Number of bytes of all rounds."""
         return self.repetitions * self.step
 
     def members(self, first: FieldDescription, name: Callable[[int], str]) -> tuple[FieldDescription, ...]:
-        """The elements of one round, counted from where its bytes begin; ``name`` is what they are called by in code."""
-        found = []
-        for element in range(self.in_round):
-            one = first.moved(replace(first.model, at=element * first.model.bits, count=0))
-            one.member = name(element)
-            found.append(one)
-        return tuple(found)
+        """Return the elements of a round, with bits counted from its first byte. ``name`` gives their names in code."""
+        elements = []
+        for index in range(self.in_round):
+            element = first.moved(replace(first.model, at=index * first.model.bits, count=0))
+            element.member = name(index)
+            elements.append(element)
+        return tuple(elements)
 
 
 def rounds_of(first: FieldDescription, count: int) -> ElementRounds | None:
-    """Those of an array of ``count`` elements, which begins with ``first``; None of few, and of what begins within a byte.
+    """Return the rounds over an array of ``count`` elements, which starts with ``first``.
 
-    Words that lie in memory as in the frame need no rounds: they are copied.
+    None if there are few elements, if the array does not start at a byte, or if its words are copied.
     """
     at, bits = first.model.at, first.model.bits
     if at % 8 or first.is_copied or first.model.when:
@@ -104,7 +105,7 @@ def rounds_of(first: FieldDescription, count: int) -> ElementRounds | None:
 
 
 def loop_of(field: FieldDescription) -> ElementRounds | None:
-    """The loop that reads or writes all elements of an array; None if they are copied, or read and written one by one."""
+    """Return the loop over all elements of an array; None if they are copied, or read and written one by one."""
     if field.element_struct is not None:
         return ElementRounds(1, field.count, field.model.at // 8, field.element_struct.model.length)
     if not field.count or field.struct is not None:

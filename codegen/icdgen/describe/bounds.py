@@ -1,4 +1,4 @@
-"""The limits of a field, one by one: each with its key, its sign, and in words."""
+"""Limits of a field, one by one, with their keys, signs and words."""
 
 from __future__ import annotations
 
@@ -14,56 +14,57 @@ from icdgen.icd.model import Limits
 from icdgen.icd.places import AnyScalar
 
 
-class Kind(NamedTuple):
-    """A kind of limit. ``holds(value, limit)`` tells whether a value keeps it."""
+class LimitKind(NamedTuple):
+    """Kind of limit. ``holds(value, limit)`` returns whether a value is within the limit."""
 
     key: str  # as in the ICD
     sign: str
     words: str  # before the number: "at least 0"
-    title: str  # of the number by itself
-    refusal: str  # before the number, of a value that does not keep it
+    title: str  # of the constant with the number
+    refusal: str  # before the number, for a value beyond the limit
     holds: Callable[[Fraction | float, Fraction], bool]
 
 
 KINDS: Final = (
-    Kind("min", ">=", "at least", "least value", "below the minimum", operator.ge),
-    Kind("above", ">", "above", "must be above this", "must be above", operator.gt),
-    Kind("max", "<=", "at most", "largest value", "above the maximum", operator.le),
-    Kind("below", "<", "below", "must be below this", "must be below", operator.lt),
+    LimitKind("min", ">=", "at least", "least value", "below the minimum", operator.ge),
+    LimitKind("above", ">", "above", "must be above this", "must be above", operator.gt),
+    LimitKind("max", "<=", "at most", "largest value", "above the maximum", operator.le),
+    LimitKind("below", "<", "below", "must be below this", "must be below", operator.lt),
 )
 KEYS: Final = tuple(kind.key for kind in KINDS)
 
 
 class Bound(NamedTuple):
-    """A limit of the physical value (of the raw value where there is no scale)."""
+    """Limit of the physical value, or of the raw value without a scale."""
 
-    kind: Kind
+    kind: LimitKind
     value: Fraction
 
     @property
     def key(self) -> str:
+        """Key in the ICD: ``min``, ``above``, ``max`` or ``below``."""
         return self.kind.key
 
     @property
     def double(self) -> float:
-        """The double nearest to the limit."""
+        """Double nearest to the limit."""
         return self.value.numerator / self.value.denominator
 
     def holds(self, value: Fraction | float) -> bool:
-        """Whether the value keeps the limit; NaN keeps none."""
+        """Return whether a value is within the limit. NaN is not."""
         return self.kind.holds(value, self.value)
 
 
 def bounds(limits: Limits | None) -> tuple[Bound, ...]:
-    """The limits that there are: from below, then from above."""
+    """Return the limits of a field, lower ones first."""
     if limits is None:
         return ()
-    found = ((kind, getattr(limits, kind.key)) for kind in KINDS)
-    return tuple(Bound(kind, value) for kind, value in found if value is not None)
+    values = ((kind, getattr(limits, kind.key)) for kind in KINDS)
+    return tuple(Bound(kind, value) for kind, value in values if value is not None)
 
 
 def span(curve: Curve, field: AnyScalar) -> tuple[Fraction, Fraction] | None:
-    """The smallest and the largest value that leads back to a raw value; None where none does, and of a float."""
+    """Return the smallest and largest physical value that can be set; None if a calibration has no inverse, and for floats."""
     if field.type == "float" or not field.is_invertible:
         return None
     first, last = (Fraction(curve.double(raw)) for raw in field.settable_raws)
@@ -71,14 +72,14 @@ def span(curve: Curve, field: AnyScalar) -> tuple[Fraction, Fraction] | None:
 
 
 def allowed_ends(field: AnyScalar) -> tuple[Fraction | None, Fraction | None]:
-    """Smallest and largest physical value, as far as the type and inclusive limits tell."""
+    """Return the smallest and largest physical value by type and inclusive limits; None for an end without a bound."""
     least, most = _type_ends(field)
     low, high = (field.limits.min, field.limits.max) if field.limits else (None, None)
     return least if low is None else low, most if high is None else high
 
 
 def _type_ends(field: AnyScalar) -> tuple[Fraction | None, Fraction | None]:
-    """Smallest and largest physical value of the type; None for floats, and for what is no number."""
+    """Return the smallest and largest physical value by type alone; None for floats, flags, enumerations and bytes."""
     ends = None
     if field.curve is not None:
         ends = span(field.curve, field)

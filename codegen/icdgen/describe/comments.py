@@ -1,6 +1,6 @@
-"""What comments say of messages, fields, enumerations and accessors, as paragraphs of plain text.
+"""Comments on messages, fields, enumerations and accessors in generated code, as paragraphs of plain text.
 
-Text in backticks is code, and there is no other markup: text of the ICD comes as it is but for its backticks.
+Text in backticks is code; there is no other markup. Backticks in the ICD become apostrophes.
 """
 
 from __future__ import annotations
@@ -28,53 +28,55 @@ from icdgen.icd.layout import LayoutNode, Scalar, VariablePart
 from icdgen.icd.model import CONFIGURATION, Condition, Enum, Member, Message, Struct
 from icdgen.icd.places import NodePlace
 
-_LISTED = 6  # names in a row
+_LISTED = 6
+"""Largest number of names that a sentence lists."""
 
 
 class Comment(NamedTuple):
-    """``head`` says what it is in one sentence or two; ``rest`` and ``errata`` are further paragraphs."""
+    """Paragraphs of a comment. ``head`` has one or two sentences; ``details`` and ``errata`` are further paragraphs."""
 
     head: str
-    rest: tuple[str, ...] = ()
+    details: tuple[str, ...] = ()
     errata: tuple[str, ...] = ()
 
     @property
     def paragraphs(self) -> tuple[str, ...]:
-        """All of it."""
-        return self.head, *self.rest, *self.errata
+        """All paragraphs."""
+        return self.head, *self.details, *self.errata
 
 
 def one_line(text: str) -> str:
-    """The words of a text, one blank apart."""
+    """Return a text on one line, with single blanks between its words."""
     return text.strip() if text.isprintable() and "  " not in text else " ".join(text.split())
 
 
 @lru_cache(maxsize=8192)
 def words(text: str) -> str:
-    """Text of the ICD, for a paragraph: on one line, without backticks."""
+    """Return text of the ICD for a paragraph: on one line, without backticks."""
     return one_line(text.replace("`", "'"))
 
 
 def sentence(text: str) -> str:
-    """`words` with a full stop; empty if there are none."""
+    """Return `words` with a full stop; empty if there are no words."""
     text = words(text)
     return text if not text or text.endswith((".", "?", "!", ":")) else f"{text}."
 
 
-def _comment(head: str, rest: Iterable[str], errata: Iterable[Erratum], told: Mapping[str, str]) -> Comment:
-    said = tuple(f"{e.label} {words(e.id)}{e.sureness}: {_said(e, told.get(e.id))}" for e in errata)
-    return Comment(head, tuple(filter(None, rest)), said)
+def _comment(head: str, paragraphs: Iterable[str], errata: Iterable[Erratum], elsewhere: Mapping[str, str]) -> Comment:
+    """Return a comment. ``elsewhere`` has the parts that explain an erratum in place of this comment, by its id."""
+    explained = tuple(f"{e.label} {words(e.id)}{e.sureness}: {_explained(e, elsewhere.get(e.id))}" for e in errata)
+    return Comment(head, tuple(filter(None, paragraphs)), explained)
 
 
-def _said(erratum: Erratum, teller: str | None) -> str:
-    """What it is and why so, or who says that."""
-    return f"see {words(teller)}." if teller else f"{sentence(erratum.title)} {sentence(erratum.why)}".strip()
+def _explained(erratum: Erratum, owner: str | None) -> str:
+    """Return title and reason of an erratum, or a reference to the part whose comment has them."""
+    return f"see {words(owner)}." if owner else f"{sentence(erratum.title)} {sentence(erratum.why)}".strip()
 
 
 def message_comment(message: Message, log_bit: int | None = None, sharing: str = "") -> Comment:
-    """Name, kind, ids, length, table; summary; what is special about it.
+    """Return the comment of a message: name, kind, ids, length and table; summary; hazard, acknowledge and other facts.
 
-    ``log_bit``: the bit of the log mask that selects it. ``sharing``: with whom it shares its id.
+    ``log_bit`` is the bit of the log mask that selects it; ``sharing`` is a sentence on messages with the same id.
     """
     ids = str(message.id)
     if message.kind == CONFIGURATION:
@@ -98,33 +100,33 @@ def message_comment(message: Message, log_bit: int | None = None, sharing: str =
 
 
 def condition_text(condition: Condition, message: Message | None = None) -> str:
-    """``Mode is 1 or 2``; of an enumeration the names of its members, where ``message`` is that of the field."""
-    known = {node.name: node for node in message.layout.fixed} if message else {}
-    on = known.get(condition.field)
-    values = [_said_of(on, value) for value in condition.values]
+    """Return ``Mode is 1 or 2``; with the message of the field, names of an enumeration instead of numbers."""
+    nodes = {node.name: node for node in message.layout.fixed} if message else {}
+    node = nodes.get(condition.field)
+    values = [_value_of(node, value) for value in condition.values]
     return f"{words(condition.field)} is {' or '.join(values)}"
 
 
-def _said_of(field: LayoutNode | None, value: int) -> str:
+def _value_of(field: LayoutNode | None, value: int) -> str:
     if not isinstance(field, Scalar):
         return str(value)
     if field.type == "bool":
         return "true" if value else "false"
     members = field.enum.members if field.enum is not None else ()
-    return next((words(one.name) for one in members if one.value == value and one.to is None), str(value))
+    return next((words(member.name) for member in members if member.value == value and member.to is None), str(value))
 
 
 def presence_comment(field: NodePlace, message: Message) -> str:
-    """What tells whether a field is there."""
+    """Return the comment of the function that returns whether an optional field is present."""
     return f"Whether {words(field.name)} is there: if {_conditions(field, message)}."
 
 
 def _conditions(field: NodePlace, message: Message) -> str:
-    return " and ".join(condition_text(one, message) for one in field.when)
+    return " and ".join(condition_text(condition, message) for condition in field.when)
 
 
 def part_comment(part: Message, positions: Sequence[int]) -> str:
-    """What is given of a message that another one repeats."""
+    """Return the comment of the function that returns a contained message."""
     return f"{words(part.name)}, repeated from {' and from '.join(map(_from, positions))}."
 
 
@@ -137,51 +139,57 @@ def _table(number: int | None) -> str:
 
 
 def struct_comment(struct: Struct) -> Comment:
-    """Name, length and table; summary."""
+    """Return the comment of a struct: name, length and table; summary."""
     head = f"{words(struct.name)}: a struct of {byte_count(struct.length)}.{_table(struct.table)}"
     return _comment(head, (sentence(struct.summary),), struct.errata, {})
 
 
 def enum_comment(enum: Enum, users: Mapping[str, Sequence[str]]) -> Comment:
-    """Name and table; summary; ``users``: by the names of the fields that hold it, the messages and structs they stand in."""
+    """Return the comment of an enumeration: name and table; summary; fields with this type.
+
+    ``users`` are the messages and structs that have these fields, by the names of the fields.
+    """
     head = f"{words(enum.name)}: an enumeration.{_table(enum.table)}"
     return _comment(head, (sentence(enum.summary), _used(users)), enum.errata, {})
 
 
 def _used(users: Mapping[str, Sequence[str]]) -> str:
-    """``Held by Mode in Status and Set Mode; Boot Mode in Status.``"""
-    found = [f"{words(field)} in {_listed(list(map(words, owners)))}" for field, owners in users.items()]
-    if len(found) > _LISTED:
-        found[_LISTED - 1 :] = [f"{len(found) - _LISTED + 1} other fields"]
-    return f"Held by {'; '.join(found)}." if found else ""
+    """Return ``Held by Mode in Status and Set Mode; Boot Mode in Status.``"""
+    fields = [f"{words(field)} in {_listed(list(map(words, owners)))}" for field, owners in users.items()]
+    if len(fields) > _LISTED:
+        fields[_LISTED - 1 :] = [f"{len(fields) - _LISTED + 1} other fields"]
+    return f"Held by {'; '.join(fields)}." if fields else ""
 
 
 def _listed(names: Sequence[str]) -> str:
-    """`listed`; of many the first, and how many others there are."""
+    """Return `listed` of the first names, and the number of others if there are many."""
     few = names if len(names) <= _LISTED else [*names[: _LISTED - 1], f"{len(names) - _LISTED + 1} others"]
     return listed(few)
 
 
 def listed(names: Sequence[str]) -> str:
-    """``Status, Set Mode and Limits``"""
+    """Return names in a sentence: ``Status, Set Mode and Limits``."""
     return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
 
 
-def member_comment(member: Member, told: Mapping[str, str]) -> Comment:
-    """Name and value; summary. ``told``: what tells of an erratum, by its id, if this does not."""
-    return _comment(f"{words(member.name)} ({member.value}).", (sentence(member.summary),), member.errata, told)
+def member_comment(member: Member, elsewhere: Mapping[str, str]) -> Comment:
+    """Return the comment of a member of an enumeration: name and value; summary. ``elsewhere`` as for `_comment`."""
+    return _comment(f"{words(member.name)} ({member.value}).", (sentence(member.summary),), member.errata, elsewhere)
 
 
-def field_comment(field: NodePlace, told: Mapping[str, str], message: Message) -> Comment:
-    """Name, place, range and unit; summary; values that are allowed or mean something. ``told``: as for a member."""
+def field_comment(field: NodePlace, elsewhere: Mapping[str, str], message: Message) -> Comment:
+    """Return the comment of a field: name, place, range and unit; summary; conditions, limits and special values.
+
+    ``elsewhere`` as for `_comment`.
+    """
     parts = message.layout.parts
     if field.is_count:
-        tail = parts[-1]
-        what = f"how much of {words(tail.name)} the frame has, up to {tail.most}; identified by its length"
+        last = parts[-1]
+        what = f"how much of {words(last.name)} the frame has, up to {last.most}; identified by its length"
         return Comment(f"{words(field.name)}: {what}.")
     if field.derived is not None:
         head = f"{words(field.name)}{_unit(field)}: derived by `{words(field.formula)}`, in doubles, and never set."
-        return _comment(head, (sentence(field.summary),), field.errata, told)
+        return _comment(head, (sentence(field.summary),), field.errata, elsewhere)
     facts = ["A view: it reads bits of other fields, and is not set."] if field.view else []
     if field.when:
         facts.append(f"Only there if {_conditions(field, message)}.")
@@ -190,13 +198,13 @@ def field_comment(field: NodePlace, told: Mapping[str, str], message: Message) -
     if field.limits is not None:
         facts.append(_limits(field))
     facts += (f"{special_text(special)}: {sentence(special.meaning)}" for special in field.special)
-    for part in (one for one in parts if one.counter == field.name):
+    for part in (part for part in parts if part.counter == field.name):
         plus = f", of which there are {abs(part.plus)} {'more' if part.plus > 0 else 'less'}" if part.plus else ""
         facts.append(f"Counts {words(part.name)}{plus}: at most {part.most}.")
-    opening = next((part for part in parts if part.name == field.name), None)
-    place = _open_place(field, message, opening) if opening else _place(field)
+    own_part = next((part for part in parts if part.name == field.name), None)
+    place = _variable_place(field, message, own_part) if own_part else _place(field)
     head = f"{words(field.name)}: {place}{_meaning(field)}."
-    return _comment(head, (sentence(field.summary), " ".join(facts)), field.errata, told)
+    return _comment(head, (sentence(field.summary), " ".join(facts)), field.errata, elsewhere)
 
 
 def _limits(field: NodePlace) -> str:
@@ -204,7 +212,7 @@ def _limits(field: NodePlace) -> str:
 
 
 def limits_text(limits: Iterable[Bound], field: NodePlace) -> str:
-    """``above 0 and at most 10 mA``"""
+    """Return limits in words: ``above 0 and at most 10 mA``."""
     return " and ".join(f"{bound.kind.words} {exact_text(bound.value)}" for bound in limits) + _unit(field, " ")
 
 
@@ -221,8 +229,8 @@ def _place(field: NodePlace) -> str:
     return ", ".join(filter(None, (where, elements, orders_text(field))))
 
 
-def _open_place(field: NodePlace, message: Message, part: VariablePart) -> str:
-    """``from byte 4 on, up to 12 elements of 16 bits``"""
+def _variable_place(field: NodePlace, message: Message, part: VariablePart) -> str:
+    """Return the place of a variable part: ``from byte 4 on, up to 12 elements of 16 bits``."""
     if field.is_bytes and field.count:
         what = f"up to {octets_text(part.most, field.bits)}{', text filled with NUL' if field.type == 'text' else ''}"
     elif field.type == "bytes":
@@ -231,17 +239,17 @@ def _open_place(field: NodePlace, message: Message, part: VariablePart) -> str:
         what = f"text of up to {part.most} character{'s' * (part.most != 1)}"
     else:
         what = f"up to {array_text(part.most, field.bits)}"
-    before = [one.name for one in message.layout.parts[:-1] if 8 * one.begin < field.at]
+    before = [other.name for other in message.layout.parts[:-1] if 8 * other.begin < field.at]
     place = f"behind {words(before[-1])}" if before else f"from byte {field.at // 8} on"
     counted = "" if part.is_rest else f"as many as {words(part.counter)} says"
     return ", ".join(filter(None, (place, what, counted, orders_text(field))))
 
 
 def orders_text(field: NodePlace) -> str:
-    """``big-endian``: byte order and bit order where they are its own or its message's; else empty."""
+    """Return byte order and bit order, ``big-endian``, if the field or its message declares them; else empty."""
     bit = {"msb0": "bit 0 of a byte is the most significant", "lsb0": "bit 0 of a byte is the least significant"}
-    told = f"{field.byte_order}-endian" if field.byte_order else "", bit.get(field.bit_order, "")
-    return ", ".join(filter(None, told))
+    orders = f"{field.byte_order}-endian" if field.byte_order else "", bit.get(field.bit_order, "")
+    return ", ".join(filter(None, orders))
 
 
 def _meaning(field: NodePlace) -> str:
@@ -258,7 +266,7 @@ def _meaning(field: NodePlace) -> str:
 
 
 def span_text(field: NodePlace) -> str:
-    """``-327.68 to 327.67``: the physical values of all raw values; empty where a curve does not tell."""
+    """Return the range of the physical values, ``-327.68 to 327.67``; empty for a calibration without an inverse."""
     if field.curve is not None:
         ends = span(field.curve, field)
         return " to ".join(repr(float(end)) for end in ends) if ends else ""
@@ -267,7 +275,10 @@ def span_text(field: NodePlace) -> str:
 
 
 def takes_text(field: NodePlace, is_narrow: bool) -> str:
-    """``0 to 6553.5 m/s``, ``Mode, 0 to 15``: what a setter takes, or an encoder; also raw where more fits what holds it."""
+    """Return the values that setters and encoders accept: ``0 to 6553.5 m/s``, ``Mode, 0 to 15``.
+
+    The raw range is included if the type can store other raw values.
+    """
     unit = _unit(field, " ")
     if field.type == "float":
         return f"what {field.bits} bits of a float hold"
@@ -284,7 +295,7 @@ def _span_text(scaled: Steps) -> str:
 
 
 def physical_name(field: NodePlace) -> str:
-    """``Roll Angle in deg``: what the accessors of a physical value are about."""
+    """Return the title of a physical value: ``Roll Angle in deg``."""
     return f"{words(field.name)}{_unit(field) or ', as a physical value'}"
 
 
@@ -293,12 +304,12 @@ def _unit(field: NodePlace, before: str = " in ") -> str:
 
 
 def text_comment(field: NodePlace) -> str:
-    """What the text of a field of characters is."""
+    """Return the comment of the accessors of a text."""
     return f"{words(field.name)} as text: what stands before the first NUL, up to {field.bits // 8} ASCII characters."
 
 
 def physical_comment(field: NodePlace) -> str:
-    """What the physical value is, its range and its limits."""
+    """Return the comment of a physical value: title, range and limits."""
     limits = f" {_limits(field)}" if field.limits is not None else ""
     range = span_text(field)
     return f"{physical_name(field)}{f': {range}' if range else ''}.{limits}"

@@ -1,4 +1,4 @@
-"""Values with a name of their own: the only valid value of a field, values with a meaning, limits."""
+"""Constants of fields: the only valid value, raw values with a meaning, and limits."""
 
 from __future__ import annotations
 
@@ -11,27 +11,28 @@ from icdgen.describe.bounds import bounds
 from icdgen.describe.comments import sentence, words
 from icdgen.icd.places import NodePlace
 
-MOST_WORDS = 5  # of a meaning that makes the name of its constant
+MOST_WORDS = 5
+"""Number of words up to which a meaning becomes the name of its constant."""
 
 
 class Constant(NamedTuple):
-    """``name`` is in snake case, below the message's: ``timeout_no_timeout``, ``rate_deg_per_s_below``."""
+    """Constant of a field. Its name in snake case is unique in the message: ``timeout_no_timeout``, ``rate_deg_per_s_below``."""
 
     key: str  # "const" | "special" | the key of a limit
     name: str
     value: int | Fraction
-    is_raw: bool  # a raw value (an int); else a physical one, or one that the raw type can't hold
+    is_raw: bool  # a raw value (an int); else a physical value, or a limit beyond the raw type
     comment: str
-    number: str = ""  # of a special value of a float, whose bits ``value`` are: `nan`, `inf`, `-inf`, or a decimal
+    number: str = ""  # of a float with the bits ``value``: `nan`, `inf`, `-inf`, or a decimal
 
     @property
     def double(self) -> float:
-        """The double nearest to a physical value."""
+        """Double nearest to the physical value."""
         return self.value.numerator / self.value.denominator
 
 
 def constants(field: NodePlace, name: str, physical_name: str, vocabulary: tuple[str, ...]) -> Iterator[Constant]:
-    """The constants of a field, whose own names are given."""
+    """List the constants of a field with these names of its raw and physical value."""
     title = words(field.name)
     if field.const is not None:
         yield Constant("const", f"{name}_const", field.const, True, f"{title}: the only valid raw value.")

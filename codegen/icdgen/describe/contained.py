@@ -1,4 +1,4 @@
-"""The messages that a composite message repeats (``contains``), and which of its values are theirs."""
+"""Messages that a composite message contains (key ``contains``), and where their values are in it."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from icdgen.describe.nodes import MessageDescription
 
 
 class CopiedMember(NamedTuple):
-    """A member of a part, and what of the composite message has its value.
+    """Member of a contained message, and the fields of the composite message that have its value.
 
-    Of an array that stands as one in both that is the array; else there is one twin for each element.
+    If both are arrays of the same size, the source is the array; else each element has a source.
     """
 
     member: FieldDescription
@@ -20,18 +20,18 @@ class CopiedMember(NamedTuple):
 
     @property
     def is_whole(self) -> bool:
-        """Whether one assignment copies the member."""
+        """Whether a single assignment copies the member."""
         return len(self.sources) == 1 and self.sources[0].count == self.member.count
 
 
 class ContainedDescription(NamedTuple):
-    """A message that a composite message repeats."""
+    """Message that a composite message contains, once or several times."""
 
     message: MessageDescription
-    positions: tuple[int, ...]  # the bits at which it does, in the order of the ICD
+    positions: tuple[int, ...]  # its first bit in the composite, each time, in the order of the ICD
 
     def copies(self, composite: MessageDescription, begin: int) -> Iterator[CopiedMember]:
-        """What its members are of a message, from a bit on; of a struct what stands in it."""
+        """List its members, opening structs, with their sources in a composite from bit ``begin`` on."""
         fields = {field.model.at: field for field in composite.fields}
         arrays = {field.model.at: field for field in composite.walk(Into.ARRAYS_OF_STRUCTS) if field.count}
         for member in self.message.walk(Into.ARRAYS_OF_STRUCTS):
@@ -40,11 +40,11 @@ class ContainedDescription(NamedTuple):
             if array is not None and array.count == member.count:
                 yield CopiedMember(member, (array,))
             else:
-                yield CopiedMember(member, tuple(fields[begin + one.model.at] for one in member.elements))
+                yield CopiedMember(member, tuple(fields[begin + element.model.at] for element in member.elements))
 
 
 def contained_messages(composite: MessageDescription) -> tuple[ContainedDescription, ...]:
-    """Each message that it repeats, but for those that hold nothing."""
+    """Return the messages that a composite message contains, except messages without fields."""
     positions: dict[MessageDescription, list[int]] = {}
     for part, begin in composite.contained:
         if part.members:

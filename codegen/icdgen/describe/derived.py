@@ -1,4 +1,4 @@
-"""How a value is derived from fields, as statements: each makes a local of one operation on two others, or on numbers."""
+"""Derived values as statements. Each statement computes a local variable by one operation on two operands."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from icdgen.describe.description import FieldDescription
 
-Operand = str | float  # a local, or a number
+Operand = str | float  # a local variable, or a number
 
 
 class Statement(NamedTuple):
@@ -20,22 +20,25 @@ class Statement(NamedTuple):
 
 
 class Derived(NamedTuple):
-    """``fields`` are the locals that hold physical values, or raw ones where there is no formula, as doubles."""
+    """Computation of a derived value.
+
+    ``fields`` are local variables with the physical values of fields as doubles; without a scale the raw values.
+    """
 
     fields: tuple[tuple[str, FieldDescription], ...]
     statements: tuple[Statement, ...]
-    result: str  # the local that holds it
+    result: str  # the local variable with the derived value
 
 
 def derived(field: FieldDescription, taken: Collection[str] = ()) -> Derived:
-    """Of a field that is derived; no local is called as one of ``taken`` is."""
+    """Return the computation of a derived value. No local variable has a name of ``taken``."""
     how = field.model.derived
     assert how is not None
-    known = {one.model.name: one for one in field.message.declared_members}
+    members = {member.model.name: member for member in field.message.declared_members}
     names: list[str] = []
     for name in how.fields:
-        names.append(_free(known[name].name, {*taken, *names}))
-    fields = tuple((name, known[of]) for name, of in zip(names, how.fields, strict=True))
+        names.append(_free(members[name].name, {*taken, *names}))
+    fields = tuple((name, members[of]) for name, of in zip(names, how.fields, strict=True))
     row: list[Operand] = [*names, *how.numbers]
     statements = []
     for number, (operator, left, right) in enumerate(how.steps, 1):

@@ -1,4 +1,8 @@
-"""Fields and what has them, which know each other."""
+"""Fields, messages and structs.
+
+A message or struct describes its members as declared. A member describes the fields below it on demand: elements of arrays,
+and members of structs.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +23,7 @@ from icdgen.icd.places import NodePlace, places_of
 from icdgen.once import cached_property
 
 _OF_PLACE = ("needs", "elements", "instances", "element_struct", "comment")
-"""Attributes that are worked out for one place of a field."""
+"""Cached attributes that depend on the place of a field. `FieldDescription.moved` drops them."""
 
 
 class Into(enum.Enum):
@@ -31,28 +35,28 @@ class Into(enum.Enum):
 
 
 class Need(NamedTuple):
-    """What a field that is not always there needs: another one with one of these raw values, in their order."""
+    """Condition of an optional field: another field has one of these raw values, in ascending order."""
 
     field: FieldDescription
     values: tuple[int, ...]
 
 
 class FieldDescription(ScalarDescription):
-    """A field of ``message``, or of a struct; of an array, an element, or among ``members`` all of it.
+    """Field of a message or struct, or a field below one: an element of an array, or a member of a struct.
 
-    Made by the ten thousand, and each asked for its names at once: what these need is worked out at the beginning.
+    Names are computed at once: sets of ICDs have ten thousand fields, and every output needs the names of all.
     """
 
     member: str
     """Name in an expression, in any language: ``temperatures[3]``, ``satellites[2].gnss``."""
     holder: str
-    """Name of its struct in an expression, ``satellites[2]``; empty of what its message has itself."""
+    """Name of the enclosing struct in an expression, ``satellites[2]``; empty for members of the message itself."""
     declaration: FieldDescription
-    """The field as its struct, or its message, declares it; of an element its array."""
+    """Field as the struct or message declares it; for an element, the array."""
     array: FieldDescription | None
-    """The array that it is an element of; else None."""
+    """Array of which the field is an element; None for any other field."""
     member_of_message: FieldDescription
-    """The member of its message that it is, or stands in."""
+    """Member of the message that the field is, or is in."""
 
     def __init__(self, place: NodePlace, message: Composite[Any], enum: EnumDescription | None) -> None:
         owner = f"field `{place.name}` of `{message.model.name}`"
@@ -63,10 +67,10 @@ class FieldDescription(ScalarDescription):
         self.holder, self.declaration = "", self
         self.array, self.member_of_message = None, self
         self.is_repeated = False
-        """Whether it stands in an element of an array of structs."""
+        """Whether the field is in an element of an array of structs."""
 
     def _element(self, place: NodePlace) -> FieldDescription:
-        """The description of an element of an array; of anything else the field itself."""
+        """Return the description of an element of an array; for any other field the field itself."""
         if place is self.model:
             return self
         element = self.moved(place)
@@ -75,7 +79,7 @@ class FieldDescription(ScalarDescription):
         return element
 
     def _inner(self, place: NodePlace) -> FieldDescription:
-        """The description of a field of a struct, where the struct stands."""
+        """Return the description of a member of the struct that stands here."""
         assert self.struct is not None
         declared = self.struct.member_for[id(place.node)]
         inner = declared.moved(place)
@@ -86,7 +90,7 @@ class FieldDescription(ScalarDescription):
         return inner
 
     def moved(self, place: NodePlace) -> FieldDescription:
-        """A field that is declared like this one, at another place."""
+        """Return the description of a field with the same declaration at another place."""
         other = copy(self)
         other.model, other.owner = place, f"field `{place.name}` of `{self.message.model.name}`"
         for name in _OF_PLACE:
@@ -95,23 +99,31 @@ class FieldDescription(ScalarDescription):
 
     @property
     def count(self) -> int:
-        """How many elements an array has that stands as one; else 0."""
+        """Number of elements of an array; 0 for any other field, and for an element."""
         return self.model.count
 
     @property
     def index(self) -> int | None:
-        """Which element of its array it is; None of what is no element."""
+        """Index in the array; None if the field is not an element."""
         return self.model.index
 
     @property
     def is_in_last_part(self) -> bool:
-        """Whether it is the open end of its message, or stands in it."""
+        """Whether the field is the last variable part of its message, or in it."""
         sequence = self.message.model.layout.sequence
         return bool(sequence) and self.member_of_message.model.node is sequence[-1]
 
     @property
+    def is_in_earlier_part(self) -> bool:
+        """Whether the field is a variable part with another one behind it, or in such a part."""
+        return any(self.member_of_message.model.node is node for node in self.message.model.layout.sequence[:-1])
+
+    @property
     def initial_count(self) -> int:
-        """Elements of an array in a new message, or bytes of variable length: the last variable part has its fewest."""
+        """Number of elements of an array, or of bytes of variable length, in a new message.
+
+        The last variable part has its fewest. Earlier parts have all: the constants of their elements are set in advance.
+        """
         if self.is_in_last_part:
             assert self.message.last_part is not None
             return self.message.last_part.model.fewest
@@ -124,12 +136,13 @@ class FieldDescription(ScalarDescription):
 
     @property
     def has_initial_value(self) -> bool:
-        """Whether some scalar of it has an initial value other than 0."""
-        return any(one.initial_raw for one in (self.struct.fields if self.struct is not None else (self,)))
+        """Whether one of its scalars has an initial value other than 0."""
+        scalars = self.struct.fields if self.struct is not None else (self,)
+        return any(scalar.initial_raw for scalar in scalars)
 
     @property
     def is_initially_zero(self) -> bool:
-        """Whether all of it is 0 or absent in a new message. A struct has the initial values of its own members."""
+        """Whether all of it is 0 or absent in a new message. A single struct has the initial values of its own members."""
         if self.model.when:
             return not self.is_initially_present
         if self.struct is not None and not self.is_in_last_part:
@@ -138,34 +151,33 @@ class FieldDescription(ScalarDescription):
 
     @property
     def needs_range_check(self) -> bool:
-        """Whether its type holds raw values that the field does not; of a struct, whether that of a member does."""
+        """Whether its type can store raw values that do not fit the field; for a struct, whether that of a member can."""
         return self.is_narrow if self.struct is None else self.struct.is_narrow
-
-    @property
-    def is_in_earlier_part(self) -> bool:
-        """Whether it is open with something else behind it, or stands in such a part."""
-        return any(self.member_of_message.model.node is node for node in self.message.model.layout.sequence[:-1])
 
     @cached_property
     def needs(self) -> tuple[Need, ...]:
-        """Of a field that is not always there, all that it needs."""
-        known = {one.model.name: one for one in self.message.members} if self.model.when else {}
-        return tuple(Need(known[one.field], tuple(sorted(one.values))) for one in self.model.when if one.field in known)
+        """Conditions of an optional field, which must all be met."""
+        members = {member.model.name: member for member in self.message.members} if self.model.when else {}
+        return tuple(
+            Need(members[condition.field], tuple(sorted(condition.values)))
+            for condition in self.model.when
+            if condition.field in members
+        )
 
     @cached_property
     def elements(self) -> tuple[FieldDescription, ...]:
-        """The elements of an array; of anything else the field itself."""
+        """Elements of an array; for any other field the field itself."""
         return tuple(map(self._element, self.model.elements()))
 
     @cached_property
     def instances(self) -> tuple[tuple[FieldDescription, ...], ...]:
-        """The members of a struct where it stands: once, or for each element of an array; empty without a struct."""
+        """Members of a struct where it stands: once, or for each element of an array; empty without a struct."""
         if self.struct is None:
             return ()
         return tuple(tuple(map(element._inner, element.model.inner())) for element in self.elements)
 
     def walk(self, into: Into) -> Iterator[FieldDescription]:
-        """The fields that it is made of, in the order of the ICD."""
+        """List the fields that it consists of, in the order of the ICD."""
         if self.struct is None:
             yield from self.elements if into is Into.ALL_ARRAYS else (self,)
         elif self.count and into is Into.STRUCTS:
@@ -177,17 +189,17 @@ class FieldDescription(ScalarDescription):
 
     @property
     def scalars(self) -> Iterator[FieldDescription]:
-        """All scalars that it is made of: itself, each element of an array, each field of a struct."""
+        """All scalars that it consists of: itself, each element of an array, each field of a struct."""
         return self.walk(Into.ALL_ARRAYS)
 
     @cached_property
     def element_struct(self) -> StructDescription | None:
-        """What an element of an array of structs is made of, in the orders that hold where it stands; else None."""
+        """Struct of the elements of an array, in the orders in effect here; None for any other field."""
         return None if self.struct is None or not self.count else self.message.element_struct_of(self, self.struct)
 
     @cached_property
     def constants(self) -> tuple[Constant, ...]:
-        """The only valid value, values with a meaning, limits: all by name."""
+        """Constants of the field by name: its only valid value, values with a meaning, limits."""
         field = self.model
         if self.declaration is not self:
             return self.declaration.constants
@@ -197,59 +209,59 @@ class FieldDescription(ScalarDescription):
 
     @cached_property
     def comment(self) -> Comment:
-        told = owners_elsewhere(self.model, self.message.first_owners) if self.model.errata else {}
-        return field_comment(self.model, told, self.message.model)
+        elsewhere = owners_elsewhere(self.model, self.message.first_owners) if self.model.errata else {}
+        return field_comment(self.model, elsewhere, self.message.model)
 
 
 class VariablePartDescription(NamedTuple):
-    """A part of variable length: an array, bytes or text."""
+    """Part of variable length: an array, bytes or text."""
 
     model: VariablePart
-    field: FieldDescription  # the array as one, or the bytes or text
-    counter: FieldDescription  # how many elements there are; a field of the frame, or what only its length tells
+    field: FieldDescription  # the array, or the bytes or text
+    counter: FieldDescription  # number of elements: a field of the frame, or a count that follows from its length
 
     @property
     def element_struct(self) -> StructDescription | None:
-        """What an element is made of, where that is a struct."""
+        """Struct of the elements; None for an array of scalars, for bytes and for text."""
         return self.field.element_struct
 
     @property
     def needs_count_check(self) -> bool:
-        """Whether the integer that holds the count holds larger or smaller ones than there can be."""
+        """Whether the type of the counter can store numbers of elements that the part cannot have."""
         return self.model.low > 0 or self.counter.storage.max > self.model.high
 
 
-Fielded = TypeVar("Fielded", bound=Message | Struct)
+WithFields = TypeVar("WithFields", bound=Message | Struct)
 
 
-class Composite(Named[Fielded]):
-    """What has fields: a message, or a struct, that ``node`` declares."""
+class Composite(Named[WithFields]):
+    """Message or struct that an ICD node declares."""
 
     def __init__(
-        self, declared: Declarations, model: Fielded, node: Node, what: str, outer: Orders = UNDECLARED
+        self, declared: Declarations, model: WithFields, node: Node, kind: str, outer: Orders = UNDECLARED
     ) -> None:
-        super().__init__(model, node.vocabulary, f"{what} `{model.name}`")
+        super().__init__(model, node.vocabulary, f"{kind} `{model.name}`")
         self._declared, self.node = declared, node
         self.outer_orders = outer
-        """Those of the array of which it is an element."""
+        """Orders of the array whose element this struct is."""
         self.using_node = node
-        """The node in whose code it is read and written."""
+        """Node whose code reads and writes it. It can use structs of other nodes."""
 
     @cached_property
     def comment(self) -> Comment:
-        """What comments say of it."""
+        """Paragraphs of the comment in generated code."""
         raise NotImplementedError
 
     @cached_property
     def declared_members(self) -> tuple[FieldDescription, ...]:
-        """Members and views, in the order of the ICD: what is declared in code."""
+        """Members, overlay fields and derived values as declared, in the order of the ICD."""
         return tuple(map(self._member, places_of(self.model.layout, self.outer_orders)))
 
     def _member(self, place: NodePlace) -> FieldDescription:
         return FieldDescription(place, self, self._declared.enum(place.enum) if place.enum else None)
 
     def struct_of(self, layout: Layout) -> StructDescription:
-        """The struct that has a layout."""
+        """Return the struct that has a layout."""
         return self._declared.struct_of(layout)
 
     @cached_property
@@ -259,69 +271,66 @@ class Composite(Named[Fielded]):
 
     @cached_property
     def read_only_members(self) -> tuple[FieldDescription, ...]:
-        """What reads bits of others, or is derived: it is asked of a message, and never set."""
+        """Overlay fields and derived values: getters compute them, and nothing sets them."""
         return tuple(member for member in self.declared_members if member.model.view)
 
     @cached_property
     def overlays(self) -> tuple[FieldDescription, ...]:
-        """The views that read bits."""
+        """Overlay fields, which read bits of other fields."""
         return tuple(field for field in self.read_only_members if field.model.derived is None)
 
     @cached_property
     def derived(self) -> tuple[FieldDescription, ...]:
-        """The views that are derived from the values of fields: see `icdgen.describe.derived`."""
+        """Values that are computed from other fields: see `icdgen.describe.derived`."""
         return tuple(field for field in self.read_only_members if field.model.derived is not None)
 
     @cached_property
     def members(self) -> tuple[FieldDescription, ...]:
-        """What it is made of, in the order of the ICD, an array as one, and a struct."""
-        return (
-            tuple(member for member in self.declared_members if not member.model.view)
-            if self.read_only_members
-            else self.declared_members
-        )
+        """Members that own bits or count elements, in the order of the ICD; an array is one member, and so is a struct."""
+        if not self.read_only_members:
+            return self.declared_members
+        return tuple(member for member in self.declared_members if not member.model.view)
 
     @cached_property
     def fields(self) -> tuple[FieldDescription, ...]:
-        """What has bits of its own, in the order of the ICD, each element of an array, each field of a struct."""
+        """All scalars of `members`: each element of an array and each field of a struct."""
         return tuple(self.walk(Into.ALL_ARRAYS))
 
     @property
     def last_part(self) -> VariablePartDescription | None:
-        """The open end of a message, where frames differ in length."""
+        """Last part of variable length; None for structs and messages of one length."""
         return None
 
     def walk(self, into: Into) -> Iterator[FieldDescription]:
-        """The fields that it is made of, in the order of the ICD, without overlay fields and derived values."""
+        """List the fields of `members` in the order of the ICD, as far as `into` goes."""
         for member in self.members:
             yield from member.walk(into)
 
-    def element_struct_of(self, part: FieldDescription, struct: StructDescription) -> StructDescription:
-        """What an array of structs in it has as an element."""
-        found = StructDescription(
-            self._declared, struct.model, struct.node, part.model.orders_in_effect(self.node.orders)
-        )
-        found.using_node = self.using_node
-        return found
+    def element_struct_of(self, array: FieldDescription, struct: StructDescription) -> StructDescription:
+        """Return the struct of the elements of an array, in the orders in effect there."""
+        orders = array.model.orders_in_effect(self.node.orders)
+        element_struct = StructDescription(self._declared, struct.model, struct.node, orders)
+        element_struct.using_node = self.using_node
+        return element_struct
 
     @cached_property
     def enums(self) -> tuple[EnumDescription, ...]:
-        """The enumerations of the members that it declares itself, each once."""
-        return tuple(dict.fromkeys(one.enum for one in self.declared_members if one.enum is not None))
+        """Enumerations of its own members, each once, without enumerations in structs."""
+        return tuple(dict.fromkeys(member.enum for member in self.declared_members if member.enum is not None))
 
     @cached_property
     def structs(self) -> tuple[StructDescription, ...]:
-        """The structs that stand in it, each once."""
-        return tuple(dict.fromkeys(one.struct for one in self.declared_members if one.struct is not None))
+        """Structs of its own members, each once."""
+        return tuple(dict.fromkeys(member.struct for member in self.declared_members if member.struct is not None))
 
     @property
     def is_narrow(self) -> bool:
-        """Whether a field of it may be given a raw value that does not fit."""
+        """Whether the type of a field can store raw values that do not fit it."""
         return any(member.needs_range_check for member in self.members)
 
     @property
     def range_check_bits(self) -> int:
-        """Bits of the widest integer that holds raw values which its field does not; 0 if there is none."""
+        """Width of the widest type that can store raw values which do not fit their field; 0 without such a type."""
         widths = (
             member.struct.range_check_bits if member.struct else member.storage.bits
             for member in self.members
@@ -331,23 +340,24 @@ class Composite(Named[Fielded]):
 
     @property
     def has_floats(self) -> bool:
+        """Whether a member is a float, or a struct with one."""
         return any(
             member.struct.has_floats if member.struct else member.model.type == "float" for member in self.members
         )
 
     @cached_property
     def has_wide_steps(self) -> bool:
-        """Whether the formula of a field that it declares has numbers of many digits."""
+        """Whether the scale of one of its own members needs arithmetic of more than 128 bits."""
         return any(field.steps is not None and field.steps.is_wide for field in self.declared_members)
 
     @cached_property
     def first_owners(self) -> dict[str, Thing]:
-        """By the ids of errata: which part of it tells of it."""
+        """First part with each erratum, by its id. The comment of that part explains the erratum."""
         return first_owners((self.model, *(member.model for member in self.declared_members)))
 
 
 class StructDescription(Composite[Struct]):
-    """A struct."""
+    """Struct."""
 
     def __init__(self, declared: Declarations, struct: Struct, node: Node, outer: Orders = UNDECLARED) -> None:
         super().__init__(declared, struct, node, "struct", outer)
@@ -358,7 +368,7 @@ class StructDescription(Composite[Struct]):
 
 
 class Declarations:
-    """The structs and enumerations of a set of ICDs: each is described once, whoever uses it."""
+    """Structs and enumerations of a set of ICDs. Each is described once, whatever uses it."""
 
     def __init__(self, icd: Icd) -> None:
         self._icd = icd
@@ -369,11 +379,11 @@ class Declarations:
         }
 
     def struct_of(self, layout: Layout) -> StructDescription:
-        """The description of the struct that has a layout."""
+        """Return the description of the struct that has a layout."""
         return self._structs[id(layout)]
 
     def enum(self, enum: Enum) -> EnumDescription:
-        """The description of an enumeration."""
+        """Return the description of an enumeration."""
         key = enum.node, enum.name
         if key not in self._enums:
             self._enums[key] = EnumDescription(enum, self._icd.node(enum.node), self._enum_bits[key], self._icd)

@@ -1,4 +1,4 @@
-"""Values for people: the display format of a field, else as many digits as its resolution warrants. For all outputs.
+"""Values for people, for all outputs: in the display format of a field, or with the digits that its resolution justifies.
 
 A value whose decimal ends soon is shown in full. Others, such as values of polynomials, are rounded: their further digits
 come from the arithmetic in doubles. JSON and logs have the full precision, whatever the display format is.
@@ -19,25 +19,29 @@ from icdgen.icd.formula import Scale
 from icdgen.icd.frames import FrameField
 from icdgen.icd.places import AnyScalar, NodePlace
 
-_MOST_EXACT = 6  # decimals of a factor that are shown in full, however fine the resolution is
+_MOST_EXACT = 6
+"""Decimals of a factor up to which values are shown in full, however fine the resolution is."""
 _MOST_DECIMALS = 20
 _DIGITS = {32: 8, 64: 15}  # significant digits of a number computed from a float
-_SAMPLES = 64  # places of a polynomial where its slope is looked at
-_STEEP = 100  # how much finer than the mean one the resolution of a place may count
+_SAMPLES = 64
+"""Number of raw values at which the slope of a calibration is sampled."""
+_STEEP = 100
+"""Ratio of the mean to the smallest resolution that counts: near an extremum the resolution approaches 0."""
 _LARGE = 1e15
-_PRECISION = 800  # digits of the exact decimal of any double
+_PRECISION = 800
+"""Enough digits for the exact decimal of any double, which has up to 767."""
 
 
 class Digits(NamedTuple):
-    """How a number is rounded: to ``decimals`` after the point, or to ``significant`` digits."""
+    """Rounding of a number: to ``decimals`` after the point, or to ``significant`` digits."""
 
     decimals: int | None = None
     significant: int | None = None
-    is_fixed: bool = False  # whether zeros at the end of the decimals are kept
+    is_fixed: bool = False  # whether trailing zeros are shown
 
 
 class Base(NamedTuple):
-    """How a raw value is written that is displayed as a bit pattern: ``0x`` and 4 digits of base 16."""
+    """Notation of a raw value that is displayed as a bit pattern, such as ``0x`` and 4 digits of base 16."""
 
     prefix: str
     base: int
@@ -61,7 +65,7 @@ def integer_text(field: AnyScalar, raw: int) -> str:
 
 
 def digits_of(field: FrameField | NodePlace) -> Digits | None:
-    """How the physical values of a field are rounded; None where they are shown in full."""
+    """Return how physical values of a field are rounded; None if they are shown in full."""
     if field.display is not None and field.display.kind not in OF_BITS:
         places = field.display.places
         return Digits(decimals=places, is_fixed=True) if field.display.kind == DECIMALS else Digits(significant=places)
@@ -81,7 +85,7 @@ def _of_scale(scale: Scale) -> Digits | None:
 
 
 def number_text(field: FrameField | NodePlace, value: float | Fraction) -> str:
-    """The physical value of a field: ``21.35``."""
+    """Return a physical value of a field as text: ``21.35``."""
     digits = digits_of(field)
     if digits is None:
         return exact_text(value) if isinstance(value, Fraction) else _plain(repr(value))
@@ -108,7 +112,7 @@ def _plain(text: str) -> str:
 
 
 def _by_resolution(step: float | Fraction) -> Digits:
-    """Decimals by which neighbouring values differ, and from which the raw value is found again: half a step is enough."""
+    """Return the fewest decimals from which the raw value can be recovered: a rounding error below half a step."""
     decimals = 0
     while decimals < _MOST_DECIMALS and Fraction(1, 10**decimals) * 2 > Fraction(step):
         decimals += 1
@@ -116,22 +120,22 @@ def _by_resolution(step: float | Fraction) -> Digits:
 
 
 def _decimals(value: Fraction) -> int:
-    """Decimals of a fraction; more than can be shown where they do not end."""
+    """Return the number of decimals of a fraction; more than can be shown if they do not end."""
     return next((n for n in range(_MOST_DECIMALS + 1) if 10**n % value.denominator == 0), _MOST_DECIMALS + 1)
 
 
 @lru_cache(maxsize=1024)
 def _resolution(curve: Curve, low: int, high: int) -> float:
-    """The physical value of one step of the raw value of an integer with a curve, where that is smallest.
+    """Return the smallest difference between physical values of neighbouring raw values of a calibrated integer.
 
-    Near the extremum of a polynomial it may be as small as can be; it does not count there.
+    It approaches 0 near the extremum of a polynomial; differences far below the mean do not count.
     """
     if curve.points:
         low, high = max(low, math.ceil(curve.points[0][0])), min(high, math.floor(curve.points[-1][0]))
     every = max(1, (high - low) // _SAMPLES)
     starts = range(low, max(high, low + 1), every)
     steps = [abs(curve.double(raw + 1) - curve.double(raw)) for raw in starts]
-    real = [step for step in steps if 0 < step < math.inf]
-    if not real:
+    finite = [step for step in steps if 0 < step < math.inf]
+    if not finite:
         return 1.0
-    return max(min(real), math.fsum(real) / len(real) / _STEEP)
+    return max(min(finite), math.fsum(finite) / len(finite) / _STEEP)

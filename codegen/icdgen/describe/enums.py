@@ -12,39 +12,39 @@ from icdgen.icd.node_cache import cached_by_node
 from icdgen.icd.places import places_in
 from icdgen.once import cached_property
 
-Users = dict[str, list[str]]  # by the names of fields, the messages and structs in which they stand
+Users = dict[str, list[str]]  # name of a field -> names of the messages and structs that have it
 
 
 def enum_widths(icd: Icd) -> dict[tuple[str, str], int]:
-    """Bits that the values of each enumeration need: those of its members, and of every field of the set that holds it."""
-    found: dict[tuple[str, str], int] = {}
+    """Return the bits that each enumeration needs, by its node and name: for its members and for all fields of its type."""
+    widths: dict[tuple[str, str], int] = {}
     for node in icd.nodes:
         for enum in node.enums:
-            found[enum.node, enum.name] = max(found.get((enum.node, enum.name), 1), enum.bits)
-        every: tuple[Struct | Message, ...] = (*node.structs, *node.messages)
-        for one in every:
-            for place in places_in(one.layout):
+            widths[enum.node, enum.name] = max(widths.get((enum.node, enum.name), 1), enum.bits)
+        composites: tuple[Struct | Message, ...] = (*node.structs, *node.messages)
+        for composite in composites:
+            for place in places_in(composite.layout):
                 if place.enum is not None:
                     key = place.enum.node, place.enum.name
-                    found[key] = max(found.get(key, 1), place.bits)
-    return found
+                    widths[key] = max(widths.get(key, 1), place.bits)
+    return widths
 
 
 @cached_by_node
 def holders(icd: Icd, node: Node) -> dict[tuple[str, str], Users]:
-    """Of each enumeration, by its node and its name, what of a node holds it."""
-    found: dict[tuple[str, str], Users] = {}
-    every: tuple[Struct | Message, ...] = (*node.structs, *node.messages)
-    for one in every:
-        for place in places_in(one.layout):
+    """Return the fields of a node that have an enumeration as their type, by node and name of the enumeration."""
+    users_of_enums: dict[tuple[str, str], Users] = {}
+    composites: tuple[Struct | Message, ...] = (*node.structs, *node.messages)
+    for composite in composites:
+        for place in places_in(composite.layout):
             if place.enum is not None:
-                users = found.setdefault((place.enum.node, place.enum.name), {})
-                users.setdefault(place.name, []).append(one.name)
-    return found
+                users = users_of_enums.setdefault((place.enum.node, place.enum.name), {})
+                users.setdefault(place.name, []).append(composite.name)
+    return users_of_enums
 
 
 class EnumDescription(Named[Enum]):
-    """An enumeration of ``node``; ``storage`` holds every value of it, named or not."""
+    """Enumeration of ``node``. Its ``storage`` can store every value, with or without a name."""
 
     def __init__(self, enum: Enum, node: Node, bits: int, icd: Icd) -> None:
         super().__init__(enum, node.vocabulary, f"enumeration `{enum.name}`")
@@ -52,21 +52,21 @@ class EnumDescription(Named[Enum]):
 
     @cached_property
     def members(self) -> tuple[MemberDescription, ...]:
-        """In the order of the manual; of a range its ends, each with a name of its own."""
+        """Members in the order of the manual. A range has two, its ends, each with a name of its own."""
         return tuple(MemberDescription(end, self) for member in self.model.members for end in member.ends)
 
     @cached_property
     def ranges(self) -> tuple[Member, ...]:
-        """What has values between its ends: these have no constants in code, and are called as the range is."""
+        """Ranges with values between their ends. Code has no constants for these values and shows the name of the range."""
         return tuple(member for member in self.model.members if member.last - member.value > 1)
 
-    def range_name(self, one: Member) -> str:
-        """What a range is called, in snake case."""
-        return naming.snake(naming.words(one.identifier or one.name, self.node.vocabulary))
+    def range_name(self, member: Member) -> str:
+        """Return the name of a range in snake case."""
+        return naming.snake(naming.words(member.identifier or member.name, self.node.vocabulary))
 
     @cached_property
     def first_owners(self) -> dict[str, Thing]:
-        """By the ids of errata: which part of the enumeration tells of it."""
+        """First part with each erratum, by its id. The comment of that part explains the erratum."""
         return first_owners((self.model, *(member.model for member in self.members)))
 
     @cached_property
@@ -75,16 +75,16 @@ class EnumDescription(Named[Enum]):
 
     @property
     def users(self) -> Users:
-        """By the names of the fields of its node that hold it: the messages and structs in which they stand."""
+        """Fields of its node that have it as their type, and the messages and structs that have these fields."""
         return holders(self.icd, self.node).get((self.model.node, self.model.name), {})
 
     def member(self, value: int) -> MemberDescription | None:
-        """The first member of a value, if one has it."""
-        return next((one for one in self.members if one.model.value == value), None)
+        """Return the first member with a value; None if no member has it."""
+        return next((member for member in self.members if member.model.value == value), None)
 
 
 class MemberDescription(Named[Member]):
-    """A value of an enumeration."""
+    """Value of an enumeration that has a name."""
 
     def __init__(self, member: Member, enum: EnumDescription) -> None:
         super().__init__(member, enum.node.vocabulary, f"member `{member.name}` of `{enum.model.name}`")

@@ -1,4 +1,4 @@
-"""Errata of a thing and of what is in it."""
+"""Errata of messages, enumerations and their parts."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ Thing = Message | Struct | NodePlace | Enum | Member
 
 
 def errata_of_message(message: Message) -> list[Erratum]:
-    """Those of the message, of the structs in it and of its fields, each once."""
+    """Return the errata of a message, of its structs and of its fields, each once."""
     return _each_once((message, *places_in(message.layout), *scalars_in(message.layout)))
 
 
 def errata_of_enum(enum: Enum) -> list[Erratum]:
-    """Those of the enumeration and of its members, each once."""
+    """Return the errata of an enumeration and of its members, each once."""
     return _each_once((enum, *enum.members))
 
 
@@ -26,14 +26,14 @@ def _each_once(things: Iterable[Thing]) -> list[Erratum]:
 
 
 def first_owners(things: Iterable[Thing]) -> dict[str, Thing]:
-    """By the ids of errata: the first thing that has it, whose comment tells of it."""
-    found: dict[str, Thing] = {}
+    """Return the first part with each erratum, by its id. The comment of that part explains the erratum."""
+    owners: dict[str, Thing] = {}
     for thing in things:
         for erratum in thing.errata:
-            found.setdefault(erratum.id, thing)
-    return found
+            owners.setdefault(erratum.id, thing)
+    return owners
 
 
 def owners_elsewhere(thing: NodePlace | Member, by: Mapping[str, Thing]) -> dict[str, str]:
-    """By the ids of those errata of a thing that another one tells of: the name of that one."""
-    return {one.id: by[one.id].name for one in thing.errata if by.get(one.id, thing) is not thing}
+    """Return, for errata of a part that the comment of another part explains, the name of that part by the id of the erratum."""
+    return {erratum.id: by[erratum.id].name for erratum in thing.errata if by.get(erratum.id, thing) is not thing}

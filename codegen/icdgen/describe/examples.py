@@ -1,4 +1,4 @@
-"""What examples in the documentation of code show of a message: a field, a value for it, and the frame that holds it."""
+"""Examples in the documentation of generated code: a field of a message, a value for it, and the frame with it."""
 
 from __future__ import annotations
 
@@ -10,13 +10,16 @@ from icdgen.describe.description import FieldDescription
 from icdgen.describe.nodes import MessageDescription
 from icdgen.icd.places import raw_fields_in
 
-_NUMBERS = (1234, 123, 12, 1, 0)  # the first that the field takes and may hold
-_FLOAT = 1.5  # the same in any width
-FEW = 8  # constants in arrays that are worth showing
+_NUMBERS = (1234, 123, 12, 1, 0)
+"""Raw values of an example. The first that is in the range of the field is used."""
+_FLOAT = 1.5
+"""Value of a float in an example: exact in any width."""
+FEW = 8
+"""Largest number of constants in arrays for which an example shows them."""
 
 
 class Shown(NamedTuple):
-    """A field and its value; ``physical`` is the double of it, None without a scale."""
+    """Field with a value. ``physical`` is the double; None without a scale."""
 
     field: FieldDescription
     raw: int
@@ -24,15 +27,15 @@ class Shown(NamedTuple):
 
 
 class Example(NamedTuple):
-    """The frame of a new message in which one field, if any is worth showing, has a value."""
+    """Frame of a new message in which one field has a value, if the message has a suitable field."""
 
     shown: Shown | None
     frame: bytes
-    brief: bytes  # the same without constants in arrays, if there are many
+    brief: bytes  # the frame without constants in arrays, if there are many
 
     @property
     def runs(self) -> Iterator[tuple[int, bytes]]:
-        """What is not 0 in the frame, constants in arrays only if they are few: where it begins, and its bytes."""
+        """Runs of bytes of the brief frame that are not 0: the first byte, and the bytes."""
         start = 0
         for end in range(len(self.frame) + 1):
             if end == len(self.frame) or not self.brief[end]:
@@ -42,26 +45,27 @@ class Example(NamedTuple):
 
 
 def worth_showing(message: MessageDescription) -> FieldDescription | None:
-    """The first field with a formula that leads back, else the first that is neither constant nor an array or struct."""
-    # these are the smallest in an example, whose frame has the fewest elements
+    """Return the first field that can be set by a physical value; else the first number that is not constant."""
+    # Counters keep their smallest value, because the frame of an example has the fewest elements.
     counters = {part.counter for part in message.model.layout.parts}
-    decides = {need.field.model.name for one in message.optional_members for need in one.needs}  # what else is there
-    usual = [
-        one
-        for one in message.members
-        if not one.model.when
-        and one.model.name not in decides
-        and one.model.const is None
-        and not one.model.is_bytes
-        and one.struct is None
-        and not one.count
-        and one.model.name not in counters
+    selectors = {need.field.model.name for member in message.optional_members for need in member.needs}
+    numbers = [
+        member
+        for member in message.members
+        if not member.model.when
+        and member.model.name not in selectors
+        and member.model.const is None
+        and not member.model.is_bytes
+        and member.struct is None
+        and not member.count
+        and member.model.name not in counters
     ]
-    return next((one for one in usual if one.is_scaled and one.is_settable), usual[0] if usual else None)
+    scaled = (member for member in numbers if member.is_scaled and member.is_settable)
+    return next(scaled, numbers[0] if numbers else None)
 
 
 def example(message: MessageDescription) -> Example:
-    """The example of a message."""
+    """Return the example of a message."""
     field = worth_showing(message)
     shown = _shown(field) if field else None
     owners = raw_fields_in(message.model.layout)
@@ -81,7 +85,7 @@ def example(message: MessageDescription) -> Example:
 
 
 def _shown(field: FieldDescription) -> Shown | None:
-    """The field with the first value that is a likely one and comes back from its physical value."""
+    """Return the field with the first value that is within its limits and equals the raw value of its physical value."""
     for raw in _values(field):
         physical = codec.physical_double(field.model, raw)
         if all(bound.holds(raw if physical is None else physical) for bound in field.bounds) and (
@@ -92,18 +96,18 @@ def _shown(field: FieldDescription) -> Shown | None:
 
 
 def _values(field: FieldDescription) -> list[int]:
-    one = field.model
-    if one.type == "float":
-        return [codec.float_bits(one, _FLOAT)] if field.curve is not None or not field.bounds else []
+    place = field.model
+    if place.type == "float":
+        return [codec.float_bits(place, _FLOAT)] if field.curve is not None or not field.bounds else []
     if field.enum is not None:
         numbers = [member.model.value for member in field.enum.members[::-1]]
     else:
         numbers = list(_NUMBERS)
-    return [number for number in numbers if one.raw_min <= number <= one.raw_max]
+    return [number for number in numbers if place.raw_min <= number <= place.raw_max]
 
 
 def _comes_back(field: FieldDescription, raw: int, physical: float) -> bool:
-    """Whether doubles are fine enough for it."""
+    """Return whether setting the physical value gives the raw value: 64-bit integers can be finer than doubles."""
     try:
         return codec.raw_from_physical(field.model, physical) == raw
     except codec.CodecError:

@@ -1,6 +1,6 @@
-"""Members that are read and written together: flags that share a byte, rows of words, and elements of arrays.
+"""Members that code handles together: flags that share a byte, rows of words, and elements of arrays.
 
-A language says from how many members on a group is worth it; which members make a group does not depend on the language.
+A language states the smallest group for which it has code. Which members form a group is the same in all languages.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ Fields = tuple[FieldDescription, ...]
 
 
 class Thresholds(NamedTuple):
-    """The sizes of groups for which a language has code."""
+    """Sizes of groups for which a language has code."""
 
-    flags: tuple[int, ...]  # flags of one byte, the largest group first
-    row: int  # words of members that are no array; two elements of an array are a row
+    flags: tuple[int, ...]  # flags of one byte, the largest size first
+    row: int  # fewest words of separate members; two elements of an array are enough
 
 
 class Flags(NamedTuple):
-    """Flags that are bits of ``byte``, from bit ``shift`` up; if they are falling, down to it."""
+    """Flags in neighbouring bits of a byte. The first has bit ``shift``; if they are falling, the last has it."""
 
     fields: Fields
     byte: int
@@ -32,23 +32,23 @@ class Flags(NamedTuple):
 
 
 class Row(NamedTuple):
-    """Words of one size and byte order, one after the other in the frame and in memory."""
+    """Words of the same size and byte order, one after the other in the frame and in memory."""
 
     fields: Fields
 
     @property
     def byte(self) -> int:
-        """The first byte of the frame."""
+        """First byte of the frame."""
         return self.fields[0].model.at // 8
 
     @property
     def length(self) -> int:
-        """Bytes of the frame."""
+        """Number of bytes of the frame."""
         return len(self.fields) * self.fields[0].model.bits // 8
 
 
 class Rounds(NamedTuple):
-    """Elements of an array of numbers that are no words, which a loop reads and writes. ``first`` is the first of them."""
+    """Elements of an array that a loop reads and writes in rounds. ``first`` is the first element."""
 
     array: FieldDescription
     first: FieldDescription
@@ -59,33 +59,33 @@ Group = Flags | Row | Rounds | FieldDescription
 
 
 def grouped_fields(composite: Composite[Any]) -> Iterator[FieldDescription]:
-    """The scalars that have bits in every frame, without those in arrays of structs."""
+    """List the scalars that have bits in every frame, except scalars in arrays of structs."""
     for member in composite.walk(Into.STRUCTS):
         if member.element_struct is None and not member.model.is_count and not member.model.when:
             yield from member.scalars
 
 
 def groups(composite: Composite[Any], thresholds: Thresholds) -> list[Group]:
-    """The `grouped_fields` in their order, those of a group as one; an array of bytes is one field."""
+    """Return the `grouped_fields` in their order, with groups in place of their fields. An array of bytes is one field."""
     fields = tuple(grouped_fields(composite))
     positions = [_position(field) for field in fields]
-    found: list[Group] = []
+    result: list[Group] = []
     index = 0
     while index < len(fields):
         array = fields[index].array
         if array is not None and array.model.is_bytes:
-            found.append(array)
+            result.append(array)
             index += array.count
             continue
         rounds = _rounds(fields[index])
         if rounds is not None:
-            found.append(rounds)
+            result.append(rounds)
             index += rounds.rounds.elements
             continue
         group = _flags(fields, positions, index, thresholds.flags) or _row(fields, index, thresholds.row)
-        found.append(group or fields[index])
+        result.append(group or fields[index])
         index += len(group.fields) if group else 1
-    return found
+    return result
 
 
 def _rounds(first: FieldDescription) -> Rounds | None:
@@ -95,7 +95,7 @@ def _rounds(first: FieldDescription) -> Rounds | None:
 
 
 def _position(field: FieldDescription) -> tuple[int, int] | None:
-    """Byte and bit of a flag; None of any other field."""
+    """Return byte and bit of a flag; None for any other field."""
     if field.model.type != "bool":
         return None
     (piece,) = field.pieces
@@ -126,7 +126,7 @@ def _row(fields: Fields, begin: int, long_enough: int) -> Row | None:
     for field in fields[end:]:
         at += bits
         is_next = field.model.bits == bits and field.model.at == at
-        is_next = is_next and field.holder == first.holder  # a struct may end with padding
+        is_next = is_next and field.holder == first.holder  # in memory, padding can follow a struct
         if not (is_next and field.is_plain_word and field.byte_order == first.byte_order):
             break
         end += 1
@@ -136,27 +136,29 @@ def _row(fields: Fields, begin: int, long_enough: int) -> Row | None:
 
 
 def bytes_of_flags(composite: Composite[Any], at_least: int) -> set[int]:
-    """The bytes of a frame that have so many flags or more, without optional flags and those that a loop reads."""
-    members = (one for one in composite.walk(Into.STRUCTS) if one.model.type == "bool" and not one.model.when)
-    flags = (flag for one in members if loop_of(one) is None for flag in one.elements)
+    """Return the bytes of a frame with at least so many flags. Optional flags and flags that a loop reads do not count."""
+    members = (
+        member for member in composite.walk(Into.STRUCTS) if member.model.type == "bool" and not member.model.when
+    )
+    flags = (flag for member in members if loop_of(member) is None for flag in member.elements)
     counts = Counter(flag.pieces[0].byte for flag in flags)
     return {byte for byte, count in counts.items() if count >= at_least}
 
 
 class Segment(NamedTuple):
-    """Bytes of a frame that one statement writes: ``whole`` is what it writes; without it, ``parts`` are or-ed together.
+    """Bytes of a frame that one statement writes.
 
-    Without either no field has bits in the bytes.
+    The statement is either complete, or it combines terms for parts of a byte. With neither, no field has bits in the bytes.
     """
 
     byte: int
     length: int
-    whole: str | None
-    parts: tuple[str, ...] = ()
+    statement: str | None
+    terms: tuple[str, ...] = ()
 
 
 class FrameBytes:
-    """A frame, put together from whole bytes and from parts of bytes, which may be added in any order."""
+    """Frame that is assembled from statements for whole bytes and terms for parts of bytes, added in any order."""
 
     def __init__(self, length: int) -> None:
         self._length = length
@@ -172,7 +174,7 @@ class FrameBytes:
         self._parts.setdefault(byte, []).append((shift, term))
 
     def segments(self) -> Iterator[Segment]:
-        """All bytes of the frame, each once, in order."""
+        """List all bytes of the frame in order, each in one segment."""
         byte = 0
         while byte < self._length:
             if byte in self._whole:
@@ -180,7 +182,7 @@ class FrameBytes:
             elif byte in self._parts:
                 segment = Segment(byte, 1, None, tuple(term for _, term in sorted(self._parts[byte])))
             else:
-                others = (n for n in range(byte, self._length) if n in self._whole or n in self._parts)
-                segment = Segment(byte, next(others, self._length) - byte, None)
+                used = (n for n in range(byte, self._length) if n in self._whole or n in self._parts)
+                segment = Segment(byte, next(used, self._length) - byte, None)
             yield segment
             byte += segment.length

@@ -1,4 +1,4 @@
-"""Ids as people write them."""
+"""Ids in the notation of their protocol."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from icdgen.protocol.envelope import Stream
 
 
 def pair_bytes(form: Stream | None) -> int:
-    """Bytes that an id is written as, ``01 35``; 0 where it is written as a number.
+    """Return the number of bytes as which an id is written, ``01 35``; 0 if it is written as a number.
 
     Protocols whose header has the id as several bytes, the most significant first, write these apart (class and number,
     say). Ids in little-endian order are numbers.
@@ -18,6 +18,6 @@ def pair_bytes(form: Stream | None) -> int:
 
 
 def id_text(form: Stream | None, id: int) -> str:
-    """``01 35`` where the packets have such ids, else ``309``."""
+    """Return an id as text: ``01 35`` if packets have ids of several bytes, else ``309``."""
     size = pair_bytes(form)
     return id.to_bytes(size, "big").hex(" ").upper() if size else str(id)

@@ -1,4 +1,4 @@
-"""Physical values as whole numbers of thousandths or millionths of a unit, for programs that do without floating point."""
+"""Physical values as whole numbers of thousandths or millionths of a unit, for programs without floating point."""
 
 from __future__ import annotations
 
@@ -11,36 +11,36 @@ from icdgen.describe.storage import Storage
 from icdgen.icd.places import NodePlace
 from icdgen.icd.units import STANDARD
 
-# Units that already carry a prefix: (a thousandth, a millionth). Empty where that has no name.
+# Units that have a prefix already: names of a thousandth and a millionth. Empty if there is no usual name.
 _PREFIXED = {
     "km": ("m", "mm"), "mm": ("um", "nm"), "km_per_s": ("m_per_s", "mm_per_s"), "ms": ("us", "ns"), "us": ("ns", ""),
     "khz": ("hz", ""), "kg": ("g", "mg"), "ma": ("ua", "na"), "mv": ("uv", "nv"), "mw": ("uw", "nw"),
     "mn": ("un", "nn"), "mn_m": ("un_m", "nn_m"), "mnms": ("unms", "nnms"), "ut": ("nt", ""), "kpa": ("pa", "mpa"),
     "mah": ("uah", "nah"),
 }  # fmt: skip
-# Units that take a prefix. Hz does not: mhz is megahertz to most readers.
+# Units that get a prefix. Hz does not: most readers take mhz for megahertz.
 _PREFIXABLE = frozenset(
     """deg rad m s g n a v w j wh ah ohm t k c pa bar rpm n_m nms deg_per_s rad_per_s m_per_s deg_per_s2 rad_per_s2
     m_per_s2 a_m2""".split()
 )
-_IN_WORDS = frozenset(("deg", "c", "rpm", "deg_per_s", "deg_per_s2"))  # whose symbols nobody writes with a prefix
+_IN_WORDS = frozenset(("deg", "c", "rpm", "deg_per_s", "deg_per_s2"))  # symbols that are not written with a prefix
 
 
 class IntegerScale(NamedTuple):
-    """value = raw*factor + offset, in ``1 / per`` of the unit."""
+    """Scale of whole numbers: value = raw*factor + offset, in ``1 / per`` of the unit."""
 
     per: int  # 1000 | 1_000_000
     factor: int
     offset: int
-    low: int  # over all raw values that fit
-    high: int
-    least: int  # whose nearest raw value there is
-    most: int
+    low: int  # smallest value of all raw values of the field
+    high: int  # largest value
+    least: int  # smallest value whose nearest raw value is in the range of the field
+    most: int  # largest such value
 
 
 @lru_cache(maxsize=4096)
 def integer_scale(steps: Steps) -> IntegerScale | None:
-    """In thousandths where every raw value gives a whole number of them, else in millionths, else None."""
+    """Return the scale in thousandths if every raw value is a whole number of them; else in millionths; else None."""
     for per in (1000, 1_000_000):
         factor, offset = Fraction(steps.p * per, steps.q), Fraction(steps.c * per, steps.q)
         if factor.denominator == offset.denominator == 1:
@@ -52,14 +52,14 @@ def _integer_scale(per: int, factor: int, offset: int, steps: Steps) -> IntegerS
     low, high = sorted((raw * factor + offset, raw) for raw in (steps.raw_min, steps.raw_max))
     bottom, top = low[0] - Fraction(abs(factor), 2), high[0] + Fraction(abs(factor), 2)
     least, most = -int(-bottom // 1), int(top // 1)
-    least += least == bottom and low[1] % 2  # ties go to the even raw value
+    least += least == bottom and low[1] % 2  # ties are rounded to the even raw value
     most -= most == top and high[1] % 2
     return IntegerScale(per, factor, offset, low[0], high[0], least, most)
 
 
 @lru_cache(maxsize=4096)
 def integer_bits(scale: IntegerScale, storage: Storage) -> int | None:
-    """32 or 64: bits of the integer that holds them, whatever the raw value's own holds; None where no such integer does."""
+    """Return the bits of the integer that can store the values of all values of the storage, 32 or 64; None if none can."""
     bits = 32 if computable(storage, scale.factor, scale.offset, 32) else 64
     ends = Storage(bits, True)
     differences = max(scale.least, ends.min) - scale.offset, min(scale.most, ends.max) - scale.offset
@@ -67,19 +67,19 @@ def integer_bits(scale: IntegerScale, storage: Storage) -> int | None:
 
 
 def computable(storage: Storage, factor: int, offset: int, bits: int) -> bool:
-    """Whether raw * factor + offset stays within a signed integer whatever the storage holds, so that nothing overflows."""
+    """Return whether raw * factor + offset does not overflow a signed integer for any value of the storage."""
     products = storage.min * factor, storage.max * factor
     return within(bits, *products, *(product + offset for product in products), factor, offset)
 
 
 def within(bits: int, *values: int) -> bool:
-    """Whether a signed integer holds them and their negatives."""
+    """Return whether a signed integer can store the values and their negatives."""
     most = (1 << bits - 1) - 1
     return all(-most <= value <= most for value in values)
 
 
 def part_of_unit(field: NodePlace, per: int) -> tuple[str, str]:
-    """The end of an accessor's name, and the unit in words: ``mdeg`` and ``thousandths of deg``, ``m`` and ``m`` of km."""
+    """Return the end of an accessor's name and the unit in words: ``mdeg``, ``thousandths of deg``; for km ``m``, ``m``."""
     prefix, part = ("milli", "thousandths") if per == 1000 else ("micro", "millionths")
     if field.unit is None:
         return prefix, part

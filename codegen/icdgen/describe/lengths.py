@@ -1,4 +1,4 @@
-"""Tests of the length of a frame: which comparisons show that a frame is one of a message."""
+"""Tests of the length of a frame: the comparisons by which a decoder accepts the lengths of a message."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ from typing import Literal, NamedTuple
 
 
 class LengthTest(NamedTuple):
-    """A comparison that every length of a message passes. ``value`` is in bytes."""
+    """Comparison that every length of a message passes. ``value`` is in bytes."""
 
     kind: Literal["equal", "at least", "at most", "multiple"]
     value: int
-    without: int = 0  # bytes of the length that are not counted before it is a multiple
+    without: int = 0  # bytes to subtract first, for a multiple
 
 
-def length_tests(lengths: range, known: int = 0) -> tuple[LengthTest, ...]:
-    """The tests that tell these lengths from all others, of which there are at least ``known`` bytes."""
+def length_tests(lengths: range, minimum: int = 0) -> tuple[LengthTest, ...]:
+    """Return the tests that only these lengths pass, among all lengths of at least ``minimum`` bytes."""
     least, most, step = lengths[0], lengths[-1], lengths.step
-    tests = [LengthTest("at least", least)] if least > known else []
+    tests = [LengthTest("at least", least)] if least > minimum else []
     tests.append(LengthTest("at most", most))
     if step > 1:
         tests.append(LengthTest("multiple", step, least))
@@ -24,5 +24,5 @@ def length_tests(lengths: range, known: int = 0) -> tuple[LengthTest, ...]:
 
 
 def length_tests_of_frame(lengths: range) -> tuple[LengthTest, ...]:
-    """The tests for the frame of a message: one if all have the same length."""
+    """Return the tests for frames of a message: a single one if all have the same length."""
     return (LengthTest("equal", lengths[0]),) if len(lengths) == 1 else length_tests(lengths)

@@ -1,6 +1,6 @@
-"""How the messages of a node travel, in no language: what its protocol facts come to in the code that is made of them.
+"""Links of nodes, for all languages: the facts of the protocol section and what follows from them.
 
-`LinkDescription` holds the facts and what follows from them; a backend spells each in the types of its runtime.
+A backend spells the facts in the types of its runtime.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ INDEX_PARTS = ("type", "counter", "checksum", "size", "time", "meta")
 
 
 class Place(NamedTuple):
-    """The field that plays a role in a procedure."""
+    """Field with a role in a procedure."""
 
     role: str
     field: FieldDescription
@@ -41,51 +41,51 @@ class Place(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class StepDescription:
-    """A message that plays a part in a procedure, and its fields that have a role there, in the order of the ICD."""
+    """Message that is a step of a procedure, and its fields with a role there, in the order of the ICD."""
 
     message: Message
     fields: tuple[Place, ...]
-    initial_frame: bytes  # the frame before values are put into it
+    initial_frame: bytes  # frame before values are put into it
 
     @property
     def places(self) -> list[Place]:
-        """The fields with one of `ROLES`."""
-        return [one for one in self.fields if one.role in ROLES]
+        """Fields with a role that the runtimes support."""
+        return [place for place in self.fields if place.role in ROLES]
 
 
 class SentMessage(NamedTuple):
-    """A message under its id in one direction."""
+    """Message with its id in one direction."""
 
     id: int
     message: Message
 
     @property
     def is_setting(self) -> bool:
-        """Whether it sets what can be got back, so that it may be sent again."""
+        """Whether it sets a configuration, which can be read back and so may be sent again."""
         return self.message.kind == CONFIGURATION
 
 
 class Assumptions:
-    """What is assumed of a node's protocol and why. Each is given once: to what it holds of, or with the rest."""
+    """Assumed facts of a node's protocol, with reasons. Each reason is returned once, so that code shows it in one place."""
 
     def __init__(self, facts: Facts) -> None:
-        self._untold = {(one.section, one.key): one.why for one in facts.assumptions}
+        self._left = {(assumption.section, assumption.key): assumption.why for assumption in facts.assumptions}
 
     def why(self, section: str, key: str) -> str:
-        """Why a key is assumed; empty if it is not."""
-        return self._untold.pop((section, key), "")
+        """Return why the value of a key is assumed; empty if it is not, or if the reason was returned before."""
+        return self._left.pop((section, key), "")
 
     def why_fact(self, section: str, fact: Fact) -> str:
-        """Why a declared fact is assumed; empty if it is not."""
+        """Return why a declared fact is assumed; empty if it is not."""
         return self.why(section, fact.key.partition(".")[0]) if fact.key else ""
 
     def of_section(self, section: str) -> list[tuple[str, str]]:
-        """Key and reason of what else is assumed in a section."""
-        return [(key, self.why(section, key)) for where, key in [*self._untold] if where == section]
+        """Return key and reason of the other assumptions of a section."""
+        return [(key, self.why(section, key)) for where, key in [*self._left] if where == section]
 
     def others(self) -> list[tuple[str, str, str]]:
-        """Section, key and reason of all that is not told."""
-        return [(section, key, self.why(section, key)) for section, key in [*self._untold]]
+        """Return section, key and reason of all assumptions that were not returned before."""
+        return [(section, key, self.why(section, key)) for section, key in [*self._left]]
 
 
 def byte_table(crc: Crc) -> list[int]:
@@ -102,108 +102,108 @@ def byte_table(crc: Crc) -> list[int]:
 
 
 def links_of(description: Description) -> dict[str, LinkDescription]:
-    """The links of the nodes of which it is known how their messages travel, by the names of the nodes."""
+    """Return the links of all nodes that have one, by the names of the nodes."""
     linked = (node for node in description.nodes if node.is_linked)
-    return {one.name: LinkDescription(description, protocol_facts.of(description.icd, one.model)) for one in linked}
+    return {node.name: LinkDescription(description, protocol_facts.of(description.icd, node.model)) for node in linked}
 
 
 class LinkDescription:
-    """How the messages of a node travel; ``facts`` is what its ICD says."""
+    """Link of a node. ``facts`` come from the protocol section."""
 
     def __init__(self, description: Description, facts: Facts) -> None:
         self.facts, self._describe = facts, description.message
 
     @property
     def telecommands(self) -> list[SentMessage]:
-        """By rising id; none where the envelope of the link tells them."""
+        """Messages by ascending id; empty if the link has packets, whose format lists the messages."""
         return self._sent(self.facts.telecommands)
 
     @property
     def telemetry(self) -> list[SentMessage]:
-        """By rising id; none where the envelope of the link tells them."""
+        """Messages by ascending id; empty if the link has packets, whose format lists the messages."""
         return self._sent(self.facts.telemetry)
 
     def _sent(self, messages: Mapping[int, Message]) -> list[SentMessage]:
-        return [] if self.facts.stream else [SentMessage(id, one) for id, one in sorted(messages.items())]
+        return [] if self.facts.stream else [SentMessage(id, message) for id, message in sorted(messages.items())]
 
     @property
     def error_codes(self) -> list[tuple[str, int]]:
-        """What codes mean, of `REASONS`, and the codes."""
+        """Meanings of error codes that the runtimes support, and the codes."""
         return [(reason, code) for reason, code in self.facts.errors.items() if reason in REASONS]
 
     @property
     def can(self) -> Can | None:
-        """CAN, if all parts of the identifier are known."""
+        """Facts of CAN, if the ICD has all parts of the identifier."""
         can = self.facts.can
         return can if can and set(CAN_PARTS) <= set(can.parts) else None
 
     @property
     def time(self) -> list[tuple[str, TimePart]]:
-        """The parts of a packed time, largest first; none unless all are known."""
-        known = self.facts.time
-        return [(name, known[name]) for name in TIME_PARTS] if set(TIME_PARTS) <= set(known) else []
+        """Parts of a packed time, the year first; empty unless the ICD has all of them."""
+        parts = self.facts.time
+        return [(name, parts[name]) for name in TIME_PARTS] if set(TIME_PARTS) <= set(parts) else []
 
     @property
     def index(self) -> Index | None:
-        """The index file, if all fields of an entry are known."""
+        """Facts of the index file, if the ICD has all fields of an entry."""
         index = self.facts.index
         return index if index and set(INDEX_PARTS) <= set(index.fields) else None
 
     @property
     def map_pieces(self) -> list[FieldDescription]:
-        """The fields that carry the pieces of the hole map, each of its message."""
+        """Fields that carry the pieces of the hole map, each in a message of its own."""
         form = self.facts.hole_map
-        fields = [field for one in form.messages for field in self._describe(one).fields] if form else []
+        fields = [field for message in form.messages for field in self._describe(message).fields] if form else []
         return [field for field in fields if form and field.model.name == form.field]
 
     @cached_property
     def polled(self) -> StepDescription | None:
-        """The frame that tells what became of a telecommand; it has the roles id, processed, error and parameter."""
-        one = self.facts.polled
+        """Frame with the result of the last telecommand. Its roles are id, processed, error and parameter."""
+        polled = self.facts.polled
         names = ("id", "processed", "error", "parameter")
-        return self.step(Step(one.message, {name: getattr(one, name) for name in names})) if one else None
+        return self.step(Step(polled.message, {name: getattr(polled, name) for name in names})) if polled else None
 
     @property
     def identification(self) -> StepDescription | None:
-        """The frame that identifies the node."""
+        """Frame that identifies the node."""
         return self.step(self.facts.identification) if self.facts.identification else None
 
     def step(self, step: Step) -> StepDescription:
-        """A message that plays a part in a procedure."""
+        """Return the description of a step of a procedure."""
         message = self._describe(step.message)
         fields = {field.model.name: field for field in message.fields}
-        found = tuple(Place(role, fields[name]) for role, name in step.fields.items() if name in fields)
-        return StepDescription(step.message, found, step.frame(message.node))
+        places = tuple(Place(role, fields[name]) for role, name in step.fields.items() if name in fields)
+        return StepDescription(step.message, places, step.frame(message.node))
 
     @property
     def joined_bytes(self) -> int:
-        """Bytes of all packets of the longest message on CAN; 0 if no message has several."""
+        """Bytes of all packets of the longest message on CAN; 0 if no message has several packets."""
         extended = self.facts.can and self.facts.can.extended
         return -(-self.facts.longest_data // extended.data_bytes) * extended.data_bytes if extended else 0
 
     @property
     def log_entry_bytes(self) -> int:
-        """Bytes of the longest entry of a log file; 0 if it has none."""
+        """Bytes of the longest entry of a log file; 0 without log files."""
         file, mask = self.facts.log_file, self.facts.mask
         return file.frames_at + mask.size * 8 * mask.slot_bytes if file and mask else 0
 
     @property
     def longest_step(self) -> int:
-        """Bytes of the longest message that takes part in a procedure."""
+        """Bytes of the longest message of a procedure."""
         return max((message.length for message in self.in_procedures), default=0)
 
     def name_of(self, message: Message) -> str:
-        """What it is called in names of code."""
+        """Return the name of a message in snake case."""
         return self._describe(message).name
 
     @cached_property
     def always_needed(self) -> list[Message]:
-        """The messages that the wire layer asks for by itself, whatever a program does."""
+        """Messages that the wire layer requests by itself, whichever messages a program uses."""
         return [step.message for step in (self.polled, self.identification) if step]
 
     @cached_property
     def in_procedures(self) -> list[Message]:
-        """The messages that take part in the transfer of files and programs."""
+        """Messages of the procedures for files and programs."""
         facts = self.facts
         steps = list(facts.files.steps.values()) if facts.files else []
         for operation in filter(None, (facts.program_copy, facts.program_information)):

@@ -1,4 +1,4 @@
-"""What the ICD gives a name: how it is called in code and in findings."""
+"""Names of parts of an ICD in code and in findings."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ Model = TypeVar("Model", bound=Message | Struct | NodePlace | Enum | Member)
 
 
 class Named(Generic[Model]):
-    """Something of the ICD (``model``). ``words`` are those of its identifier, ``name`` is them in snake case.
+    """Part of the ICD (``model``) with a name: ``words`` of its identifier, and ``name``, the words in snake case.
 
-    ``owner`` is what a finding calls it.
+    Findings call it ``owner``, for instance "enumeration `Mode`".
     """
 
     def __init__(self, model: Model, vocabulary: tuple[str, ...], owner: str) -> None:
@@ -25,5 +25,5 @@ class Named(Generic[Model]):
         self.name = naming.snake(self.words)
 
     def identifier(self, scope: str, name: str) -> Identifier:
-        """A name that generated code declares for it."""
+        """Return a name that generated code declares for the part."""
         return Identifier(scope, name, self.owner, self.model.source)

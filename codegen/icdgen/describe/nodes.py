@@ -1,7 +1,6 @@
-"""A set of ICDs as a whole, its nodes and their messages: each is described once.
+"""Description of a set of ICDs: its nodes, and the messages that they declare and use. Each is described once.
 
-Nodes: what they declare, and what they speak in each direction under which ids. Messages: their fields, the end that may be open,
-and their ids.
+A node has the messages of each direction by their ids. A message has its fields, its variable parts and its ids.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ from icdgen.once import cached_property
 
 
 class Id(NamedTuple):
-    """An id of a message; ``name`` is ``id``, ``set_id`` or ``get_id``."""
+    """Id of a message; ``name`` is ``id``, ``set_id`` or ``get_id``."""
 
     name: str
     value: int
@@ -35,35 +34,35 @@ class Id(NamedTuple):
 
 
 class MessageDescription(Composite[Message]):
-    """A message."""
+    """Message of a node."""
 
     def __init__(self, description: Description, message: Message, node: Node) -> None:
         super().__init__(description.declared, message, node, "message")
-        self._whole = description
+        self._description = description
 
     @property
     def has_reserved_bits(self) -> bool:
-        """Whether some bits of its frame are those of no field."""
+        """Whether some bits of its frame belong to no field."""
         return bool(layout.gaps(self.model, self.node))
 
     @cached_property
     def optional_members(self) -> tuple[FieldDescription, ...]:
-        """The members that are not always there."""
+        """Members that are present only if other fields have certain values."""
         return tuple(member for member in self.members if member.model.when)
 
     @property
     def last_part(self) -> VariablePartDescription | None:
-        """Its open end, where frames differ in length."""
+        """Last part of variable length; None if all frames have the same length or may end early."""
         return self.variable_parts[-1] if self.variable_parts else None
 
     @property
     def earlier_parts(self) -> tuple[VariablePartDescription, ...]:
-        """What is open in front of the tail."""
+        """Parts of variable length in front of the last one."""
         return self.variable_parts[:-1]
 
     @cached_property
     def variable_parts(self) -> tuple[VariablePartDescription, ...]:
-        """All parts of variable length, in the order of the frame."""
+        """Parts of variable length, in the order of the frame."""
         by_name = {member.model.name: member for member in self.members}
         return tuple(
             VariablePartDescription(part, by_name[part.name], by_name[part.counter]) for part in self.model.layout.parts
@@ -71,22 +70,22 @@ class MessageDescription(Composite[Message]):
 
     @cached_property
     def contained(self) -> tuple[tuple[MessageDescription, int], ...]:
-        """The messages that it repeats, each with the bit at which it begins, in the order of the ICD."""
+        """Messages that a composite message contains, each with the bit at which it starts, in the order of the ICD."""
         if not self.model.contains:
             return ()
-        known = {one.model.name: one for one in self._whole.node(self.node).all_messages}
-        return tuple((known[one.message], one.at) for one in self.model.contains if one.message in known)
+        messages = {message.model.name: message for message in self._description.node(self.node).all_messages}
+        return tuple((messages[part.message], part.at) for part in self.model.contains if part.message in messages)
 
     @cached_property
     def ids(self) -> tuple[Id, ...]:
-        """The id, or the set id and the get id."""
+        """Id of the message, or set id and get id of a configuration."""
         about = {
             "id": f"Id of the {self.model.kind}.",
             "set_id": "Id of the telecommand that sets it.",
             "get_id": "Id of the telemetry that gets it.",
         }
-        found = ((name, getattr(self.model, name), comment) for name, comment in about.items())
-        return tuple(Id(name, value, comment) for name, value, comment in found if value is not None)
+        ids = ((name, getattr(self.model, name), comment) for name, comment in about.items())
+        return tuple(Id(name, value, comment) for name, value, comment in ids if value is not None)
 
     @property
     def telecommand_id_name(self) -> str:
@@ -100,168 +99,165 @@ class MessageDescription(Composite[Message]):
 
     @property
     def is_narrow(self) -> bool:
-        """Whether a field of it may be given a raw value that does not fit, or a count."""
-        return super().is_narrow or any(one.needs_count_check for one in self.variable_parts)
+        """Whether the type of a field can store raw values or counts that the message cannot have."""
+        return super().is_narrow or any(part.needs_count_check for part in self.variable_parts)
 
     @cached_property
     def comment(self) -> Comment:
-        node, telemetry_id = self._whole.node(self.node), self.model.telemetry_id
+        node, telemetry_id = self._description.node(self.node), self.model.telemetry_id
         bit = None if telemetry_id is None else node.log_bits.get(telemetry_id)
         return message_comment(self.model, bit, sharing(node.messages_by_id, self.model))
 
 
 class Direction(NamedTuple):
-    """What a node speaks in one direction: messages, each with the name of its id there (``id``, ``set_id`` or ``get_id``)."""
+    """Messages of a node in one direction, each with the name of its id there: ``id``, ``set_id`` or ``get_id``."""
 
     kind: str  # "telecommand" | "telemetry"
     messages: tuple[tuple[MessageDescription, str], ...]
 
 
 class MessageOfId(NamedTuple):
-    """A message under an id, the name of its id there, and what bytes show that a frame of its length is it."""
+    """Message under an id, the name of that id, and the bytes by which a frame of its length is recognised."""
 
     message: MessageDescription
     id_name: str
-    signs: tuple[layout.ConstantByte, ...]
+    constant_bytes: tuple[layout.ConstantByte, ...]
 
 
 class MessagesOfId(NamedTuple):
-    """The messages of one id, in the order in which a frame is tried with them."""
+    """Messages of one id, in the order in which a frame is compared with them."""
 
     id: int
     messages: tuple[MessageOfId, ...]
-    length: int | None  # that all of them have; None if they have several
+    length: int | None  # of all of them; None if lengths differ
 
     @property
     def first(self) -> MessageOfId:
-        """One of them, whose constant says the id."""
+        """First of them; code takes the id from its constant."""
         return self.messages[0]
 
     @property
     def is_shared(self) -> bool:
-        """Whether it takes more than the id to know the message."""
+        """Whether several messages have the id, so that a decoder has to look at the frame."""
         return len(self.messages) > 1
 
     @property
     def fallback(self) -> MessageOfId | None:
-        """The candidate that is left when the frame is none of the others: nothing but its length may be wrong."""
+        """Message of a frame that matches no message of `tested`: only its length can be wrong. None without such a message."""
         last = self.messages[-1]
-        return last if not self.is_shared or (self.length is not None and not last.signs) else None
+        return last if not self.is_shared or (self.length is not None and not last.constant_bytes) else None
 
     @property
     def tested(self) -> tuple[MessageOfId, ...]:
-        """Those that a frame has to be looked at for."""
+        """Messages that a decoder has to test a frame for."""
         return self.messages if self.fallback is None else self.messages[:-1]
 
 
 class NodeDescription:
-    """A node (``model``) of the set."""
+    """Node of the set."""
 
     def __init__(self, description: Description, node: Node) -> None:
         self._description, self.model, self.name = description, node, node.name
 
     def identifier(self, scope: str, name: str) -> Identifier:
-        """A name that generated code declares for it."""
+        """Return a name that generated code declares for the node."""
         return Identifier(scope, name, f"node `{self.name}`", self.model.source)
 
     @cached_property
     def messages(self) -> tuple[MessageDescription, ...]:
-        """Those that it declares."""
+        """Messages that the node declares."""
         return tuple(map(self._description.message, self.model.messages))
 
     @cached_property
     def enums(self) -> tuple[EnumDescription, ...]:
-        """Those that it declares."""
+        """Enumerations that the node declares."""
         return tuple(map(self._description.enum, self.model.enums))
 
     @cached_property
     def structs(self) -> tuple[StructDescription, ...]:
-        """Those that it declares, each after those that it has in it."""
+        """Structs that the node declares, each after the structs of its members."""
         return tuple(map(self._description.struct, self.model.structs))
 
     @property
     def composites(self) -> tuple[Composite[Any], ...]:
-        """Structs and messages that it declares, each after those that it has in it."""
+        """Structs and messages that the node declares, each after the structs of its members."""
         return (*self.structs, *self.messages)
 
     @property
     def declared(self) -> tuple[Composite[Any] | EnumDescription, ...]:
-        """All that it declares by a name: messages, enumerations and structs."""
+        """All messages, enumerations and structs that the node declares."""
         return (*self.messages, *self.enums, *self.structs)
 
     @cached_property
     def all_messages(self) -> tuple[MessageDescription, ...]:
-        """All messages that it speaks: those of included nodes first."""
+        """Messages of included nodes, then messages that the node declares."""
         return tuple(map(self._description.message, self._description.icd.messages_of(self.model)))
 
     @property
     def telecommands(self) -> tuple[MessageDescription, ...]:
-        """Those of `all_messages` that can be sent to it."""
-        return tuple(one for one in self.all_messages if one.model.telecommand_id is not None)
+        """Messages of `all_messages` that can be sent to the node."""
+        return tuple(message for message in self.all_messages if message.model.telecommand_id is not None)
 
     @property
     def telemetry(self) -> tuple[MessageDescription, ...]:
-        """Those of `all_messages` that can be requested from it."""
-        return tuple(one for one in self.all_messages if one.model.telemetry_id is not None)
+        """Messages of `all_messages` that can be requested from the node."""
+        return tuple(message for message in self.all_messages if message.model.telemetry_id is not None)
 
     @property
     def directions(self) -> tuple[Direction, ...]:
-        """Telecommands, then telemetry; without one of which it has none."""
-        found = (
-            Direction("telecommand", tuple((one, one.telecommand_id_name) for one in self.telecommands)),
-            Direction("telemetry", tuple((one, one.telemetry_id_name) for one in self.telemetry)),
-        )
-        return tuple(direction for direction in found if direction.messages)
+        """Telecommands, then telemetry; without a direction that has no messages."""
+        telecommands = ((message, message.telecommand_id_name) for message in self.telecommands)
+        telemetry = ((message, message.telemetry_id_name) for message in self.telemetry)
+        both_directions = Direction("telecommand", tuple(telecommands)), Direction("telemetry", tuple(telemetry))
+        return tuple(direction for direction in both_directions if direction.messages)
 
     def ids(self, direction: str) -> tuple[MessagesOfId, ...]:
-        """The messages of a direction by their ids, in the order of the ICD."""
+        """Return the messages of a direction by their ids, in the order of the ICD."""
         return self._ids[direction]
 
     def shares_ids(self, direction: str) -> bool:
-        """Whether messages of the direction have an id in common."""
-        return any(one.is_shared for one in self._ids[direction])
+        """Return whether messages of the direction share an id."""
+        return any(under_id.is_shared for under_id in self._ids[direction])
 
     def shares_id(self, direction: str, message: MessageDescription) -> bool:
-        """Whether it takes more than the id to know the message."""
-        shared = (one.messages for one in self._ids[direction] if one.is_shared)
-        return any(one.message is message for among in shared for one in among)
+        """Return whether a message shares its id with another one of the direction."""
+        shared = (under_id.messages for under_id in self._ids[direction] if under_id.is_shared)
+        return any(candidate.message is message for candidates in shared for candidate in candidates)
 
     @cached_property
     def messages_by_id(self) -> Ids:
-        """All messages that it speaks, by their ids."""
+        """Messages of the node by their ids, per direction."""
         return ids_of(self._description.icd, self.model)
 
     @cached_property
     def _ids(self) -> dict[str, tuple[MessagesOfId, ...]]:
-        known = self.messages_by_id
+        telecommands, telemetry = self.messages_by_id.telecommand, self.messages_by_id.telemetry
         return {
-            "telecommand": tuple(self._under("set_id", id, those) for id, those in known.telecommand.items()),
-            "telemetry": tuple(self._under("get_id", id, those) for id, those in known.telemetry.items()),
+            "telecommand": tuple(self._under("set_id", id, variants) for id, variants in telecommands.items()),
+            "telemetry": tuple(self._under("get_id", id, variants) for id, variants in telemetry.items()),
         }
 
     def _under(self, other_name: str, id: int, variants: tuple[Variant, ...]) -> MessagesOfId:
-        message = self._description.message
-        found = (
-            MessageOfId(
-                message(one.message), "id" if one.message.id is not None else other_name, layout.constant_bytes(one)
-            )
-            for one in variants
-        )
-        return MessagesOfId(id, tuple(found), common_length(variants))
+        candidates = []
+        for variant in variants:
+            name = "id" if variant.message.id is not None else other_name
+            message = self._description.message(variant.message)
+            candidates.append(MessageOfId(message, name, layout.constant_bytes(variant)))
+        return MessagesOfId(id, tuple(candidates), common_length(variants))
 
     @property
     def is_linked(self) -> bool:
-        """Whether it is known how its messages travel."""
+        """Whether the ICD describes the link of the node."""
         return bool(self._description.icd.protocol_of(self.model))
 
     @property
     def has_client(self) -> bool:
-        """Whether its link has messages with an id of one byte: the client, procedures and logs are for such."""
+        """Whether its link has messages with an id of one byte: only these have a client, procedures and logs."""
         return self.is_linked and "stream" not in self._description.icd.protocol_of(self.model)
 
     @property
     def id_bits(self) -> int:
-        """Those of the set: see `Description.id_bits`."""
+        """Bits of ids in the set: see `Description.id_bits`."""
         return self._description.id_bits
 
     @cached_property
@@ -271,7 +267,7 @@ class NodeDescription:
 
 
 class Description:
-    """A set of ICDs. ``nodes`` stand in the order of the set: each after those that it includes."""
+    """Set of ICDs. Each of ``nodes`` comes after the nodes that it includes."""
 
     def __init__(self, icd: Icd) -> None:
         self.icd = icd
@@ -282,38 +278,39 @@ class Description:
 
     @cached_property
     def id_bits(self) -> int:
-        """8, 16 or 32: bits of the integer that holds every id of the set."""
+        """Bits of the integer for all ids of the set: 8, 16 or 32."""
         used = (id.bit_length() for node in self.icd.nodes for message in node.messages for id in message.ids)
         return holding(max((*(node.id_bits for node in self.icd.nodes), *used), default=8))
 
     def node(self, node: str | Node) -> NodeDescription:
-        """The description of a node, by its name or of the node itself. Raises `KeyError`."""
+        """Return the description of a node, by its name or by the node itself. Raises `KeyError`."""
         return self._nodes[node if isinstance(node, str) else node.name]
 
     def message(self, message: Message) -> MessageDescription:
-        """The description of a message, whoever speaks it."""
+        """Return the description of a message, whichever node uses it."""
         key = message.node, message.name
-        found = self._messages.get(key)
-        if found is None or found.model is not message:
-            found = self._messages[key] = MessageDescription(self, message, self.icd.node(message.node))
-        return found
+        description = self._messages.get(key)
+        if description is None or description.model is not message:
+            description = self._messages[key] = MessageDescription(self, message, self.icd.node(message.node))
+        return description
 
     def struct(self, struct: Struct) -> StructDescription:
-        """The description of a struct, whoever uses it."""
+        """Return the description of a struct, whichever node uses it."""
         return self.declared.struct_of(struct.layout)
 
     def enum(self, enum: Enum) -> EnumDescription:
-        """The description of an enumeration, whoever uses it."""
+        """Return the description of an enumeration, whichever node uses it."""
         return self.declared.enum(enum)
 
 
-_kept: list[Description] = []
+_recent: list[Description] = []
+"""Descriptions of the last two sets, the older first: one run generates several languages from the same set."""
 
 
 def describe(icd: Icd) -> Description:
-    """The description of a set of ICDs. The last ones are kept, so that the backends of one run share theirs."""
-    for known in _kept:
-        if known.icd is icd:
-            return known
-    _kept[:] = [*_kept[-1:], Description(icd)]
-    return _kept[-1]
+    """Return the description of a set of ICDs. Calls with the same set share the result."""
+    for description in _recent:
+        if description.icd is icd:
+            return description
+    _recent[:] = [*_recent[-1:], Description(icd)]
+    return _recent[-1]

@@ -1,4 +1,4 @@
-"""What a field is by itself: the integer that holds it, its physical value, limits and the bits of the frame."""
+"""Scalars: the integer that stores the raw value, the physical value, limits, and bits of the frame."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from icdgen.once import cached_property
 
 
 class ScalarDescription(Named[NodePlace]):
-    """A scalar at its place, or what stands in an array."""
+    """Scalar at its place, or the element of an array of scalars."""
 
     storage: Storage
-    """The integer that holds the raw value (the bits of a float); of an enumeration, that of its type. None of bytes."""
+    """Integer that stores the raw value: for a float its bits, for an enumeration that of its type. Not used for bytes."""
     steps: steps.Steps | None
-    """How the physical value is computed in whole numbers; None where that is the raw value, or there is a curve."""
+    """Steps of the physical value in whole numbers; None without a scale."""
     curve: Curve | None
-    """How it is computed in doubles."""
+    """Calibration of the physical value in doubles, a polynomial or a lookup table; None without one."""
     physical_name: str
     """``estimated_roll_angle_deg``"""
     declared_name: str
-    """The name that is declared for it: of an element, that of its array; of a field of a struct, that in the struct."""
+    """Name in generated code: for an element that of its array, for a member of a struct that in the struct."""
 
     def __init__(
         self,
@@ -43,7 +43,9 @@ class ScalarDescription(Named[NodePlace]):
         self.enum, self.node_orders = enum, node_orders
         self.storage = enum.storage if enum is not None else storage_of(place.bits, place.is_signed)
         self.steps, self.curve = steps.steps(place), place.curve
-        if place.derived is not None and place.unit is not None:  # it is a physical value, and has no raw one
+        if (
+            place.derived is not None and place.unit is not None
+        ):  # derived values have no raw value, only a physical one
             self.name = f"{self.name}_{place.unit.identifier}"
         self.declared_name = self.name
         unit = "text" if self.is_text else place.unit.identifier if place.unit else "physical"
@@ -51,33 +53,33 @@ class ScalarDescription(Named[NodePlace]):
 
     @property
     def arithmetic(self) -> Arithmetic | None:
-        """How its scale is computed; None if it has none."""
+        """Arithmetic of its scale; None without a scale."""
         return None if self.steps is None else arithmetic_of(self.steps, self.storage)
 
     @property
     def integer_scale(self) -> IntegerScale | None:
-        """Its physical value in whole thousandths or millionths of the unit; None if these are not exact."""
+        """Physical value in whole thousandths or millionths of the unit; None if these are not exact."""
         return None if self.steps is None else integer_scale(self.steps)
 
     @property
     def is_narrow(self) -> bool:
-        """Whether `storage` holds raw values that the field can't."""
+        """Whether `storage` can store raw values that do not fit the field."""
         return self.model.bits != self.storage.bits and self.model.type in ("uint", "int", "enum")
 
     @property
     def allowed_text(self) -> str:
-        """What it takes, in words, for who gave it something else."""
+        """Values that can be set, in words, for messages about other values."""
         return takes_text(self.model, self.is_narrow)
 
     @property
     def initial_raw(self) -> int:
-        """The raw value in a new message as a number; 0 of bytes and of a struct."""
+        """Raw value in a new message as a number; 0 for bytes and structs."""
         value = self.model.initial_value
         return 0 if isinstance(value, bytes) else value
 
     @property
     def initial_physical(self) -> float:
-        """The physical value in a new message; 0 without a scale."""
+        """Physical value in a new message; 0 without a scale or calibration."""
         if self.curve is not None:
             return self.curve.double(self.initial_raw)
         return self.steps.double(self.initial_raw) if self.steps is not None else 0.0
@@ -89,75 +91,75 @@ class ScalarDescription(Named[NodePlace]):
 
     @property
     def byte_order(self) -> str:
-        """``little`` or ``big``: its own, its message's or its node's."""
+        """Byte order in effect: ``little`` or ``big``."""
         return self.orders.byte
 
     @property
     def order(self) -> str:
-        """``le`` or ``be``: the same in short."""
+        """Byte order in effect, as names of functions have it: ``le`` or ``be``."""
         return "le" if self.byte_order == "little" else "be"
 
     @property
     def is_word(self) -> bool:
-        """Whether it is a byte, or a word of 2, 4 or 8 whole bytes that is loaded and stored as one."""
-        one = self.model
-        return not one.is_bytes and one.at % 8 == 0 and one.bits in (8, 16, 32, 64)
+        """Whether it is a whole byte, or a word of 2, 4 or 8 whole bytes that is loaded and stored at once."""
+        place = self.model
+        return not place.is_bytes and place.at % 8 == 0 and place.bits in (8, 16, 32, 64)
 
     @property
     def is_plain_word(self) -> bool:
-        """Whether it is a word that lies in the frame as in memory, but for the order of its bytes."""
+        """Whether it is a word that has the same bits in the frame and in memory, apart from the order of its bytes."""
         return self.is_word and self.model.bits == self.storage.bits
 
     @property
     def is_copied(self) -> bool:
-        """Whether its bytes, or those of each element, lie in the frame as in memory, but for the order of bytes in a word."""
+        """Whether it can be copied between frame and memory: bytes, or a word whose bytes are swapped at most."""
         return self.model.is_bytes or self.is_plain_word
 
     @property
     def pieces(self) -> tuple[layout.Piece, ...]:
-        """The runs of bits of the frame that make up a number."""
+        """Runs of bits in bytes of the frame that make up a number; empty for derived values."""
         if self.model.derived:
             return ()
         return layout.pieces_at(self.model.at, self.model.bits, self.orders.byte, self.orders.bit)
 
     @property
     def is_text(self) -> bool:
-        """Whether its bytes are characters: its physical value is a text, which every language gives and takes."""
+        """Whether its bytes are characters. Its physical value is a text in every language."""
         return self.model.type == "text"
 
     def integer_name(self, per: int) -> str:
-        """``estimated_roll_angle_mdeg``: its physical value in whole parts of the unit."""
+        """Return the name of the physical value in whole parts of the unit: ``estimated_roll_angle_mdeg``."""
         return f"{self.declared_name}_{part_of_unit(self.model, per)[0]}"
 
     def integer_title(self, per: int) -> str:
-        """``Estimated Roll Angle in thousandths of deg``"""
+        """Return the title of the physical value in whole parts of the unit: ``Estimated Roll Angle in thousandths of deg``."""
         return f"{words(self.model.name)} in {words(part_of_unit(self.model, per)[1])}"
 
     def integer_comment(self, scale: IntegerScale) -> str:
-        """What it is, and its range."""
+        """Return the comment of the physical value in whole parts of the unit: its title and range."""
         return f"{self.integer_title(scale.per)}, exact: {scale.low} to {scale.high}."
 
     @property
     def size(self) -> int:
-        """How many bytes or characters a field of these has."""
+        """Number of bytes or characters of a byte string or text."""
         return self.model.bits // 8
 
     @property
     def has_physical(self) -> bool:
-        """Whether there are accessors of a physical value that is not the raw one."""
+        """Whether it has a physical value other than the raw value, and accessors for it."""
         return self.is_text or self.is_scaled
 
     @property
     def is_scaled(self) -> bool:
-        """Whether the physical value is a number that is computed from the raw one."""
+        """Whether the physical value is a number that is computed from the raw value."""
         return self.steps is not None or self.curve is not None
 
     @property
     def is_settable(self) -> bool:
-        """Whether a physical value sets it."""
+        """Whether it can be set by a physical value."""
         return not self.model.view and self.model.is_invertible
 
     @cached_property
     def bounds(self) -> tuple[Bound, ...]:
-        """The limits, one by one."""
+        """Limits, one by one."""
         return bounds(self.model.limits)

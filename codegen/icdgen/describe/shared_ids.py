@@ -1,4 +1,4 @@
-"""What is said of a message that shares its id: with which others, and what shows that a frame is of this one."""
+"""Comments on messages that share an id: with which messages, and how a frame is recognised."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from icdgen.icd.variants import Ids, Variant, common_length, is_narrower
 
 
 def sharing(ids: Ids, message: Message) -> str:
-    """``Shares its id with Ephemeris and Almanac, and has Type 1.`` Empty if it has an id of its own. ``ids``: of its node."""
-    said: dict[str, None] = {}
-    for id, known in ((message.telecommand_id, ids.telecommand), (message.telemetry_id, ids.telemetry)):
-        group = known[id] if id is not None else ()
+    """Return ``Shares its id with Ephemeris and Almanac, and has Type 1.``; empty if no message of its node has the same id."""
+    sentences: dict[str, None] = {}
+    for id, groups in ((message.telecommand_id, ids.telecommand), (message.telemetry_id, ids.telemetry)):
+        group = groups[id] if id is not None else ()
         if len(group) > 1:
-            own = next(one for one in group if one.message is message)
+            own = next(variant for variant in group if variant.message is message)
             name = {message.set_id: "set id", message.get_id: "get id"}.get(id, "id")
-            said[f"Shares its {name} with {_sentence(own, group)}"] = None
-    return " ".join(said)
+            sentences[f"Shares its {name} with {_sentence(own, group)}"] = None
+    return " ".join(sentences)
 
 
 def _sentence(own: Variant, group: tuple[Variant, ...]) -> str:
-    others = [one for one in group if one is not own]
+    other_variants = [variant for variant in group if variant is not own]
     has = [length_text(own.message)] if common_length(group) is None else []
     has += (f"{words(field.name)} {value_text(field.const or 0)}" for field in own.constants)
     clauses = [f"has {listed(has)}"] if has else []
-    if any(is_narrower((one.message, one.node), (own.message, own.node)) for one in others):
+    if any(is_narrower((variant.message, variant.node), (own.message, own.node)) for variant in other_variants):
         clauses.append("is what none of the others is")
-    return f"{listed([words(one.message.name) for one in others])}, and {' and '.join(clauses)}."
+    return f"{listed([words(variant.message.name) for variant in other_variants])}, and {' and '.join(clauses)}."

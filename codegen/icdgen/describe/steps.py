@@ -1,4 +1,4 @@
-"""The steps by which a physical value is computed from a raw one, the same in every language: physical = (raw*p + c) / q."""
+"""Steps of a scale in whole numbers, for all languages: physical = (raw*p + c) / q."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from icdgen.icd.formula import Scale
 from icdgen.icd.places import AnyScalar
 
 EXACT_DOUBLE = 1 << 53
-"""Up to this size every whole number is a double."""
+"""Largest number up to which every whole number is a double."""
 EXACT_SINGLE = 1 << 24
-"""Up to this size every whole number is a float of 32 bits."""
+"""Largest number up to which every whole number is a float of 32 bits."""
 
 
 def wide_parts(value: int, bits: int) -> list[int]:
-    """A term in 256 bits of two's complement, as unsigned parts of so many bits, the least significant first."""
+    """Return a term in 256 bits of two's complement as unsigned parts of ``bits`` bits, the least significant first."""
     return [value >> shift & (1 << bits) - 1 for shift in range(0, 256, bits)]
 
 
 class Steps(NamedTuple):
-    """physical = (raw*p + c) / q in whole numbers, for raw values from ``raw_min`` to ``raw_max``; q > 0, p != 0."""
+    """Terms of physical = (raw*p + c) / q for raw values from ``raw_min`` to ``raw_max``; q > 0, p != 0."""
 
     p: int
     c: int
@@ -32,41 +32,42 @@ class Steps(NamedTuple):
 
     @property
     def terms(self) -> tuple[int, int, int]:
-        """p, c, q"""
+        """The numbers p, c and q."""
         return self[:3]
 
     @property
     def is_wide(self) -> bool:
-        """Whether p, c or q has more digits than arithmetic of 128 bits is sure to take."""
+        """Whether p, c or q is too large for arithmetic in 128 bits."""
         return not exact.Terms(*self.terms).are_usual
 
     def physical(self, raw: int) -> Fraction:
-        """The exact physical value."""
+        """Return the exact physical value."""
         return Fraction(raw * self.p + self.c, self.q)
 
     def double(self, raw: int) -> float:
-        """The double nearest to the physical value. (Python rounds a quotient of whole numbers once.)"""
+        """Return the double nearest to the physical value."""
+        # Python divides whole numbers of any size with a single rounding.
         return (raw * self.p + self.c) / self.q
 
     @property
     def span(self) -> tuple[Fraction, Fraction]:
-        """The smallest and the largest physical value."""
+        """Smallest and largest physical value."""
         first, last = self.physical(self.raw_min), self.physical(self.raw_max)
         return (first, last) if first <= last else (last, first)
 
     @property
     def exact_in_doubles(self) -> bool:
-        """Whether every step but the division is exact in doubles, so that the division alone rounds."""
+        """Whether every step before the division is exact in doubles, so that only the division rounds."""
         return self.exact_up_to(EXACT_DOUBLE)
 
     def exact_up_to(self, most: int) -> bool:
-        """The same for floats in which every whole number of that size is exact."""
+        """Return whether every step before the division is a whole number of this size at most."""
         products = self.raw_min * self.p, self.raw_max * self.p
         return all(abs(n) <= most for n in (*products, *(n + self.c for n in products), self.c, self.q))
 
 
 def steps(field: AnyScalar) -> Steps | None:
-    """The steps of a field's scale; None without one."""
+    """Return the steps of the scale of a field; None without a scale."""
     return None if field.scale is None else _steps(field.scale, field.raw_min, field.raw_max)
 
 

@@ -1,4 +1,4 @@
-"""The integers of usual machines that hold raw values."""
+"""Integers of usual machines in which raw values are stored."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 
 class Storage(NamedTuple):
-    """An integer of 8, 16, 32 or 64 bits."""
+    """Integer type of 8, 16, 32 or 64 bits."""
 
     bits: int
     signed: bool = False
@@ -22,11 +22,11 @@ class Storage(NamedTuple):
 
 
 def holding(bits: int) -> int:
-    """The smallest of 8, 16, 32 and 64 that is not below ``bits``."""
+    """Return the width of the smallest integer type of at least ``bits`` bits: 8, 16, 32 or 64."""
     return 8 if bits <= 8 else 16 if bits <= 16 else 32 if bits <= 32 else 64
 
 
 @cache
 def storage_of(bits: int, signed: bool) -> Storage:
-    """The smallest integer that holds ``bits``."""
+    """Return the smallest integer type of at least ``bits`` bits."""
     return Storage(holding(bits), signed)

@@ -97,7 +97,7 @@ def _composite(one: Composite[Any], more: Iterable[str] = ()) -> dict[str, objec
     headers = (f"{name}.h" if folder == one.node.name else f"../{folder}/{name}.h" for folder, name in used)
     about = one.comment
     return {
-        "about": comment([FILE, about.head, *about.rest, *noted(about)]),
+        "about": comment([FILE, about.head, *about.details, *noted(about)]),
         "includes": ["../icdgen_wide.h" if one.has_wide_steps else "../icdgen.h", *dict.fromkeys((*headers, *more))],
         "constants": constants.of_fields(one),
         "initial": members.initial(one),

@@ -71,7 +71,9 @@ _MADE = "Read from the frame that the message makes: 0 if it makes none, as a ra
 
 def view(field: FieldDescription) -> dict[str, str]:
     """The getter of a view; its ``statement`` gives ``value`` its value, from ``buffer``."""
-    about = field.comment._replace(rest=(*field.comment.rest, _MADE) if field.message.is_narrow else field.comment.rest)
+    about = field.comment._replace(
+        details=(*field.comment.details, _MADE) if field.message.is_narrow else field.comment.details
+    )
     statement = decoding.number(field, "value")
     return {"name": field.name, "type": type_of(field), "about": described(about), "statement": statement}
 

@@ -60,7 +60,7 @@ def like(candidate: MessageOfId, depth: int = 3) -> str:
     message = candidate.message
     tests = length_tests_of_frame(message.model.layout.lengths)
     terms = [length_test(test, constant(message, "length")) for test in tests]
-    for sign in candidate.signs:
+    for sign in candidate.constant_bytes:
         byte = f"buffer[{sign.byte}]"
         if sign.byte >= message.model.layout.shortest:
             byte = f"((length > {sign.byte}u) ? {byte} : 0u)"

@@ -66,7 +66,7 @@ def comment(paragraphs: Iterable[str], indent: str = "") -> str:
 
 def described(one: Comment, indent: str = "") -> str:
     """The comment of a part: what it is in one paragraph, and its errata as notes."""
-    return comment([" ".join((one.head, *one.rest)), *noted(one)], indent)
+    return comment([" ".join((one.head, *one.details)), *noted(one)], indent)
 
 
 def noted(one: Comment) -> list[str]:

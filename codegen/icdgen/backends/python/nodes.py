@@ -52,7 +52,7 @@ def _known(under: MessagesOfId) -> str:
         return literal(names.class_name(under.first.message))
     rows = []
     for one in under.messages:
-        signs = "".join(f"({sign.byte}, 0x{sign.mask:02X}, 0x{sign.value:02X}), " for sign in one.signs)
+        signs = "".join(f"({sign.byte}, 0x{sign.mask:02X}, 0x{sign.value:02X}), " for sign in one.constant_bytes)
         rows.append(
             f"({literal(names.class_name(one.message))}, {_lengths(one.message.model)}, ({signs.rstrip(' ')})),"
         )

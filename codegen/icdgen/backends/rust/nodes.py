@@ -41,7 +41,7 @@ def guarded(candidate: MessageOfId, path: str) -> str:
     """What an arm takes: the id, and what of the bytes shows that they are of this message, its length and its constants."""
     model = candidate.message.model
     terms = _lengths(model.layout.lengths, f"{path}::LENGTH")
-    for sign in candidate.signs:
+    for sign in candidate.constant_bytes:
         byte = f"bytes[{sign.byte}]"
         if sign.byte >= model.layout.shortest:  # a zero that may be cut off
             byte = f"bytes.get({sign.byte}).map_or(0, |byte| *byte)"
