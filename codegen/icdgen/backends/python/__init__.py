@@ -1,4 +1,4 @@
-"""The Python backend: an installable, typed package with one subpackage a node and one module a message or enumeration."""
+"""Python backend: an installable, typed package with a subpackage per node and a module per message or enumeration."""
 
 from __future__ import annotations
 
@@ -17,11 +17,12 @@ from icdgen.icd.model import Icd
 if TYPE_CHECKING:
     from icdgen.render import Renderer
 
-_RUNTIME = PurePosixPath("icdgen_runtime")  # the package that what all nodes share is developed as
+_RUNTIME = PurePosixPath("icdgen_runtime")
+"""Package as which the code that all nodes share is developed. Generated packages contain its modules."""
 
 
 class PythonBackend:
-    """``icdgen --lang python``. The name of ``packages`` for Python is the import name of what is generated."""
+    """Backend of ``icdgen --lang python``. The name in ``packages`` is the import name of the generated package."""
 
     name = "python"
     reserved = names.RESERVED
@@ -31,12 +32,12 @@ class PythonBackend:
 
     @property
     def package(self) -> str:
-        """The import name."""
+        """Import name of the generated package."""
         return self.packages.python
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
-        """The project's files, then the package's, then those of each node."""
-        from icdgen.backends.python import literals, nodes  # the rules about names need none of them
+        """List the files of the project, then of the package, then of each node."""
+        from icdgen.backends.python import literals, nodes  # imported late: rules on names do not need them
         from icdgen.describe.links import links_of
         from icdgen.link_calls import link_call
 
@@ -81,18 +82,18 @@ class PythonBackend:
                 yield path, render("message.py.j2", m=message, **shared, **nodes.of_message(message))
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
-        """Every name that ``files`` declares, for the name rules."""
+        """List every name that the generated files declare, for the rules on names."""
         return names.declared_names(describe(icd), self.package)
 
 
 def _functions() -> dict[str, object]:
-    """What templates spell names and text with."""
+    """Return the functions with which templates spell names and text."""
     from icdgen.backends.python import fields, nodes, text
     from icdgen.describe.comments import physical_comment, text_comment
 
-    found = (
+    functions = (
         fields.annotation, fields.declaration, fields.exact, fields.getter, fields.inner, fields.open_part, fields.physical,
         fields.scaled, fields.text, fields.view_info, names.class_name, nodes.listing, nodes.literals,
         nodes.mapping, physical_comment, text.docstring, text.documented, text.literal, text.prose, text_comment,
     )  # fmt: skip
-    return {function.__name__: function for function in found}
+    return {function.__name__: function for function in functions}

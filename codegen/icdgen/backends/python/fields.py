@@ -1,4 +1,4 @@
-"""Fields: annotations, and the calls that declare them."""
+"""Fields of messages and structs: annotations, and the calls that declare them."""
 
 from __future__ import annotations
 
@@ -17,17 +17,18 @@ from icdgen.icd import floats
 from icdgen.icd.curve import Curve
 from icdgen.icd.model import Special
 
-_WIDTH = 120  # columns of a declaration
+_WIDTH = 120
+"""Columns of a declaration: wider than `text.WIDTH`, because its call is easier to read on one line."""
 _KEYWORDS = {"min": "minimum", "max": "maximum"}
 
 
 def annotation(field: FieldDescription) -> str:
-    """The type of the attribute."""
-    return f"tuple[{_annotation(field)}, ...]" if field.count else _perhaps(field, _annotation(field))
+    """Return the type of the attribute."""
+    return f"tuple[{_annotation(field)}, ...]" if field.count else _optional(field, _annotation(field))
 
 
-def _perhaps(field: FieldDescription, note: str) -> str:
-    """The type of what is None where the field is not there."""
+def _optional(field: FieldDescription, note: str) -> str:
+    """Return the type of an attribute. Absent optional fields have the value None."""
     return f"_lazy.Optional[{note}]" if field.model.when else note
 
 
@@ -40,7 +41,7 @@ def _annotation(field: FieldDescription) -> str:
 
 
 def default(field: FieldDescription) -> str:
-    """The raw value in a new message."""
+    """Return the raw value in a new message."""
     if field.count:
         return _repeated(field, _default(field))
     if field.is_in_last_part:
@@ -49,7 +50,7 @@ def default(field: FieldDescription) -> str:
 
 
 def _repeated(field: FieldDescription, value: str) -> str:
-    """The values of an array in a new message."""
+    """Return the values of an array in a new message."""
     return f"({value},) * {field.initial_count}" if field.initial_count else "()"
 
 
@@ -63,9 +64,9 @@ def _default(field: FieldDescription) -> str:
     return f"{name}.{member.name.upper()}" if member else f"{name}({value})"
 
 
-def _told(field: FieldDescription) -> list[str]:
-    """What is told of a field by keywords."""
-    one, items = field.model, []
+def _keywords(field: FieldDescription) -> list[str]:
+    """Return the keyword arguments that describe a field."""
+    place, items = field.model, []
     if field.count:
         items.append(f"elements={field.count}")
     if field.is_in_last_part:
@@ -76,60 +77,80 @@ def _told(field: FieldDescription) -> list[str]:
     if field.needs:
         needs = (f'("{need.field.name}", ({", ".join(map(str, need.values))},))' for need in field.needs)
         items.append(f"when=({', '.join(needs)},)")
-    if one.unit:
-        items.append(f"unit={literal(one.unit.symbol)}")
-    if one.const is not None:
-        items.append(f"const={one.const}")
-    if one.special:
-        pairs = [f"({special_value(special, one.bits)}, {literal(special.meaning)})" for special in one.special]
+    if place.unit:
+        items.append(f"unit={literal(place.unit.symbol)}")
+    if place.const is not None:
+        items.append(f"const={place.const}")
+    if place.special:
+        pairs = [f"({special_value(special, place.bits)}, {literal(special.meaning)})" for special in place.special]
         items.append(exploded("special=(", pairs, ")", " " * 8))
-    items += (f'{key}="{value}"' for key in ("byte_order", "bit_order") if (value := getattr(one, key)))
+    items += (f'{key}="{value}"' for key in ("byte_order", "bit_order") if (value := getattr(place, key)))
     items += (f"{_KEYWORDS.get(bound.key, bound.key)}={number(bound.value)}" for bound in field.bounds)
     return items
 
 
-def constant(one: Constant, field: FieldDescription) -> str:
-    """A literal of a constant of the field."""
-    return special_value(one, field.model.bits) if one.number else number(one.value)
+def constant(value: Constant, field: FieldDescription) -> str:
+    """Return the literal of a constant of the field."""
+    return special_value(value, field.model.bits) if value.number else number(value.value)
 
 
-def special_value(one: Special | Constant, bits: int) -> str:
-    """A literal of the raw value; of one of a float as the attribute has it."""
-    if one.number in floats.NAMED:
-        return f'float("{one.number}")'
-    return repr(floats.value_of(int(one.value), bits)) if one.number else str(one.value)
+def special_value(value: Special | Constant, bits: int) -> str:
+    """Return the literal of a special raw value; for a float the value that the attribute has."""
+    if value.number in floats.NAMED:
+        return f'float("{value.number}")'
+    return repr(floats.value_of(int(value.value), bits)) if value.number else str(value.value)
 
 
 def declaration(field: FieldDescription) -> str:
-    """``control_mode: ConModeSelect = _base.field(...)``: its place, its first value, and what is told of it."""
-    one = field.model
+    """Return the declaration of a field: ``control_mode: ConModeSelect = _base.field(...)``."""
+    place = field.model
     if field.struct is not None:
-        items = [literal(one.name), str(one.at), str(one.bits), f"factory={class_name(field.struct)}", *_told(field)]
+        items = [
+            literal(place.name),
+            str(place.at),
+            str(place.bits),
+            f"factory={class_name(field.struct)}",
+            *_keywords(field),
+        ]
         return _statement(field.name, annotation(field), "part", items)
-    items = [literal(one.name), str(one.at), str(one.bits), f'"{one.type}"', f"default={default(field)}", *_told(field)]
+    items = [
+        literal(place.name),
+        str(place.at),
+        str(place.bits),
+        f'"{place.type}"',
+        f"default={default(field)}",
+        *_keywords(field),
+    ]
     return _statement(field.name, annotation(field), "field", items)
 
 
 def inner(message: MessageDescription) -> list[str]:
-    """The items of ``INNER``: what is open in front of the end, its place, and the bits of what counts it."""
-    found = []
-    for one in message.earlier_parts:
-        pieces = [f"({p.byte}, {p.shift}, {p.bits}, {p.at})" for p in one.counter.pieces]
-        found.append(f"({open_part(one)}, {one.model.begin}, ({', '.join(pieces)}{',' * (len(pieces) == 1)}))")
-    return found
+    """Return the items of ``INNER``: variable parts in front of the last one, their places, and the bits of their counters."""
+    items = []
+    for part in message.earlier_parts:
+        pieces = [f"({p.byte}, {p.shift}, {p.bits}, {p.at})" for p in part.counter.pieces]
+        items.append(f"({open_part(part)}, {part.model.begin}, ({', '.join(pieces)}{',' * (len(pieces) == 1)}))")
+    return items
 
 
-def open_part(one: VariablePartDescription) -> str:
-    """``_base.Tail(...)``: attributes, bytes and elements of what is open."""
-    counter = "" if one.counter.model.is_count else one.counter.name
-    plus = f", {one.model.plus}" if one.model.plus else ""
-    return f'_base.Tail("{one.field.name}", "{counter}", {one.model.step}, {one.model.most}{plus})'
+def open_part(part: VariablePartDescription) -> str:
+    """Return ``_base.Tail(...)``: the attributes of a variable part and its counter, and sizes."""
+    counter = "" if part.counter.model.is_count else part.counter.name
+    plus = f", {part.model.plus}" if part.model.plus else ""
+    return f'_base.Tail("{part.field.name}", "{counter}", {part.model.step}, {part.model.most}{plus})'
 
 
 def view_info(field: FieldDescription) -> str:
-    """``_base.FieldInfo(...)`` of a view."""
-    one = field.model
-    items = [f'"{field.name}"', literal(one.name), str(one.at), str(one.bits), f'"{one.type}"', *_told(field)]
+    """Return ``_base.FieldInfo(...)`` of an overlay field or derived value."""
+    place = field.model
+    items = [
+        f'"{field.name}"',
+        literal(place.name),
+        str(place.at),
+        str(place.bits),
+        f'"{place.type}"',
+        *_keywords(field),
+    ]
     if field.steps is not None:
         items += [f'physical="{field.physical_name}"', f"scale={field.steps.terms}"]
     if field.curve is not None:
@@ -138,23 +159,23 @@ def view_info(field: FieldDescription) -> str:
         items += [f'physical="{field.physical_name}"', f"curve={listed}"]
     if field.enum is not None:
         items.append(f"enum={class_name(field.enum)}")
-    if one.derived is not None:
-        fields = (held for _, held in derived(field).fields)
-        attributes = tuple(held.physical_name if held.is_scaled else held.name for held in fields)
-        steps = tuple(tuple(step) for step in one.derived.steps)
-        items.append(f"derived=({attributes!r}, {one.derived.numbers!r}, {steps!r})".replace("'", '"'))
+    if place.derived is not None:
+        operands = (operand for _, operand in derived(field).fields)
+        attributes = tuple(operand.physical_name if operand.is_scaled else operand.name for operand in operands)
+        steps = tuple(tuple(step) for step in place.derived.steps)
+        items.append(f"derived=({attributes!r}, {place.derived.numbers!r}, {steps!r})".replace("'", '"'))
     return f"_base.FieldInfo({', '.join(items)})"
 
 
 def getter(field: FieldDescription) -> str:
-    """The value of a view."""
+    """Return the expression of an overlay field or derived value."""
     if field.model.derived is not None:
         return f'_base.derived(self, "{field.name}")'
     return f'_base.view(self, "{field.name}", {annotation(field)})'
 
 
 def physical(field: FieldDescription) -> str:
-    """The physical value of a view."""
+    """Return the expression of the physical value of an overlay field."""
     if field.curve is not None:
         return f'_base.on_curve(self, "{field.name}")'
     assert field.steps is not None
@@ -163,9 +184,9 @@ def physical(field: FieldDescription) -> str:
 
 
 def scaled(field: FieldDescription) -> str:
-    """``estimated_roll_angle_deg: float = _base.scaled(...)``: the steps of the physical value, and the first one."""
+    """Return the declaration of a physical value: ``estimated_roll_angle_deg: float = _base.scaled(...)``."""
     curve, steps, first = field.curve, field.steps, _double(field.initial_physical)
-    first, note = (_repeated(field, first), "tuple[float, ...]") if field.count else (first, _perhaps(field, "float"))
+    first, note = (_repeated(field, first), "tuple[float, ...]") if field.count else (first, _optional(field, "float"))
     if curve is not None:
         items = [*_pieces(curve), f"default={first}"]
         if field.is_settable and field.model.settable_raws != (field.model.raw_min, field.model.raw_max):
@@ -176,29 +197,29 @@ def scaled(field: FieldDescription) -> str:
 
 
 def _pieces(curve: Curve) -> list[str]:
-    """A literal of each."""
+    """Return a literal for each piece of a calibration."""
     return [f"({start!r}, {terms!r})" for start, terms in curve.pieces]
 
 
 def _double(value: float) -> str:
-    """A literal."""
+    """Return the literal of a double."""
     return repr(value) if math.isfinite(value) else f'float("{value}")'
 
 
 def text(field: FieldDescription) -> str:
-    """``version_text: str = _base.text(...)``: a field of characters as what it says."""
+    """Return the declaration of a text: ``version_text: str = _base.text(...)``."""
     first = _repeated(field, '""') if field.count else '""'
     return _statement(field.physical_name, "tuple[str, ...]" if field.count else "str", "text", [f"default={first}"])
 
 
-def exact(field: FieldDescription, found: IntegerScale) -> str:
-    """``estimated_roll_angle_mdeg: int = _base.whole(...)``"""
-    note = "tuple[int, ...]" if field.count else _perhaps(field, "int")
-    return _statement(field.integer_name(found.per), note, "whole", [str(found.factor), str(found.offset)])
+def exact(field: FieldDescription, scale: IntegerScale) -> str:
+    """Return the declaration of whole parts of the unit: ``estimated_roll_angle_mdeg: int = _base.whole(...)``."""
+    note = "tuple[int, ...]" if field.count else _optional(field, "int")
+    return _statement(field.integer_name(scale.per), note, "whole", [str(scale.factor), str(scale.offset)])
 
 
 def _statement(name: str, note: str, call: str, items: list[str]) -> str:
-    """``name: note = _base.call(items)`` on a line; what is too long for that goes on lines of its own."""
+    """Return ``name: note = _base.call(items)`` on one line, or with the items on lines of their own if it is too long."""
     head, inner = f"{name}: {note} = _base.{call}(", ", ".join(items)
     if "\n" in inner or len(inner) + 8 > _WIDTH:
         return exploded(head, items, ")", STEP)
@@ -207,5 +228,5 @@ def _statement(name: str, note: str, call: str, items: list[str]) -> str:
 
 
 def number(exact: Fraction | int) -> str:
-    """A literal: of an int, or of the nearest float."""
+    """Return the literal of a whole number, or of the nearest float."""
     return str(exact.numerator) if exact.denominator == 1 else repr(exact.numerator / exact.denominator)

@@ -1,4 +1,4 @@
-"""Source of Python expressions."""
+"""Python expressions for links."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ def expression(value: object) -> str:
 
 
 def _note(text: str, indent: str) -> str:
-    first, *rest = wrapped(prose(sentence(text)), WIDTH - len(indent) - 4)
+    first, *continued = wrapped(prose(sentence(text)), WIDTH - len(indent) - 4)
     # Continued lines are indented, so that none can be read as an instruction to a tool (`# type: ignore`).
-    return "\n".join([f"{indent}# {first}", *(f"{indent}#   {line}" for line in rest)])
+    return "\n".join([f"{indent}# {first}", *(f"{indent}#   {line}" for line in continued)])
 
 
 def _spelled(value: object) -> str | Brackets:

@@ -1,4 +1,4 @@
-"""The package, a node, or a message -> what templates need beside the description."""
+"""Values for the templates of the package, of nodes and of messages, in addition to the description."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ _OF_PACKAGE = (
 
 
 def of_node(node: NodeDescription, description: Description) -> dict[str, object]:
-    """What can be imported from a node: modules and names; and what is told of it."""
+    """Return the modules and names that can be imported from a node, and its docstring."""
     declared: list[tuple[str, str]] = []
     for owner in map(description.node, (*description.icd.included(node.model), node.model)):
-        declared += ((names.home(one, node.name, ".."), names.class_name(one)) for one in owner.declared)
+        declared += ((names.home(part, node.name, ".."), names.class_name(part)) for part in owner.declared)
     declared += [("._link", "LINK")] if node.is_linked else []
     return {
         "doc": docstring(0, _documentation(node.model)),
@@ -37,24 +37,24 @@ def of_node(node: NodeDescription, description: Description) -> dict[str, object
         "public": sorted({*_OF_NODE, *_facts(node.model), *(name for _, name in declared)}),
         "homes": [(name, home) for home, name in sorted(declared)],
         "telecommands": _by_id(node, "telecommand"),
-        "enums": [(one.model.name, names.class_name(one)) for one in node.enums],
+        "enums": [(part.model.name, names.class_name(part)) for part in node.enums],
         "telemetry": _by_id(node, "telemetry"),
     }
 
 
 def _by_id(node: NodeDescription, direction: str) -> list[tuple[int, str]]:
-    """The ids of a direction, and as literals what is known of each: the class, or all that a frame of it may be."""
-    return sorted((one.id, _known(one)) for one in node.ids(direction))
+    """Return the ids of a direction, each with a literal: the class of its message, or a row for each message that shares it."""
+    return sorted((under_id.id, _candidates(under_id)) for under_id in node.ids(direction))
 
 
-def _known(under: MessagesOfId) -> str:
+def _candidates(under: MessagesOfId) -> str:
     if not under.is_shared:
         return literal(names.class_name(under.first.message))
     rows = []
-    for one in under.messages:
-        signs = "".join(f"({sign.byte}, 0x{sign.mask:02X}, 0x{sign.value:02X}), " for sign in one.constant_bytes)
+    for candidate in under.messages:
+        signs = "".join(f"({sign.byte}, 0x{sign.mask:02X}, 0x{sign.value:02X}), " for sign in candidate.constant_bytes)
         rows.append(
-            f"({literal(names.class_name(one.message))}, {_lengths(one.message.model)}, ({signs.rstrip(' ')})),"
+            f"({literal(names.class_name(candidate.message))}, {_lengths(candidate.message.model)}, ({signs.rstrip(' ')})),"
         )
     return "(\n        " + "\n        ".join(rows) + "\n    )"
 
@@ -65,58 +65,63 @@ def _lengths(message: Message) -> str:
 
 
 def _facts(node: Node) -> list[str]:
-    """The constants that not every node has."""
-    known = {"NODE_TYPE": node.node_type, "INTERFACE_VERSION": node.interface_version}
-    return [name for name, value in known.items() if value is not None]
+    """Return the names of the constants that only some nodes have."""
+    optional = {"NODE_TYPE": node.node_type, "INTERFACE_VERSION": node.interface_version}
+    return [name for name, value in optional.items() if value is not None]
 
 
 def public(nodes: Iterable[NodeDescription]) -> list[str]:
-    """What can be imported from the package."""
+    """Return the names that can be imported from the package."""
     return sorted({*_OF_PACKAGE, *(node.name for node in nodes)})
 
 
 def listing(names: Iterable[str]) -> str:
-    """A list of names."""
+    """Return the literal of a list of names."""
     return exploded("[", [literal(name) for name in names], "]")
 
 
 def spoken(node: NodeDescription, description: Description) -> dict[str, object]:
-    """The nodes whose messages it speaks, too, as the bases of a class."""
-    included = [one.name for one in reversed(description.icd.included(node.model))]
+    """Return the included nodes of a node, as the bases of its class."""
+    included = [other.name for other in reversed(description.icd.included(node.model))]
     return {"included": included, "bases": f"({', '.join(f'_{name}' for name in included)})" if included else ""}
 
 
 def mapping(pairs: Sequence[tuple[str, str]]) -> str:
-    """A dictionary of names."""
+    """Return the literal of a dictionary of names."""
     return literals((literal(key), literal(value)) for key, value in pairs)
 
 
 def literals(pairs: Iterable[tuple[str | int, str]]) -> str:
-    """A dictionary of what is a literal already."""
+    """Return a dictionary whose values are literals already."""
     return exploded("{", [f"{key}: {value}" for key, value in pairs], "}")
 
 
 def _documentation(node: Node) -> list[str]:
     source = dict(node.document)
-    known = [source[key] for key in ("document", "version", "date") if key in source]
-    known[-1:] = [f"{last}, section {source['section']}" if "section" in source else last for last in known[-1:]]
-    paragraphs = [sentence(node.title), sentence(node.summary), sentence(f"From {', '.join(known)}") if known else ""]
-    paragraphs += (f"Missing: {one.kind} {one.id}, {sentence(one.name)} {sentence(one.why)}" for one in node.missing)
+    cited = [source[key] for key in ("document", "version", "date") if key in source]
+    cited[-1:] = [f"{last}, section {source['section']}" if "section" in source else last for last in cited[-1:]]
+    paragraphs = [sentence(node.title), sentence(node.summary), sentence(f"From {', '.join(cited)}") if cited else ""]
+    paragraphs += (
+        f"Missing: {message.kind} {message.id}, {sentence(message.name)} {sentence(message.why)}"
+        for message in node.missing
+    )
     return [paragraph(text) for text in paragraphs if text]
 
 
 def of_message(message: MessageDescription) -> dict[str, object]:
-    """What is said of it, and what it repeats in the order of the frame."""
+    """Return the values for a message, among them the messages that it contains, in the order of the frame."""
     parts = [(begin, part.message) for part in contained_messages(message) for begin in part.positions]
-    return {**of_composite(message), "parts": sorted(parts, key=lambda one: one[0])}
+    return {**of_composite(message), "parts": sorted(parts, key=lambda part: part[0])}
 
 
 def of_composite(composite: Composite[Any]) -> dict[str, object]:
-    """The enumerations and structs that are imported for a message or a struct, and the constants of its fields."""
+    """Return the imports of enumerations and structs for a message or struct, and the constants of its fields."""
     used_by: tuple[EnumDescription | StructDescription, ...] = (*composite.enums, *composite.structs)
     return {
         "imports": sorted(_import(used, composite) for used in used_by),
-        "constants": [(one, constant(one, field)) for field in composite.declared_members for one in field.constants],
+        "constants": [
+            (value, constant(value, field)) for field in composite.declared_members for value in field.constants
+        ],
     }
 
 

@@ -1,4 +1,4 @@
-"""The ICD's words in Python source: literals and docstrings that nothing can break out of."""
+"""Text of the ICD in Python source: literals and docstrings that no text can end early."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _ESCAPES = {"\n": "\\n", "\r": "\\r", "\t": "\\t", "\\": "\\\\"}
 
 
 def literal(text: str) -> str:
-    """A string literal, in double quotes unless single ones need fewer escapes."""
+    """Return a string literal, in double quotes unless single quotes need fewer escapes."""
     if _PLAIN.match(text):
         return f'"{text}"'
     quote = "'" if text.count('"') > text.count("'") else '"'
@@ -34,13 +34,12 @@ def _character(c: str) -> str:
 
 
 def prose(text: str) -> str:
-    """Text for a docstring: one line, nothing that ends or escapes from it, and nothing that reStructuredText or Markdown take
-    for markup."""
+    """Return text for a docstring on one line, with escapes for quotes and for markup of reStructuredText and Markdown."""
     return _spelled([" ".join(text.split())])
 
 
 def paragraph(text: str) -> str:
-    """`prose` of a description's paragraph, in which text in backticks is code."""
+    """Return `prose` of a paragraph of a description, in which text in backticks is code."""
     return _spelled(text.split("`"))
 
 
@@ -53,16 +52,16 @@ def _spelled(parts: list[str]) -> str:
 
 
 def docstring(indent: int, paragraphs: Iterable[str]) -> str:
-    """Paragraphs (of `prose`) between triple quotes; the first line stands without its indentation."""
+    """Return paragraphs of `prose` between triple quotes; the first line has no indentation."""
     pad = " " * indent
-    first, *others = paragraphs
-    if not others and (len(first) + 6 + indent <= WIDTH or " " not in first):
+    first, *further = paragraphs
+    if not further and (len(first) + 6 + indent <= WIDTH or " " not in first):
         return f'"""{first}"""'
-    blocks = [f'"""{first}', *others]
+    blocks = [f'"""{first}', *further]
     text = f"\n\n{pad}".join(f"\n{pad}".join(wrapped(block, WIDTH - indent)) for block in blocks)
     return f'{text}\n{pad}"""'
 
 
 def documented(paragraphs: Iterable[str], indent: int = 4) -> str:
-    """The docstring of paragraphs of a description."""
+    """Return the docstring of the paragraphs of a description."""
     return docstring(indent, map(paragraph, paragraphs))

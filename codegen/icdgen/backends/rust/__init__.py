@@ -1,4 +1,4 @@
-"""Rust: one `no_std` crate for all nodes, one module a node, one file a message."""
+"""Rust backend: a `no_std` crate for all nodes, with a module per node and a file per message."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LINKS = "src/wire/links"
 
 
 class RustBackend:
-    """``icdgen --lang rust``"""
+    """Backend of ``icdgen --lang rust``."""
 
     name = "rust"
     reserved = names.RESERVED
@@ -35,12 +35,12 @@ class RustBackend:
 
     @property
     def crate(self) -> str:
-        """The name of the crate."""
+        """Name of the crate."""
         return self.packages.rust
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
-        """The crate."""
-        from icdgen.backends.rust import messages, nodes  # the rules about names need none of them
+        """List the files of the crate."""
+        from icdgen.backends.rust import messages, nodes  # imported late: rules on names do not need them
         from icdgen.backends.rust.examples import client_example
         from icdgen.describe.links import links_of
 
@@ -78,12 +78,12 @@ class RustBackend:
             yield from _wire(links, render, common)
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
-        """Every name that the crate declares, by scope."""
+        """List every name that the crate declares, by scope."""
         return declared_names(describe(icd))
 
 
 def _functions() -> dict[str, object]:
-    """What templates spell names and text with."""
+    """Return the functions with which templates spell names and text."""
     from icdgen.backends.rust import text
     from icdgen.backends.rust.accessors import accessors, curve_of, field_row, scale_of
     from icdgen.backends.rust.examples import direction_example, enum_example, message_example
@@ -92,32 +92,33 @@ def _functions() -> dict[str, object]:
     from icdgen.describe.comments import sentence, text_comment, words
     from icdgen.describe.numbers import byte_count, count_text
 
-    found = (
+    functions = (
         accessors, big_parts, byte_count, count_text, curve_of, derived_statements, direction_example, enum_example, field_row,
         imports, message_example, names.catch_all, names.field_name, names.message_path, names.open_type, names.raw_type,
         names.type_name, scale_of, sentence, text.arm, text.assigned, text.code, text.described, text.doc, text.integer,
         text.prose, text.signature, text.string, text_comment, words,
     )  # fmt: skip
-    return {function.__name__: function for function in found}
+    return {function.__name__: function for function in functions}
 
 
 def _wire(
-    found: dict[str, LinkDescription], render: Renderer, common: dict[str, object]
+    linked: dict[str, LinkDescription], render: Renderer, common: dict[str, object]
 ) -> Iterator[tuple[PurePosixPath, str]]:
-    """How the messages travel."""
+    """List the files of the wire layer and of the links."""
     from icdgen.backends.rust import links
 
     yield from _runtime("src/wire", render, str(common["crate"]))
     folder = PurePosixPath(LINKS)
-    yield folder / "mod.rs", render("links.rs.j2", nodes=list(found), sizes=links.sizes(found.values()), **common)
-    for name, link in found.items():
+    yield folder / "mod.rs", render("links.rs.j2", nodes=list(linked), sizes=links.sizes(linked.values()), **common)
+    for name, link in linked.items():
         yield folder / f"{name}.rs", render("node_link.rs.j2", link=links.values(link), origin=origin(link.facts.node))
 
 
 def _runtime(folder: str, render: Renderer, crate: str) -> Iterator[tuple[PurePosixPath, str]]:
-    """What is the same for every ICD; its links are a sample, there for the runtime to be a crate of its own.
+    """List the files that are the same for every ICD.
 
-    Examples in its documentation use it by its name, which is that of ``crate`` from now on.
+    The runtime is developed as a crate of its own, with links of a sample ICD that are left out here. Examples in its
+    documentation get the name of the generated crate.
     """
     for name in render.runtime_files(folder):
         if not name.startswith(LINKS):

@@ -1,4 +1,4 @@
-"""Accessors of physical values: in double and in single precision, and in whole parts of the unit; and the data behind them."""
+"""Accessors of physical values in double and single precision and in whole parts of the unit, and fields as data."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from icdgen.describe.integer_scale import IntegerScale
 
 
 class Accessor(NamedTuple):
-    """A getter, and a setter where ``raw`` is not empty."""
+    """Getter, and setter if ``raw`` is not empty."""
 
     name: str
     type: str
     about: str
-    value: str  # over the raw value
-    what: str = ""  # the setter does
-    refused: str = ""  # what it refuses
-    raw: str = ""  # of ``value``, a Result
+    value: str  # expression over the raw value
+    what: str = ""  # action of the setter
+    refused: str = ""  # values that the setter refuses
+    raw: str = ""  # expression of the raw value over ``value``, a Result
 
 
 def accessors(field: FieldDescription) -> list[Accessor]:
-    """Those of a field with a formula."""
+    """Return the accessors of a field with a scale or calibration."""
     name, about, what = field.physical_name, physical_comment(field.model), physical_name(field.model)
     sets = f"Sets {'an element of ' if field.count else ''}{{}}, to the nearest raw value, ties to even"
     end = ", or if there is no such element." if field.count else "."
@@ -37,28 +37,28 @@ def accessors(field: FieldDescription) -> list[Accessor]:
         refused = f"if it is beyond the values of the field, or not finite{end}"
         return [Accessor(name, "f64", about, curve_value(field), sets.format(what), refused, raw)]
     scale, refused = field.declared_name.upper(), f"if it does not fit or is not finite{end}"
-    found = [
+    result = [
         Accessor(name, "f64", about, physical(field), sets.format(what), refused, f"{scale}.raw(value)"),
         Accessor(single_name(field), "f32", f"{what}, the nearest float of 32 bits.", single(field)),
     ]
-    known = integers_of(field)
-    if known is not None:
-        exact, bits = known.scale, known.bits
+    integers = integers_of(field)
+    if integers is not None:
+        exact, bits = integers.scale, integers.bits
         value = "value" if bits == 64 else "value.into()"
         raw = f"{scale}.whole({value}, {integer(exact.factor)}, {integer(exact.offset)})"
         name, about, what = field.integer_name(exact.per), field.integer_comment(exact), field.integer_title(exact.per)
         read = _integer_value(field, exact, bits)
-        found.append(Accessor(name, f"i{bits}", about, read, sets.format(what), f"if it does not fit{end}", raw))
-    return found
+        result.append(Accessor(name, f"i{bits}", about, read, sets.format(what), f"if it does not fit{end}", raw))
+    return result
 
 
 def single_name(field: FieldDescription) -> str:
-    """``estimated_roll_angle_deg_f32``"""
+    """Return the name of the accessor in single precision: ``estimated_roll_angle_deg_f32``."""
     return f"{field.physical_name}_f32"
 
 
 def integers_of(field: FieldDescription) -> IntegerAccess | None:
-    """The accessors in whole parts of the unit. `Wide` of the support module, for formulas of many digits, has none."""
+    """Return the accessors in whole parts of the unit. `Wide` of the support module, for scales of many digits, has none."""
     arithmetic = field.arithmetic
     return None if arithmetic is None or arithmetic.steps.is_wide else arithmetic.integers
 
@@ -71,15 +71,15 @@ def _integer_value(field: FieldDescription, exact: IntegerScale, bits: int) -> s
 
 
 def scale_of(field: FieldDescription) -> str:
-    """The constant of a field with a scale, or with values that do not fit it."""
+    """Return the constant of a field with a scale, or of a field whose type can store values that do not fit."""
     terms = field.steps.terms if field.steps else (1, 0, 1)
-    one = field.model
-    numbers = [f"({', '.join(map(integer, row))})" for row in ((one.raw_min, one.raw_max), terms)]
-    return _constant(field.name.upper(), "Scale", [string(one.name), string(field.allowed_text), *numbers])
+    place = field.model
+    numbers = [f"({', '.join(map(integer, row))})" for row in ((place.raw_min, place.raw_max), terms)]
+    return _constant(field.name.upper(), "Scale", [string(place.name), string(field.allowed_text), *numbers])
 
 
 def _constant(name: str, type: str, items: list[str]) -> str:
-    """``const NAME: Scale = Scale::new(...);``"""
+    """Return ``const NAME: Scale = Scale::new(...);``, wrapped as rustfmt does."""
     call = f"{type}::new("
     if len(f"{STEP}{call}{', '.join(items)});") <= WIDTH:
         return assigned(f"const {name}: {type} =", f"{call}{', '.join(items)})", ";", "")
@@ -87,28 +87,28 @@ def _constant(name: str, type: str, items: list[str]) -> str:
 
 
 def curve_of(field: FieldDescription) -> str:
-    """The constant of a field with a curve."""
+    """Return the constant of a field with a calibration."""
     assert field.curve is not None
-    one = field.model
-    ends = one.settable_raws if one.type != "float" and one.is_invertible else (0, 0)
+    place = field.model
+    ends = place.settable_raws if place.type != "float" and place.is_invertible else (0, 0)
     pieces = [f"({double(start)}, &[{', '.join(map(double, terms))}])" for start, terms in field.curve.pieces]
     listed = "\n".join(["", *(f"{STEP}{piece}," for piece in pieces), ""]) if len(pieces) > 1 else pieces[0]
-    items = f"{string(one.name)}, {string(field.allowed_text)}, ({', '.join(map(integer, ends))}), &[{listed}]"
+    items = f"{string(place.name)}, {string(field.allowed_text)}, ({', '.join(map(integer, ends))}), &[{listed}]"
     return f"#[rustfmt::skip]\nconst {curve_name(field)}: Curve = Curve::new({items});"
 
 
 def field_row(field: FieldDescription) -> str:
-    """The field as data: place, and what else is known of it."""
-    one = field.model
-    chain = [f"({string(one.name)}, {integer(one.at)}, {integer(one.bits)})"]
+    """Return the field as data: place, size, unit, limits and scale."""
+    place = field.model
+    chain = [f"({string(place.name)}, {integer(place.at)}, {integer(place.bits)})"]
     if field.count:
         chain.append(f".array({field.count})")
     if field.is_text:
         chain.append(".text()")
     if field.struct is not None:
         chain.append(f".fields({struct_path(field.struct, field.message.node)}::FIELDS)")
-    if one.unit is not None:
-        chain.append(f".unit({string(one.unit.symbol)})")
+    if place.unit is not None:
+        chain.append(f".unit({string(place.unit.symbol)})")
     if field.bounds:
         limits = [f'("{bound.key}", {double(bound.double)})' for bound in field.bounds]
         chain.append(f".limits(&[{', '.join(limits)}])")

@@ -1,4 +1,4 @@
-"""Fields -> the Rust expressions and statements that read and write them."""
+"""Expressions and statements that read and write fields."""
 
 from __future__ import annotations
 
@@ -10,15 +10,18 @@ from icdgen.describe import FieldDescription, StructDescription
 from icdgen.describe.storage import holding
 from icdgen.layout import Piece
 
-_ARRAY_WIDTH = 60  # of an array that rustfmt leaves on one line
-RAW = "raw"  # the variable that holds the value of what is not always there
-FLAGS_FROM = 4  # so many flags of one byte are taken from the table of the support module
+_ARRAY_WIDTH = 60
+"""Width up to which rustfmt leaves an array on one line."""
+RAW = "raw"
+"""Variable with the value of an optional field."""
+FLAGS_FROM = 4
+"""Number of flags of a byte from which on code reads them from the table of the support module."""
 
 
 def reading(field: FieldDescription, tables: set[int], depth: int = 3, within: str = "") -> str:
-    """Expression of the raw value, from ``bytes``; ``tables`` are the bytes whose flags stand in ``flags_N``.
+    """Return the expression of the raw value, over ``bytes``, in a line with an indentation of ``depth`` steps.
 
-    It stands in a line indented by ``depth`` steps; ``within`` is where the names of functions for elements begin.
+    ``tables`` are the bytes with variables ``flags_N``. ``within`` is the prefix of functions for elements.
     """
     helper = helper_of(field)
     if helper:
@@ -29,13 +32,13 @@ def reading(field: FieldDescription, tables: set[int], depth: int = 3, within: s
         return "0"
     if field.count:
         return _array(field, depth) if field.is_copied else _listed(field, tables, depth)
-    one, row = field.model, field.pieces
-    if one.is_bytes:
-        return f"array(bytes, {one.at // 8})"
-    if one.type == "bool":
+    place, row = field.model, field.pieces
+    if place.is_bytes:
+        return f"array(bytes, {place.at // 8})"
+    if place.type == "bool":
         byte, shift = row[0].byte, row[0].shift
         return f"flags_{byte}[{shift}]" if byte in tables else f"bytes[{byte}] & {mask(1 << shift)} != 0"
-    size = holding(one.bits)
+    size = holding(place.bits)
     if field.is_word:
         return _whole(field, size)
     if len(row) == 1:
@@ -55,19 +58,19 @@ def _called(field: FieldDescription, helper: str, within: str, depth: int) -> st
 
 def _struct(field: FieldDescription, struct: StructDescription, tables: set[int], depth: int, within: str) -> str:
     pad, (row,) = STEP * depth, field.instances
-    lines = (f"{pad}{STEP}{own_name(one)}: {reading(one, tables, depth + 1, within)},\n" for one in row)
+    lines = (f"{pad}{STEP}{own_name(member)}: {reading(member, tables, depth + 1, within)},\n" for member in row)
     return f"{struct_path(struct, field.message.using_node)} {{\n{''.join(lines)}{pad}}}"
 
 
 def _array(field: FieldDescription, depth: int) -> str:
-    """The words of an array, read one after the other."""
-    one, first = field.model, field.model.at // 8
-    if one.is_bytes:
+    """Return the expression of an array of words."""
+    place, first = field.model, field.model.at // 8
+    if place.is_bytes:
         return f"arrays(bytes, {first})"
-    if one.type == "uint" and one.bits == 8:
+    if place.type == "uint" and place.bits == 8:
         return f"array(bytes, {first})"
     word = f"{_word(field)}::from_{field.order}_bytes"
-    if one.type != "enum":
+    if place.type != "enum":
         return f"words(bytes, {first}, {word})"
     value = f"Coded::from_raw({word}(word))"
     line = f"words(bytes, {first}, |word| {value})"
@@ -77,8 +80,8 @@ def _array(field: FieldDescription, depth: int) -> str:
 
 
 def _listed(field: FieldDescription, tables: set[int], depth: int) -> str:
-    """The elements of an array, each read by itself."""
-    values = [reading(one, tables, depth + 1) for one in field.elements]
+    """Return the expression of an array whose elements are read one by one."""
+    values = [reading(element, tables, depth + 1) for element in field.elements]
     line = f"[{', '.join(values)}]"
     if len(line) <= _ARRAY_WIDTH and "\n" not in line:
         return line
@@ -96,12 +99,12 @@ def _whole(field: FieldDescription, size: int) -> str:
 
 
 def _word(field: FieldDescription) -> str:
-    """The type of a word: ``u16``, ``f32``."""
+    """Return the type of a word: ``u16``, ``f32``."""
     return f"{'f' if field.model.type == 'float' else 'i' if field.model.is_signed else 'u'}{field.model.bits}"
 
 
 def _typed(field: FieldDescription, value: str, size: int) -> str:
-    """The integer of ``size`` bits as the field's type."""
+    """Return an integer of ``size`` bits as the type of the field."""
     if field.model.type != "enum":
         return value
     wider = value if size == field.storage.bits else f"{integer_type(field)}::from({value})"
@@ -109,14 +112,14 @@ def _typed(field: FieldDescription, value: str, size: int) -> str:
 
 
 def _finished(field: FieldDescription, value: str, size: int) -> str:
-    """The unsigned value of ``size`` bits as the field's type."""
+    """Return an unsigned integer of ``size`` bits as the type of the field."""
     if field.model.type == "float":
         return f"f{size}::from_bits({value})"
     return _typed(field, _signed(field, value, size) if field.model.is_signed else value, size)
 
 
 def _signed(field: FieldDescription, value: str, size: int) -> str:
-    """The unsigned value of ``size`` bits in two's complement."""
+    """Return an unsigned integer of ``size`` bits as a signed one, with the sign of the field extended."""
     unused = size - field.model.bits
     if size == 8:
         shifted = value if not unused else f"{_parenthesised(value)} << {unused}"
@@ -141,13 +144,13 @@ def _parenthesised(text: str) -> str:
 
 
 def _placed(piece: Piece, size: int) -> str:
-    """The run of bits at its place in a value of ``size`` bits."""
+    """Return a run of bits at its place in a value of ``size`` bits."""
     value = _one_byte(piece) if size == 8 else f"u{size}::from({_one_byte(piece)})"
     return f"{_parenthesised(value) if size == 8 else value} << {piece.at}" if piece.at else value
 
 
 def fitting(field: FieldDescription) -> list[str]:
-    """The statements that return with an error if the raw value of a narrow field does not fit its bits."""
+    """Return the statements that return an error if the raw value does not fit the field."""
     member = f"self.{field_name(field)}"
     if field.struct is not None and not field.count:
         return [f"{member}.fit()?;"]
@@ -165,13 +168,13 @@ def fitting(field: FieldDescription) -> list[str]:
 
 
 def _source(field: FieldDescription, owner: str = "self") -> str:
-    """What is written: the member, or the variable that holds its value where it is not always there."""
+    """Return the expression to write: the member, or the variable with the value of an optional field."""
     name = field_name(field)
     return RAW if field.model.when else f"{owner}.{name}" if owner else name
 
 
 def writing(field: FieldDescription, owner: str = "self", within: str = "") -> list[str]:
-    """Statements that put the raw value into ``bytes``, without the bits that its field has no room for."""
+    """Return the statements that write the raw value into ``bytes``, without bits that do not fit the field."""
     if field.model.is_count:
         return []
     helper = helper_of(field)
@@ -182,37 +185,37 @@ def writing(field: FieldDescription, owner: str = "self", within: str = "") -> l
     if field.count:
         if field.is_copied:
             return _put_run(field, f"{owner}.{field_name(field)}")
-        return [line for one in field.elements for line in writing(one, owner)]
-    one, row, source = field.model, field.pieces, _source(field, owner)
-    if one.is_bytes:
-        return [f"put_array(&mut bytes, {one.at // 8}, &{source});"]
-    if one.type == "bool":
+        return [line for element in field.elements for line in writing(element, owner)]
+    place, row, source = field.model, field.pieces, _source(field, owner)
+    if place.is_bytes:
+        return [f"put_array(&mut bytes, {place.at // 8}, &{source});"]
+    if place.type == "bool":
         shift = f" << {row[0].shift}" if row[0].shift else ""
         return [f"bytes[{row[0].byte}] |= u8::from({source}){shift};"]
     if field.is_plain_word:
         return _put_whole(field, source)
     lines, size = [], field.storage.bits
-    if one.type == "enum":
+    if place.type == "enum":
         source = f"{source}.raw()"
-    elif one.type == "float":
+    elif place.type == "float":
         source = f"{source}.to_bits()"
     if len(row) > 1:
         lines.append(f"let value = {source};")
         source = "value"
-    if one.is_signed:
+    if place.is_signed:
         lines.append(f"let value = u{size}::from_le_bytes({source}.to_le_bytes());")
         source = "value"
     return lines + _put_pieces(row, source, size)
 
 
 def _put_run(field: FieldDescription, source: str) -> list[str]:
-    """The words of an array, written one after the other."""
-    one, first = field.model, field.model.at // 8
-    if one.type == "uint" and one.bits == 8:
+    """Return the statement that writes an array of words."""
+    place, first = field.model, field.model.at // 8
+    if place.type == "uint" and place.bits == 8:
         return [f"put_array(&mut bytes, {first}, &{source});"]
     to_bytes = f"to_{field.order}_bytes"
-    word = f"|value| value.raw().{to_bytes}()" if one.type == "enum" else f"{_word(field)}::{to_bytes}"
-    word = "|octets| octets" if one.is_bytes else word
+    word = f"|value| value.raw().{to_bytes}()" if place.type == "enum" else f"{_word(field)}::{to_bytes}"
+    word = "|octets| octets" if place.is_bytes else word
     return [bracketed("put_words(", ("&mut bytes", str(first), f"&{source}", word), ");", WIDTH, STEP * 2)]
 
 
@@ -240,7 +243,7 @@ def _put_pieces(row: tuple[Piece, ...], source: str, size: int) -> list[str]:
 
 
 def _put(piece: Piece, part: str) -> str:
-    """The statement that puts the low bits of ``part`` into their byte."""
+    """Return the statement that writes the low bits of ``part`` into their byte."""
     if piece.is_byte:
         return f"bytes[{piece.byte}] = {part};"
     if not piece.reaches_top:

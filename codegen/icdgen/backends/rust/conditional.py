@@ -1,4 +1,4 @@
-"""Fields that are not always there: the method that tells, and what it decides. What is not there is `None`."""
+"""Optional fields: the method that returns whether a field is present, and the code that depends on it. Absent is `None`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from icdgen.describe.description import Need
 
 
 def conditional(message: MessageDescription) -> list[dict[str, object]]:
-    """Those of a message: ``decode`` is the line that sets the member, ``encode`` are those that put it into ``bytes``."""
+    """Return the values for the template per optional field: ``decode`` sets the member, ``encode`` writes it into ``bytes``."""
     return [
         {
             "name": has(field),
@@ -36,11 +36,11 @@ def _read(field: FieldDescription) -> str:
 
 
 def _test(need: Need) -> str:
-    """Whether a member has one of the values."""
+    """Return the test whether a field has one of the values."""
     field, member = need.field, f"self.{field_name(need.field)}"
     if field.model.type == "bool":
-        both = len(need.values) > 1
-        return "true" if both else member if need.values[0] else f"!{member}"
+        is_any = len(need.values) > 1
+        return "true" if is_any else member if need.values[0] else f"!{member}"
     member += ".raw()" if field.enum is not None else ""
     if len(need.values) == 1:
         return f"{member} == {need.values[0]}"

@@ -1,4 +1,4 @@
-"""The functions of a message that read and write elements of arrays: of structs, and of numbers that are no words."""
+"""Functions that read and write elements of arrays: structs, and numbers that are not whole words."""
 
 from __future__ import annotations
 
@@ -13,24 +13,25 @@ from icdgen.describe.arrays import ElementRounds, loop_of
 from icdgen.describe.description import Composite, Into
 from icdgen.describe.groups import bytes_of_flags
 
-DEPTH = 2  # steps of the body of a function
+DEPTH = 2
+"""Steps of indentation of the body of a function."""
 
 
-def functions(one: Composite[Any]) -> Iterator[dict[str, object]]:
-    """All of a message: what reads an element of an array, or as many as are whole bytes, and what writes it."""
-    for field, name in arrays.named(one):
-        known = {"reader": arrays.reader(name), "writer": arrays.writer(name), "of": field.model.name}
+def functions(composite: Composite[Any]) -> Iterator[dict[str, object]]:
+    """List the functions of a message, for an element of each array, or for a round of elements."""
+    for field, name in arrays.named(composite):
+        shared = {"reader": arrays.reader(name), "writer": arrays.writer(name), "of": field.model.name}
         loop = loop_of(field)
         if field.element_struct is not None:
-            yield {**known, **_of_struct(field.element_struct, f"{name}_")}
+            yield {**shared, **_of_struct(field.element_struct, f"{name}_")}
         elif loop is not None:
-            yield {**known, **_of_numbers(field, loop)}
+            yield {**shared, **_of_numbers(field, loop)}
 
 
 def _of_struct(struct: StructDescription, within: str) -> dict[str, object]:
     tables, type = bytes_of_flags(struct, bits.FLAGS_FROM), struct_path(struct, struct.using_node)
-    value = literal(struct.members, [bits.reading(one, tables, within=within) for one in struct.members], type)
-    writings = [line for one in struct.walk(Into.STRUCTS) for line in bits.writing(one, "part", within)]
+    value = literal(struct.members, [bits.reading(member, tables, within=within) for member in struct.members], type)
+    writings = [line for member in struct.walk(Into.STRUCTS) for line in bits.writing(member, "part", within)]
     step = struct.model.length
     return {"step": step, "type": type, "tables": sorted(tables), "value": value, "writings": writings}
 
@@ -40,16 +41,16 @@ def _of_numbers(field: FieldDescription, rounds: ElementRounds) -> dict[str, obj
     members = rounds.members(field, lambda element: f"part[{element}]" if many else "part")
     if many:
         type = f"[{type}; {rounds.in_round}]"
-        rows = "".join(f"{pad}{STEP}{bits.reading(one, set(), DEPTH + 1)},\n" for one in members)
+        rows = "".join(f"{pad}{STEP}{bits.reading(element, set(), DEPTH + 1)},\n" for element in members)
         value = f"{pad}[\n{rows}{pad}]"
     else:
         value = bits.reading(members[0], set(), DEPTH - 1)  # a block is the body of the function
         value = value[2:-2].rstrip() if value.startswith("{\n") else pad + value
-    writings = [line for one in members for line in bits.writing(one, "")]
+    writings = [line for element in members for line in bits.writing(element, "")]
     return {"step": rounds.step, "type": type, "tables": (), "value": value, "writings": writings}
 
 
 def literal(fields: tuple[FieldDescription, ...], values: list[str], type: str = "Self") -> str:
-    """``Self { ... }`` in the body of a function."""
+    """Return ``Self { ... }`` in the body of a function."""
     lines = "".join(f"            {own_name(field)}: {value},\n" for field, value in zip(fields, values, strict=True))
     return f"        {type} {{\n{lines}        }}" if fields else f"        {type} {{}}"

@@ -13,11 +13,12 @@ from icdgen.describe.examples import Example, Shown, example
 from icdgen.describe.links import LinkDescription
 from icdgen.describe.nodes import Direction
 
-_WHOLE = 8  # bytes of a frame that is written out; of a longer one, those that are not 0
+_SHORT = 8
+"""Bytes of a frame up to which an example shows all; of longer frames it shows the bytes that are not 0."""
 
 
 def message_example(message: MessageDescription, crate: str) -> list[str]:
-    """Lines of code: a frame is decoded, a value read, and encoded again; of what can only be sent, one is made and encoded."""
+    """Return lines that decode a frame, read a value and encode it again. A message that is only sent is created and encoded."""
     shown = example(message)
     is_received = message.model.telemetry_id is not None
     body = _received(message, shown) if is_received else _sent(message, shown)
@@ -25,7 +26,7 @@ def message_example(message: MessageDescription, crate: str) -> list[str]:
 
 
 def enum_example(enum: EnumDescription, crate: str) -> list[str]:
-    """Lines of code: a value and what it is called."""
+    """Return lines that compare a value with its name."""
     name, member = type_name(enum), enum.members[-1] if enum.members else None
     first = enum.member(member.model.value) if member else None
     tests = [f"assert_eq!({name}::from({integer(first.model.value)}), {name}::{type_name(first)});"] if first else []
@@ -34,33 +35,34 @@ def enum_example(enum: EnumDescription, crate: str) -> list[str]:
 
 
 def direction_example(direction: Direction, node: NodeDescription, crate: str) -> list[str]:
-    """Lines of code: a frame of zeros is dispatched by its id."""
+    """Return lines that decode a frame of zeros by its id."""
     message, id = direction.messages[0]
-    name, one = direction.kind.capitalize(), f"{crate}::{message.node.name}::{type_name(message)}"
+    name, path = direction.kind.capitalize(), f"{crate}::{message.node.name}::{type_name(message)}"
     return _fallible(
         [
             f"use {crate}::{node.name}::{name};",
             "",
-            f"let message = {name}::from_bytes({one}::{id.upper()}, &[0; {message.model.layout.shortest}])?;",
-            f"assert_eq!(message.name(), {one}::NAME);",
+            f"let message = {name}::from_bytes({path}::{id.upper()}, &[0; {message.model.layout.shortest}])?;",
+            f"assert_eq!(message.name(), {path}::NAME);",
         ],
         crate,
     )
 
 
 def client_example(node: NodeDescription, link: LinkDescription, crate: str) -> list[str]:
-    """Lines of code: a client on UART asks for a message and is answered; none where that cannot be, or no message is short."""
-    known = [one for one in node.telemetry if one.model.telemetry_id in link.facts.telemetry]
-    asked = [one for one in known if one.model.length <= _WHOLE]
-    if link.facts.framing is None or not asked:
+    """Return lines in which a client on a UART requests a message and gets it; none without UART or short messages."""
+    linked = [message for message in node.telemetry if message.model.telemetry_id in link.facts.telemetry]
+    short = [message for message in linked if message.model.length <= _SHORT]
+    if link.facts.framing is None or not short:
         return []
-    message = next((one for one in asked if any(field.is_scaled for field in one.members)), asked[0])
-    one, name = example(message), type_name(message)
-    answer = _bytes(bytes([message.model.telemetry_id or 0, *one.frame]))
+    scaled = (message for message in short if any(field.is_scaled for field in message.members))
+    message = next(scaled, short[0])
+    reply, name = example(message), type_name(message)
+    answer = _bytes(bytes([message.model.telemetry_id or 0, *reply.frame]))
     client = f"Client::<{node.name}::Node, {{ {node.name}::LONGEST }}>"
     return _fallible(
         [
-            *_imports(message, one.shown, crate),
+            *_imports(message, reply.shown, crate),
             f"use {crate}::{{{node.name}, wire}};",
             "",
             f"let mut client = wire::{client}::uart(&{node.name}::LINK)?;",
@@ -73,14 +75,14 @@ def client_example(node: NodeDescription, link: LinkDescription, crate: str) -> 
             "let mut answer = None;",
             f"client.received(20, &line[..size], |event| answer = event.message::<{name}>());",
             "let message = answer.unwrap();",
-            _read(one.shown) if one.shown else "assert_eq!(message.to_bytes()?, []);",
+            _read(reply.shown) if reply.shown else "assert_eq!(message.to_bytes()?, []);",
         ],
         f"{crate}::wire",
     )
 
 
 def _fallible(lines: Iterable[str], crate: str) -> list[str]:
-    """The lines as a doctest in which ``?`` may stand."""
+    """Return the lines as a doctest in which ``?`` is allowed."""
     return _fenced((*lines, f"# Result::<(), {crate}::Error>::Ok(())"))
 
 
@@ -98,30 +100,30 @@ def _imports(message: MessageDescription, shown: Shown | None, crate: str) -> li
     return [f"use {crate}::{enum.node.name}::{ENUMS_MODULE};", f"use {home}::{name};"]
 
 
-def _received(message: MessageDescription, one: Example) -> list[str]:
-    lines = [f"let frame = {_bytes(one.frame)};"]
-    if len(one.frame) > _WHOLE:
-        size = str(len(one.frame)) if message.last_part else f"{type_name(message)}::LENGTH"
+def _received(message: MessageDescription, shown: Example) -> list[str]:
+    lines = [f"let frame = {_bytes(shown.frame)};"]
+    if len(shown.frame) > _SHORT:
+        size = str(len(shown.frame)) if message.last_part else f"{type_name(message)}::LENGTH"
         lines = [f"let mut frame = [0; {size}];"]
-        lines += [_put(start, run) for start, run in one.runs]
+        lines += [_put(start, run) for start, run in shown.runs]
     return [
         *lines,
         f"let message = {type_name(message)}::from_bytes(&frame)?;",
-        *([_read(one.shown)] if one.shown else []),
+        *([_read(shown.shown)] if shown.shown else []),
         "assert_eq!(message.to_bytes()?, frame);",
     ]
 
 
-def _sent(message: MessageDescription, one: Example) -> list[str]:
+def _sent(message: MessageDescription, shown: Example) -> list[str]:
     name = type_name(message)
     lines = [f"let command = {name}::default();"]
-    if one.shown:
-        lines = [f"let mut command = {name}::default();", _written(one.shown)]
-    if len(one.frame) <= _WHOLE:
-        return [*lines, f"assert_eq!(command.to_bytes()?, {_bytes(one.frame)});"]
-    places = [f"assert_eq!(frame[{start}..{start + len(run)}], {_bytes(run)});" for start, run in one.runs]
+    if shown.shown:
+        lines = [f"let mut command = {name}::default();", _written(shown.shown)]
+    if len(shown.frame) <= _SHORT:
+        return [*lines, f"assert_eq!(command.to_bytes()?, {_bytes(shown.frame)});"]
+    places = [f"assert_eq!(frame[{start}..{start + len(run)}], {_bytes(run)});" for start, run in shown.runs]
     if not places:
-        return [*lines, f"assert_eq!(command.to_bytes()?.len(), {len(one.frame)});"]
+        return [*lines, f"assert_eq!(command.to_bytes()?.len(), {len(shown.frame)});"]
     return [*lines, "let frame = command.to_bytes()?;", *places]
 
 
@@ -142,7 +144,7 @@ def _written(shown: Shown) -> str:
 
 
 def _value(shown: Shown) -> str:
-    """The raw value."""
+    """Return the literal of the raw value."""
     field, raw = shown.field, shown.raw
     if field.enum is not None:
         member = field.enum.member(raw)

@@ -15,23 +15,23 @@ _TYPES: dict[type, str] = {
 
 
 def type_name(part: type) -> str:
-    """What the type of a part is called."""
+    """Return the name of the type of a part of the protocol."""
     return _TYPES.get(part, part.__name__)
 
 
 def member_name(fact: Fact) -> str:
-    """What the field of a fact is called; a time says its unit."""
+    """Return the name of the field of a fact; that of a time ends with its unit."""
     return f"{fact.name}_ms" if fact.kind is Kind.TIME else fact.name
 
 
 def value_of(fact: Fact, part: object) -> Expression:
-    """The value of a fact that is no step."""
+    """Return the value of a fact other than a step of a procedure."""
     value = getattr(part, fact.name)
-    known = None if value is None else _known(fact, value, part)
-    return some(known) if fact.is_optional else known or ""
+    expression = None if value is None else _required(fact, value, part)
+    return some(expression) if fact.is_optional else expression or ""
 
 
-def _known(fact: Fact, value: object, part: object) -> Expression:
+def _required(fact: Fact, value: object, part: object) -> Expression:
     if isinstance(value, tuple):
         if fact.kind is Kind.BUSES:
             return flat("PerBus", **{bus: bus in value for bus in BUSES})
@@ -39,5 +39,5 @@ def _known(fact: Fact, value: object, part: object) -> Expression:
     assert isinstance(value, bool | int)
     if fact.kind is Kind.OCTET:
         return mask(value, 8)
-    width = getattr(part, "width", 32)  # of the codes: those of a CRC are as wide as it
+    width = getattr(part, "width", 32)  # a CRC states the width of its codes
     return mask(value, -(-width // 4) * 4) if fact.kind is Kind.CODE else spelled(value)

@@ -1,4 +1,4 @@
-"""The link of a node: its protocol facts as the constant ``LINK`` of its module; and what the wire layer needs for all nodes."""
+"""Links: the protocol facts of a node as the constant ``LINK`` of its module, and sizes of buffers for all nodes."""
 
 from __future__ import annotations
 
@@ -18,40 +18,42 @@ from icdgen.protocol.sections import BUSES, CAN_KINDS, PROCEDURES, Step
 
 _REASONS = {"none": "NoError"}
 _RENAMED = {"type": "kind", "channel": "id"}  # `type` is a keyword
-_ONLY_POLLED = frozenset({"id", "processed", "parameter"})  # roles that no procedure asks for
-_NUMBER_BITS = 32  # of what the wire layer handles
+_ONLY_POLLED = frozenset({"id", "processed", "parameter"})
+"""Roles of the polled frame that procedures do not use."""
+_NUMBER_BITS = 32
+"""Largest numbers that the wire layer handles."""
 
 
 def sizes(links: Collection[LinkDescription]) -> dict[str, int]:
-    """What the buffers of the procedures hold, for every node: the most that any needs."""
-    known = [link.facts for link in links]
+    """Return the sizes of the buffers of procedures: the largest that any node needs."""
+    facts = [link.facts for link in links]
     return {
         "step": max((link.longest_step for link in links), default=1),
-        "map": max((one.hole_map.bytes for one in known if one.hole_map), default=1),
-        "packets": max((one.files.block_packets for one in known if one.files), default=1),
+        "map": max((node.hole_map.bytes for node in facts if node.hole_map), default=1),
+        "packets": max((node.files.block_packets for node in facts if node.files), default=1),
     }
 
 
 def values(link: LinkDescription) -> dict[str, str]:
-    """What the template of a node's link is given; ``tabulated`` is the CRC of the envelope, of which there is a table."""
-    known, link_literal = link.facts, _Literal(link)
+    """Return the values for the template of a link. ``tabulated`` is the CRC of packets, for which there is a table."""
+    facts, link_literal = link.facts, _Literal(link)
     text = written(link_literal.link(), _note)
-    about = [f"The protocol of node `{known.node.name}`. Facts that the manual omits are marked as assumed."]
+    about = [f"The protocol of node `{facts.node.name}`. Facts that the manual omits are marked as assumed."]
     for section, key, why in link_literal.assumed.others():
         about.append(f"Assumed (`{section}`, `{key}`): {prose(sentence(why))}")
-    crc = tabulated(known.stream)
+    crc = tabulated(facts.stream)
     return {
-        "node": known.node.name,
+        "node": facts.node.name,
         "doc": doc(about),
         "literal": text,
         "longest": integer(longest(link)),
-        "sequences": integer(known.stream.sequences) if known.stream else "",
+        "sequences": integer(facts.stream.sequences) if facts.stream else "",
         "tabulated": written(crc, _note) if crc else "",
     }
 
 
 def longest(link: LinkDescription) -> int:
-    """What every buffer of the wire layer needs: the longest message, all packets of one on CAN, an entry of a log."""
+    """Return the size of each buffer of the wire layer: the longest message, CAN packets of a message, or entry of a log."""
     log = link.facts.log_file
     header = log.header_bytes if log and link.facts.mask else 0
     return max(link.facts.longest, link.joined_bytes, link.log_entry_bytes, header)
@@ -62,68 +64,70 @@ def _note(why: str, indent: str) -> str:
 
 
 class _Literal:
-    """The expression of one node's link."""
+    """Expression of the link of a node."""
 
     def __init__(self, link: LinkDescription) -> None:
         self.description, self.facts, self.assumed = link, link.facts, Assumptions(link.facts)
 
     def link(self) -> Brackets:
-        known, link = self.facts, self.description
+        facts, link = self.facts, self.description
         codes = (
             f"({integer(code)}, link::Reason::{_REASONS.get(key) or variant(key)})" for key, code in link.error_codes
         )
         return struct(
             "Link",
-            part("node", string(known.node.name)),
-            part("node_type", some(known.node.node_type)),
-            part("interface_version", some(known.node.interface_version)),
-            part("longest", integer(known.longest)),
-            part("longest_data", integer(known.longest_data)),
-            part("little", spelled(known.little)),
-            part("telemetry_ids", flat("Ids", **members(known.telemetry_ids))),
+            part("node", string(facts.node.name)),
+            part("node_type", some(facts.node.node_type)),
+            part("interface_version", some(facts.node.interface_version)),
+            part("longest", integer(facts.longest)),
+            part("longest_data", integer(facts.longest_data)),
+            part("little", spelled(facts.little)),
+            part("telemetry_ids", flat("Ids", **members(facts.telemetry_ids))),
             part("telecommands", rows(map(_form, link.telecommands))),
             part("telemetry", rows(map(_form, link.telemetry))),
-            part("client", self.struct(known.client, "client") or ""),
+            part("client", self.struct(facts.client, "client") or ""),
             part("errors", rows(codes)),
-            part("framing", some(self.struct(known.framing, "uart.framing"))),
+            part("framing", some(self.struct(facts.framing, "uart.framing"))),
             part(
                 "acknowledge",
-                some(self.struct(known.acknowledge, "uart.acknowledge")),
+                some(self.struct(facts.acknowledge, "uart.acknowledge")),
                 self.assumed.why("uart.acknowledge", "data"),
             ),
-            part("i2c_address", some(known.i2c_address)),
-            part("i2c_repeated_start", spelled(known.i2c_repeated_start)),
+            part("i2c_address", some(facts.i2c_address)),
+            part("i2c_repeated_start", spelled(facts.i2c_repeated_start)),
             part("polled", some(_polled(link.polled))),
             part("can", some(self.can())),
             part("checksum", some(self.checksum())),
-            part("crc16", some(self.struct(known.crc16, "crc16"))),
+            part("crc16", some(self.struct(facts.crc16, "crc16"))),
             part("mask", some(self.mask())),
-            part("log_file", some(self.struct(known.log_file, "telemetry_log"))),
+            part("log_file", some(self.struct(facts.log_file, "telemetry_log"))),
             part(
                 "log_message",
-                some(self.struct(known.log_message, "unsolicited_log")),
+                some(self.struct(facts.log_message, "unsolicited_log")),
                 self.assumed.why("unsolicited_log", "framed"),
             ),
             part("time", some(self.time())),
             part("index", some(self.index())),
             part("files", some(self.files())),
-            part("program_copy", some(self.struct(known.program_copy, "program_copy"))),
-            part("program_information", some(self.struct(known.program_information, "program_information"))),
+            part("program_copy", some(self.struct(facts.program_copy, "program_copy"))),
+            part("program_information", some(self.struct(facts.program_information, "program_information"))),
             part("identification", some(_step(link.identification, "telemetry"))),
-            part("boot_ms", some(known.boot_ms)),
-            part("stream", some(stream_of(known.stream) if known.stream else None)),
+            part("boot_ms", some(facts.boot_ms)),
+            part("stream", some(stream_of(facts.stream) if facts.stream else None)),
         )
 
-    def struct(self, one: object, section: str, *made: Item) -> Brackets | None:
-        """The facts of a part, and what code ``made`` beside them."""
-        if one is None:
+    def struct(self, declared: object, section: str, *further: Item) -> Brackets | None:
+        """Return the facts of a part as a struct, with further items."""
+        if declared is None:
             return None
         items = []
-        for fact in facts_of(one):
-            value = getattr(one, fact.name)
+        for fact in facts_of(declared):
+            value = getattr(declared, fact.name)
             step = _step(self.description.step(value), fact.direction) if isinstance(value, Step) else None
-            items.append(part(member_name(fact), step or value_of(fact, one), self.assumed.why_fact(section, fact)))
-        return struct(type_name(type(one)), *items, *made)
+            items.append(
+                part(member_name(fact), step or value_of(fact, declared), self.assumed.why_fact(section, fact))
+            )
+        return struct(type_name(type(declared)), *items, *further)
 
     def can(self) -> Brackets | None:
         can = self.description.can
@@ -142,24 +146,24 @@ class _Literal:
         if mask is None:
             return None
         bits = (
-            flat("LogBit", **{**members(one), "name": string(one.name or "")})
-            for _, one in sorted(mask.bits.items())
-            if one.id is not None
+            flat("LogBit", **{**members(row), "name": string(row.name or "")})
+            for _, row in sorted(mask.bits.items())
+            if row.id is not None
         )
         return self.struct(mask, "log_mask", part("bits", rows(bits), self.assumed.why("log_mask", "unassigned_bits")))
 
     def time(self) -> Brackets | None:
-        parts = [part(name, flat("TimePart", **members(one))) for name, one in self.description.time]
+        parts = [part(name, flat("TimePart", **members(time_part))) for name, time_part in self.description.time]
         return struct("TimeForm", *parts) if parts else None
 
     def index(self) -> Brackets | None:
         form = self.description.index
         fields = [(name, form.fields[name]) for name in INDEX_PARTS] if form else []
-        spans = (part(_RENAMED.get(name, name), flat("Span", **members(one))) for name, one in fields)
+        spans = (part(_RENAMED.get(name, name), flat("Span", **members(span))) for name, span in fields)
         return self.struct(form, "index_file", *spans)
 
     def files(self) -> Brackets | None:
-        """File transfer, with the procedures that the ICD describes completely."""
+        """Return the facts of file transfer, with the procedures that the ICD describes completely."""
         form = self.facts.files
         if form is None:
             return None
@@ -177,17 +181,17 @@ class _Literal:
     def hole_map(self) -> Brackets | None:
         messages = []
         for field in self.description.map_pieces:
-            one = field.message.model
-            if one.telecommand_id is None or one.telemetry_id is None:
+            message = field.message.model
+            if message.telecommand_id is None or message.telemetry_id is None:
                 return None
-            ids = {"set_id": one.telecommand_id, "get_id": one.telemetry_id}
-            messages.append(flat("MapMessage", **ids, length=one.length, piece=_span(field)))
+            ids = {"set_id": message.telecommand_id, "get_id": message.telemetry_id}
+            messages.append(flat("MapMessage", **ids, length=message.length, piece=_span(field)))
         return self.struct(self.facts.hole_map, "file_transfer.hole_map", part("messages", rows(messages)))
 
 
-def _form(one: SentMessage) -> Brackets:
-    message = one.message
-    return flat("Form", id=one.id, length=message.length, acknowledged=message.acknowledge, repeatable=one.is_setting)
+def _form(sent: SentMessage) -> Brackets:
+    message = sent.message
+    return flat("Form", id=sent.id, length=message.length, acknowledged=message.acknowledge, repeatable=sent.is_setting)
 
 
 def _can_types(types: dict[str, int]) -> Brackets:
@@ -195,13 +199,13 @@ def _can_types(types: dict[str, int]) -> Brackets:
 
 
 def _span(field: FieldDescription) -> Brackets:
-    """Where bytes stand."""
+    """Return the position of bytes."""
     return flat("Span", at=field.model.at // 8, bytes=field.model.bits // 8)
 
 
 def _place(field: FieldDescription) -> Expression:
-    """Where a number stands."""
-    return flat_rows(flat("Piece", **one._asdict()) for one in field.pieces)
+    """Return the position of a number."""
+    return flat_rows(flat("Piece", **piece._asdict()) for piece in field.pieces)
 
 
 def _polled(step: StepDescription | None) -> Brackets | None:
@@ -210,12 +214,12 @@ def _polled(step: StepDescription | None) -> Brackets | None:
     return struct(
         "Polled",
         part("frame", integer(step.message.ids[0])),
-        *(part(one.role, _place(one.field)) for one in step.places),
+        *(part(place.role, _place(place.field)) for place in step.places),
     )
 
 
 def _step(step: StepDescription | None, direction: str) -> Brackets | None:
-    """A message in a procedure; None if the node does not have it in that direction."""
+    """Return a step of a procedure; None if the node does not have the message in that direction."""
     id = step and (step.message.telecommand_id if direction == "telecommand" else step.message.telemetry_id)
     if step is None or id is None:
         return None

@@ -1,4 +1,4 @@
-"""A message -> what its template needs beside the description."""
+"""Values for the templates of messages and structs, in addition to the description."""
 
 from __future__ import annotations
 
@@ -19,51 +19,52 @@ _SUPPORT = frozenset("""
     put_each put_element put_rounds put_words quiet rounds spread structure take text text_array there told whole words
     Big Coded Curve Error Frame Scale Wide
     """.split())
-# What is called or named in code; comments and texts come first, so that nothing is found in them.
+# Names that code calls or uses as types. Comments and texts are matched first, so that names in them do not count.
 _USED = re.compile(r'//.*|"(?:[^"\\]|\\.)*"|(?<![\w.:&])(?<!fn )([A-Za-z]\w*)(?=[(!<>]|::| = Wide)')
-DERIVES_DEFAULT = 32  # elements of an array; longer ones do not
+DERIVES_DEFAULT = 32
+"""Largest array for which the standard library implements `Default`."""
 
 
 def values(message: MessageDescription) -> dict[str, object]:
-    """What is read, written, derived and imported."""
+    """Return the values for the template of a message."""
     fields, tables, last = message.members, bytes_of_flags(message, bits.FLAGS_FROM), message.last_part
     readings = ["None" if field.model.when else bits.reading(field, tables) for field in fields]
-    views = [(field, bits.reading(field, set(), depth=2)) for field in message.overlays]
+    overlays = [(field, bits.reading(field, set(), depth=2)) for field in message.overlays]
     conditions = conditional.conditional(message)
-    writings = [line for one in message.walk(Into.STRUCTS) if not one.model.when for line in bits.writing(one)]
+    writings = [line for member in message.walk(Into.STRUCTS) if not member.model.when for line in bits.writing(member)]
     return {
         **of_composite(message),
         "refused": message.is_narrow or bool(conditions),
         "conditional": conditions,
         "last": last,
-        "earlier": list(map(_inner, message.earlier_parts)),
-        **(_of_end(message, last) if last else {}),
+        "earlier": list(map(_earlier_part, message.earlier_parts)),
+        **(_of_variable_length(message, last) if last else {}),
         "tables": sorted(tables),
         "literal": elements.literal(fields, readings),
-        "views": views,
+        "overlays": overlays,
         "writings": writings,
         "repeated": list(elements.functions(message)),
         "parts": parts.parts(message),
     }
 
 
-def _of_end(message: MessageDescription, last: VariablePartDescription) -> dict[str, object]:
-    """What the code of frames that differ in length needs."""
+def _of_variable_length(message: MessageDescription, last: VariablePartDescription) -> dict[str, object]:
+    """Return the values for messages whose frames differ in length."""
     return {
         "bytes_of_end": _times(last.model.step, f"count + {last.model.fewest}" if last.model.fewest else "count"),
         "bytes_of_elements": _times(last.model.step, "count"),
         "length_of_frame": _length(last.model.shortest, last.model.step),
         "length_of_elements": _length(last.model.begin, last.model.step),
         "counted_text": _counted_text(last),
-        "open_parts": [(one, _number(one)) for one in (*message.earlier_parts, last)],
+        "variable_parts": [(part, _number(part)) for part in (*message.earlier_parts, last)],
     }
 
 
-def _inner(part: VariablePartDescription) -> tuple[VariablePartDescription, str, str, str]:
-    """What is open in front of the end, how its count is read, and its bytes: of a count that there may be, and of any."""
+def _earlier_part(part: VariablePartDescription) -> tuple[VariablePartDescription, str, str, str]:
+    """Return a variable part, the expression of its counter, and its bytes: for a valid count, and for any count."""
     count = f"number(self.{field_name(part.counter)}, {part.model.low}, {part.model.fewest})"
-    there, any_count = (_times(part.model.step, one) for one in (count, f"{count}.min({part.model.most})"))
-    return part, bits.reading(part.counter, set(), depth=3), there, any_count
+    valid, limited = _times(part.model.step, count), _times(part.model.step, f"{count}.min({part.model.most})")
+    return part, bits.reading(part.counter, set(), depth=3), valid, limited
 
 
 def _times(step: int, count: str) -> str:
@@ -73,66 +74,68 @@ def _times(step: int, count: str) -> str:
 
 
 def imports(body: str) -> str:
-    """What a module uses of the support module, as its ``use`` has it; ``body`` is the rest of the module."""
+    """Return the names of the support module that the body of a module uses, for its ``use`` statement."""
     names = sorted(_SUPPORT.intersection(_USED.findall(body)), key=lambda name: (name[0].isupper(), name))
     return f"{{{', '.join(names)}}}" if len(names) > 1 else names[0]
 
 
-def of_composite(one: Composite[Any]) -> dict[str, object]:
-    """What is said of a message and of a struct."""
-    fields = one.members
+def of_composite(composite: Composite[Any]) -> dict[str, object]:
+    """Return the values for a message or struct."""
+    fields = composite.members
     has_default = all(map(_is_default, fields))
     traits = ["Clone", "Copy", "Debug", *(["Default"] if has_default else []), "PartialEq"]
     narrow = [field for field in fields if field.needs_range_check]
     return {
-        "constants": _constants(one),
+        "constants": _constants(composite),
         "fits": [line for field in narrow if not field.model.when for line in bits.fitting(field)],
-        "scales": [field for field in one.declared_members if has_constant(field)],
-        "curves": [field for field in one.declared_members if field.curve is not None],
+        "scales": [field for field in composite.declared_members if has_constant(field)],
+        "curves": [field for field in composite.declared_members if field.curve is not None],
         "default": None if has_default else elements.literal(fields, [_initial(field) for field in fields]),
-        "derives": ", ".join(traits + ([] if one.has_floats else ["Eq", "Hash"])),
-        "uses_enums": any(enum.node is one.node for enum in one.enums),
+        "derives": ", ".join(traits + ([] if composite.has_floats else ["Eq", "Hash"])),
+        "uses_enums": any(enum.node is composite.node for enum in composite.enums),
     }
 
 
-def _constants(one: Composite[Any]) -> list[tuple[Constant, str, str]]:
-    """The constants of fields, their types and values."""
-    return [(constant, *_constant(field, constant)) for field in one.declared_members for constant in field.constants]
+def _constants(composite: Composite[Any]) -> list[tuple[Constant, str, str]]:
+    """Return the constants of fields with their types and values."""
+    return [
+        (constant, *_constant(field, constant)) for field in composite.declared_members for constant in field.constants
+    ]
 
 
-def _constant(field: FieldDescription, one: Constant) -> tuple[str, str]:
-    if one.number:
+def _constant(field: FieldDescription, constant: Constant) -> tuple[str, str]:
+    if constant.number:
         kind = f"f{field.model.bits}"
-        named = {"nan": "NAN", "inf": "INFINITY", "-inf": "NEG_INFINITY"}.get(one.number)
-        return kind, f"{kind}::{named}" if named else double(float(one.number))
-    if field.model.type == "bool" and one.is_raw:
-        return "bool", "true" if one.value else "false"
-    if isinstance(one.value, int):
-        return integer_type(field), integer(one.value)
-    return "f64", double(one.double)
+        named = {"nan": "NAN", "inf": "INFINITY", "-inf": "NEG_INFINITY"}.get(constant.number)
+        return kind, f"{kind}::{named}" if named else double(float(constant.number))
+    if field.model.type == "bool" and constant.is_raw:
+        return "bool", "true" if constant.value else "false"
+    if isinstance(constant.value, int):
+        return integer_type(field), integer(constant.value)
+    return "f64", double(constant.double)
 
 
 def _length(before: int, step: int) -> str:
-    """Bytes of a frame that has ``count`` elements behind so many bytes."""
-    rest = _times(step, "count")
-    return f"{before} + {rest}" if before else rest
+    """Return the length of a frame with ``count`` elements behind ``before`` bytes."""
+    elements_bytes = _times(step, "count")
+    return f"{before} + {elements_bytes}" if before else elements_bytes
 
 
 def _counted_text(last: VariablePartDescription) -> str:
-    """What the counter of an open text says of a ``text``, which is filled up to the fewest characters."""
+    """Return the value of the counter for a ``text``, which is padded to the fewest characters."""
     if last.model.fewest:
         return f"text.len().saturating_sub({last.model.fewest})"
     return f"(text.len() + {last.model.low})" if last.model.low else "text.len()"
 
 
 def _number(last: VariablePartDescription) -> str:
-    """How many elements a message has."""
+    """Return the number of elements of a variable part."""
     counter = f"self.{field_name(last.counter)}"
     return f"number({counter}, {last.model.low}, {last.model.fewest})" if last.model.plus else counter
 
 
 def _is_default(field: FieldDescription) -> bool:
-    """Whether a new message has of it what a `Default` that is derived gives."""
+    """Return whether a derived `Default` gives the initial value of a field."""
     if field.count > DERIVES_DEFAULT or (field.model.is_bytes and field.size > DERIVES_DEFAULT):
         return False
     return field.is_initially_zero

@@ -1,4 +1,4 @@
-"""A node -> what templates say of it beside the description."""
+"""Documentation of nodes, and the tests that dispatch frames to messages of the same id."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from icdgen.icd.model import Node
 
 
 def summary(node: Node) -> str:
-    """A node as the crate's front page lists it."""
+    """Return the entry of a node on the front page of the crate."""
     item = f"[`{node.name}`], {prose(sentence(node.title))} {prose(sentence(node.summary))}".rstrip()
     return doc([item], mark="//!  ").replace("//!  ", "//! -", 1)
 
 
 def about(node: NodeDescription, example: list[str]) -> str:
-    """What its module begins with: title, source, whose messages it speaks, too, and an example."""
-    one, spoken = node.model, dict.fromkeys(message.node.name for message in node.all_messages)
-    printed = ", ".join(f"{key} {value}" for key, value in one.document)
-    included = ", ".join(f"[`{name}`](crate::{name})" for name in spoken if name != node.name)
+    """Return the documentation of the module of a node: title, source, included nodes and an example."""
+    model, owners = node.model, dict.fromkeys(message.node.name for message in node.all_messages)
+    printed = ", ".join(f"{key} {value}" for key, value in model.document)
+    included = ", ".join(f"[`{name}`](crate::{name})" for name in owners if name != node.name)
     paragraphs = [
-        f"{prose(sentence(one.title))} {prose(sentence(one.summary))}".rstrip(),
+        f"{prose(sentence(model.title))} {prose(sentence(model.summary))}".rstrip(),
         prose(sentence(f"Source: {printed}")) if printed else "",
         f"It also speaks the messages of {included}." if included else "",
     ]
@@ -33,20 +33,20 @@ def about(node: NodeDescription, example: list[str]) -> str:
 
 
 def typed(value: int) -> str:
-    """Type and literal of a number: ``u8 = 10``."""
+    """Return type and literal of a number: ``u8 = 10``."""
     return f"u{holding(value.bit_length())} = {integer(value)}"
 
 
 def guarded(candidate: MessageOfId, path: str) -> str:
-    """What an arm takes: the id, and what of the bytes shows that they are of this message, its length and its constants."""
+    """Return the pattern of a match arm: the id, with tests of the length and of the constant bytes of the message."""
     model = candidate.message.model
     terms = _lengths(model.layout.lengths, f"{path}::LENGTH")
-    for sign in candidate.constant_bytes:
-        byte = f"bytes[{sign.byte}]"
-        if sign.byte >= model.layout.shortest:  # a zero that may be cut off
-            byte = f"bytes.get({sign.byte}).map_or(0, |byte| *byte)"
-        masked = byte if sign.mask == 0xFF else f"{byte} & {mask(sign.mask)}"
-        terms.append(f"{masked} == {mask(sign.value)}")
+    for constant in candidate.constant_bytes:
+        byte = f"bytes[{constant.byte}]"
+        if constant.byte >= model.layout.shortest:  # a trailing zero that the frame may lack
+            byte = f"bytes.get({constant.byte}).map_or(0, |byte| *byte)"
+        masked = byte if constant.mask == 0xFF else f"{byte} & {mask(constant.mask)}"
+        terms.append(f"{masked} == {mask(constant.value)}")
     id = f"{STEP * 3}{path}::{candidate.id_name.upper()}"
     line = f"{id} if {' && '.join(terms)}"
     rows = f"\n{STEP * 5}&& ".join(terms)
@@ -54,7 +54,7 @@ def guarded(candidate: MessageOfId, path: str) -> str:
 
 
 def _lengths(lengths: range, longest: str) -> list[str]:
-    """What holds of the length of a frame; ``longest`` is the constant of the longest."""
+    """Return the tests of the length of a frame. ``longest`` is the constant of the longest."""
     tests = {test.kind: test for test in length_tests_of_frame(lengths)}
     if "equal" in tests:
         return [f"bytes.len() == {longest}"]

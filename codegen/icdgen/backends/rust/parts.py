@@ -1,4 +1,4 @@
-"""The messages that a composite message repeats, as conversions from it."""
+"""Messages that a composite message contains, as conversions from it."""
 
 from __future__ import annotations
 
@@ -14,25 +14,27 @@ from icdgen.describe.contained import ContainedDescription, CopiedMember, contai
 
 
 class Part(NamedTuple):
-    """``type``: the message, or an array of as many as it is repeated; ``values`` are what each is made of."""
+    """Conversion to a contained message, or to an array of them if it is contained several times."""
 
     about: str
     type: str
     is_array: bool
-    values: tuple[tuple[str, ...], ...]
+    values: tuple[tuple[str, ...], ...]  # fields of each struct expression
     message: str
 
 
 def parts(message: MessageDescription) -> list[Part]:
-    """Those of a composite message."""
-    found = []
-    for one in contained_messages(message):
-        path = struct_path(one.message, message.node)
-        count = len(one.positions)
+    """Return the conversions of a composite message."""
+    conversions = []
+    for contained in contained_messages(message):
+        path = struct_path(contained.message, message.node)
+        count = len(contained.positions)
         kind = f"[{path}; {count}]" if count > 1 else path
-        values = tuple(tuple(_values(one, message, begin)) for begin in one.positions)
-        found.append(Part(part_comment(one.message.model, one.positions), kind, count > 1, values, path))
-    return found
+        values = tuple(tuple(_values(contained, message, begin)) for begin in contained.positions)
+        conversions.append(
+            Part(part_comment(contained.message.model, contained.positions), kind, count > 1, values, path)
+        )
+    return conversions
 
 
 def _values(part: ContainedDescription, composite: MessageDescription, begin: int) -> Iterator[str]:
@@ -42,18 +44,21 @@ def _values(part: ContainedDescription, composite: MessageDescription, begin: in
 
 
 def _struct(field: FieldDescription, struct: StructDescription, copies: dict[str, CopiedMember]) -> str:
-    """A struct, or an array of them, of the values that stand in it."""
-    path, found = struct_path(struct, field.message.node), []
+    """Return the expression of a struct, or of an array of structs, over fields of the composite."""
+    path, structs = struct_path(struct, field.message.node), []
     for row in field.instances:
-        values = (_struct(one, one.struct, copies) if one.struct else _value(copies[one.model.name]) for one in row)
-        found.append(f"{path} {{ {', '.join(values)} }}")
-    rows = ", ".join(found)
+        values = (
+            _struct(member, member.struct, copies) if member.struct else _value(copies[member.model.name])
+            for member in row
+        )
+        structs.append(f"{path} {{ {', '.join(values)} }}")
+    rows = ", ".join(structs)
     return f"{own_name(field)}: {f'[{rows}]' if field.count else rows}"
 
 
 def _value(copied: CopiedMember) -> str:
     name = own_name(copied.member)
-    sources = [f"message.{field_name(one)}" for one in copied.sources]
+    sources = [f"message.{field_name(source)}" for source in copied.sources]
     if copied.is_whole:
         return f"{name}: {sources[0]}"
     return bracketed(f"{name}: [", sources, "]", WIDTH - len(STEP) * 4, STEP * 4)

@@ -1,4 +1,4 @@
-"""Getters of physical values, and of derived ones."""
+"""Getters of physical values and of derived values."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ _TAKEN = RESERVED | {"power", "quiet", "whole"}
 
 
 def big_parts(value: int) -> list[str]:
-    """A term of a wide scale, as literals."""
+    """Return a term of a wide scale as literals."""
     return [mask(part, 64) if part > 9 else str(part) for part in wide_parts(value, 64)]
 
 
 def has_constant(field: FieldDescription) -> bool:
-    """Whether code needs the constant of its scale: to set it, to see whether it fits, or to compute its physical value."""
+    """Return whether code needs the constant of a scale: to set a field, to test a raw value, or to compute a physical value."""
     arithmetic = field.arithmetic
     if not field.model.view:
         return arithmetic is not None or field.is_narrow
@@ -28,17 +28,20 @@ def has_constant(field: FieldDescription) -> bool:
 
 
 def raw_value(field: FieldDescription) -> str:
-    """The raw value: the member, or what the method of a view gives; of an array, what stands in ``raw``."""
+    """Return the raw value: the member, or the method of an overlay field.
+
+    Elements and optional fields are in the variable ``raw``.
+    """
     return "raw" if field.count or field.model.when else f"self.{field_name(field)}{'()' if field.model.view else ''}"
 
 
 def curve_name(field: FieldDescription) -> str:
-    """``TEMPERATURE__CURVE``: no name of a field has two lines in a row."""
+    """Return the name of the constant of a calibration: ``TEMPERATURE__CURVE``. Names of fields have no double underscore."""
     return f"{field.declared_name.upper()}__CURVE"
 
 
 def curve_value(field: FieldDescription) -> str:
-    """The physical value of a field with a curve."""
+    """Return the physical value of a field with a calibration."""
     raw, bits = raw_value(field), field.storage.bits
     if bits == 64 and field.model.type != "float":
         return f"{curve_name(field)}.whole({raw})"
@@ -46,9 +49,9 @@ def curve_value(field: FieldDescription) -> str:
 
 
 def physical(field: FieldDescription) -> str:
-    """The physical value of a field with a scale.
+    """Return the physical value of a field with a scale.
 
-    In doubles where every step is exact in them, else through 128-bit integers of the support module.
+    It is computed in doubles if every step is exact there, else in 128-bit integers by the support module.
     """
     assert field.arithmetic is not None
     if not field.arithmetic.is_exact_in_doubles:
@@ -57,7 +60,7 @@ def physical(field: FieldDescription) -> str:
 
 
 def single(field: FieldDescription) -> str:
-    """The same in single precision."""
+    """Return the physical value of a field with a scale in single precision."""
     assert field.arithmetic is not None
     if not field.arithmetic.is_exact_in_singles:
         return f"{field.declared_name.upper()}.single({raw_value(field)})"
@@ -68,7 +71,7 @@ def _quotient(steps: Steps, raw: str) -> str:
     p, c, q = steps.terms
     value = raw if abs(p) == 1 else f"{raw} * {whole_double(abs(p))}"
     if p < 0:
-        value = f"{whole_double(c)} - {value}"  # so that a zero comes out positive, whatever the signs
+        value = f"{whole_double(c)} - {value}"  # in this order a result of 0 is never -0.0
     elif c:
         value = f"{value} {'+' if c > 0 else '-'} {whole_double(abs(c))}"
     if q == 1:
@@ -77,19 +80,19 @@ def _quotient(steps: Steps, raw: str) -> str:
 
 
 def derived_statements(field: FieldDescription) -> Iterator[str]:
-    """The body of the method of a derived value."""
-    found = derived(field, _TAKEN)
-    for name, one in found.fields:
-        yield assigned(f"let {name} =", _as_double(one), ";", STEP * 2)
-    for name, operator, *both in found.statements:
-        left, right = (one if isinstance(one, str) else double(one) for one in both)
+    """List the lines of the method of a derived value."""
+    computation = derived(field, _TAKEN)
+    for name, operand in computation.fields:
+        yield assigned(f"let {name} =", _as_double(operand), ";", STEP * 2)
+    for name, operator, *operands in computation.statements:
+        left, right = (operand if isinstance(operand, str) else double(operand) for operand in operands)
         value = f"power({left}, {right})" if operator == "^" else f"{left} {operator} {right}"
         yield assigned(f"let {name} =", value, ";", STEP * 2)
-    yield f"{STEP * 2}quiet({found.result})"
+    yield f"{STEP * 2}quiet({computation.result})"
 
 
 def _is_long(field: FieldDescription) -> bool:
-    """Whether it is a whole number that a double may have to round."""
+    """Return whether it is a whole number of 64 bits, which a double may have to round."""
     return not field.is_scaled and field.storage.bits == 64 and field.model.type != "float"
 
 

@@ -1,4 +1,4 @@
-"""The envelope of a node's link as a value of the wire layer."""
+"""Packet formats as values of the wire layer."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _DELIMITERS = {"none": "Packet"}
 
 
 def stream_of(form: Stream) -> Brackets:
-    """The expression of an envelope."""
+    """Return the expression of a packet format."""
     return struct(
         "Stream",
         part("delimited_by", f"link::Delimiter::{_DELIMITERS.get(form.delimited_by) or variant(form.delimited_by)}"),
@@ -42,7 +42,7 @@ def _check(check: Check) -> Brackets:
 
 
 def tabulated(form: Stream | None) -> Brackets | None:
-    """The CRC whose table makes the checksum fast."""
+    """Return the CRC for which the wire layer gets a table; None for any other checksum."""
     check = form and form.check
     return _crc(check) if check and check.kind == CRC else None
 
@@ -51,13 +51,13 @@ def _crc(check: Check) -> Brackets:
     return flat("CrcForm", **{member_name(fact): value_of(fact, check.crc) for fact in facts_of(check.crc)})
 
 
-def _field(one: EnvelopeField) -> Brackets:
-    values = Brackets("[", tuple(Item(mask(value, WORD)) for value in one.values), "]", True)
+def _field(field: EnvelopeField) -> Brackets:
+    values = Brackets("[", tuple(Item(mask(value, WORD)) for value in field.values), "]", True)
     return flat(
-        "EnvelopeField", **{**members(one), "role": f"link::EnvelopeRole::{variant(one.role)}", "values": values}
+        "EnvelopeField", **{**members(field), "role": f"link::EnvelopeRole::{variant(field.role)}", "values": values}
     )
 
 
 def _row(row: StreamRow) -> Brackets:
-    known = {key: value for key, value in members(row).items() if key != "name"}
-    return flat("StreamRow", **{**known, "reply": some(row.reply)})
+    items = {key: value for key, value in members(row).items() if key != "name"}
+    return flat("StreamRow", **{**items, "reply": some(row.reply)})

@@ -1,4 +1,4 @@
-"""Text and numbers -> Rust source: documentation comments, literals, lines."""
+"""Documentation comments, literals and lines of Rust."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _MARKDOWN = re.compile(r"[\\`*\[\]<|~$]|(?<![A-Za-z0-9])_|_(?![A-Za-z0-9])|&(?=[
 
 @lru_cache(maxsize=8192)
 def prose(text: str) -> str:
-    """`plain` text that rustdoc shows as it is: no markup, links or HTML but what stands in backticks, as code."""
+    """Return `plain` text that rustdoc shows unchanged: markup, links and HTML are escaped, text in backticks is code."""
     text = plain(text)
     if text.replace(" ", "").isalnum():
         return text
@@ -27,17 +27,17 @@ def prose(text: str) -> str:
 
 
 def doc(paragraphs: Iterable[str], indent: str = "", mark: str = "///") -> str:
-    """A documentation comment of `prose`, wrapped; every line begins with ``indent``."""
+    """Return a documentation comment of `prose`, wrapped and indented."""
     return "\n".join(commented(paragraphs, WIDTH, f"{indent}{mark} ", is_spaced=True))
 
 
 def code(lines: Iterable[str], indent: str = "", mark: str = "///") -> str:
-    """Lines of a documentation comment that stand as they are, after an empty one."""
+    """Return lines of a documentation comment without wrapping, after an empty line."""
     return "\n".join(f"{indent}{mark} {line}".rstrip() for line in ("", *lines))
 
 
 def described(comment: Comment, indent: str = "") -> str:
-    """The comment of a part."""
+    """Return the documentation comment of a part of the ICD."""
     return doc(map(prose, comment.paragraphs), indent)
 
 
@@ -46,7 +46,7 @@ _ESCAPES = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r"}
 
 @lru_cache(maxsize=8192)
 def string(text: str) -> str:
-    """A string literal in ASCII."""
+    """Return a string literal in ASCII."""
     if text.isascii() and text.isprintable() and '"' not in text and "\\" not in text:
         return f'"{text}"'
     return '"' + "".join(_ESCAPES.get(c) or (c if " " <= c <= "~" else f"\\u{{{ord(c):x}}}") for c in text) + '"'
@@ -54,47 +54,47 @@ def string(text: str) -> str:
 
 @lru_cache(maxsize=4096)
 def integer(value: int) -> str:
-    """``-32_768``"""
+    """Return the literal of an integer: ``-32_768``."""
     return f"{value:_}"
 
 
 @lru_cache(maxsize=4096)
 def mask(value: int, bits: int = 8) -> str:
-    """``0x0f``; ``0x0fff``; ``0x000f_ffff``: a digit for each four of ``bits``."""
+    """Return a hexadecimal literal with a digit for four bits: ``0x0f``, ``0x0fff``, ``0x000f_ffff``."""
     digits = bits // 4
     return f"0x{value:0{digits + (digits - 1) // 4}_x}"
 
 
 def whole_double(value: int) -> str:
-    """A whole number as a literal of a double: ``32_768.0``."""
+    """Return a whole number as the literal of a double: ``32_768.0``."""
     return f"{value:_}.0"
 
 
 @lru_cache(maxsize=4096)
 def double(value: float) -> str:
-    """The shortest literal of a double, digits grouped: ``0.488_281_25``; ``1.0e-9``."""
+    """Return the shortest literal of a double with grouped digits: ``0.488_281_25``, ``1.0e-9``."""
     digits, _, exponent = repr(value).partition("e")
-    whole, _, fraction = digits.partition(".")
-    sign, whole = ("-", whole[1:]) if whole.startswith("-") else ("", whole)
+    integral, _, fraction = digits.partition(".")
+    sign, integral = ("-", integral[1:]) if integral.startswith("-") else ("", integral)
     fraction = fraction or "0"
     if len(fraction) > 3:
         fraction = "_".join(fraction[i : i + 3] for i in range(0, len(fraction), 3))
-    text = f"{sign}{int(whole):_}.{fraction}"
+    text = f"{sign}{int(integral):_}.{fraction}"
     return f"{text}e{int(exponent)}" if exponent else text
 
 
 def assigned(left: str, right: str, end: str, indent: str = STEP) -> str:
-    """``left right end`` on one line where it fits, else the right side on a line of its own."""
+    """Return ``left right end`` on one line if it fits, else with the right side on a line of its own."""
     line = f"{indent}{left} {right}{end}"
     return line if len(line) <= WIDTH else f"{indent}{left}\n{indent}{STEP}{right}{end}"
 
 
 def arm(pattern: str, body: str, indent: str = STEP * 3) -> str:
-    """An arm of a match."""
+    """Return an arm of a match."""
     line = f"{indent}{pattern} => {body},"
     return line if len(line) <= WIDTH else f"{indent}{pattern} => {{\n{indent}{STEP}{body}\n{indent}}}"
 
 
 def signature(start: str, parameters: tuple[str, ...], returns: str) -> str:
-    """The head of a method, up to its opening brace."""
+    """Return the head of a method, up to its opening brace."""
     return STEP + bracketed(f"{start}(", parameters, f") -> {returns} {{", WIDTH, STEP)
