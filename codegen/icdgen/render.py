@@ -72,14 +72,14 @@ class Renderer:
             return self._environment.get_template(template).render(values)
         except TemplateSyntaxError as error:
             where = f"{error.filename or template}:{error.lineno}"
-            raise UserError(f"{where}: {error.message}", "mend the template") from None
+            raise UserError(f"{where}: {error.message}", "correct the template") from None
         except TemplateError as error:
             raise UserError(
-                f"{_where(error, template)}: {error.message or type(error).__name__}", "mend the template"
+                f"{_where(error, template)}: {error.message or type(error).__name__}", "correct the template"
             ) from None
         except Exception as error:  # an expression of a template can raise anything
             raise UserError(
-                f"{_where(error, template)}: {type(error).__name__}: {error}", "mend the template"
+                f"{_where(error, template)}: {type(error).__name__}: {error}", "correct the template"
             ) from error
 
     def runtime_files(self, folder: str = ".") -> list[str]:
@@ -97,7 +97,7 @@ class Renderer:
             except (FileNotFoundError, NotADirectoryError):
                 continue
             except (OSError, UnicodeDecodeError) as error:
-                raise UserError(f"{path}: {error}", "mend the file") from None
+                raise UserError(f"{path}: {error}", "correct the file") from None
         return (self._runtime / file).read_text(encoding="utf-8")
 
 

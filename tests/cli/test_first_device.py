@@ -86,7 +86,7 @@ def test_nothing_that_is_there_is_touched(icdgen, tmp_path):
     icdgen("init", "battery")
     (tmp_path / "icd" / "battery.yaml").write_text("mine\n")
     result = icdgen("init", "battery")
-    assert result.status == 2 and "is there already" in result.err
+    assert result.status == 2 and "already exists" in result.err
     assert (tmp_path / "icd" / "battery.yaml").read_text() == "mine\n"
     assert (tmp_path / "icdgen.toml").read_text() == "# mine\n"
 

@@ -171,7 +171,7 @@ def test_single_files_of_the_runtime_can_be_replaced(icdgen, demo, tmp_path, lan
 def test_a_replaced_file_of_the_runtime_must_be_text(icdgen, demo, tmp_path):
     (tmp_path / "icdgen.h").write_bytes(b"\xff")
     result = icdgen("--lang", "c", "--out", "out", "--templates", ".", demo)
-    assert result.status == 2 and "icdgen.h: 'utf-8' codec" in result.err and "mend the file" in result.err
+    assert result.status == 2 and "icdgen.h: 'utf-8' codec" in result.err and "correct the file" in result.err
     assert not (tmp_path / "out").exists()
 
 

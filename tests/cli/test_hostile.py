@@ -207,5 +207,5 @@ def test_whatever_a_template_does_wrong_is_said(icdgen, demo, tmp_path, text):
     own.mkdir()
     (own / "node.h.j2").write_bytes(text if isinstance(text, bytes) else text.encode())
     result = icdgen("--lang", "c", "--out", "out", "--templates", "mine", demo)
-    assert result.status == 2 and re.search(r"(node|demo)\.h", result.err) and "mend the template" in result.err
+    assert result.status == 2 and re.search(r"(node|demo)\.h", result.err) and "correct the template" in result.err
     assert not (tmp_path / "out").exists()

@@ -62,7 +62,7 @@ def test_a_view_is_not_set_and_follows_what_is():
     assert values.raw(both)["Seen"] == -2
     view = values.icd.longest_frame(both)[-1]
     for wrong in (lambda: fitting(both, view, "1"), lambda: _check_wave("step 1", view, {"wave": "sine"})):
-        with pytest.raises(UserError, match="a view has no bits of its own"):
+        with pytest.raises(UserError, match="an overlay field has no bits of its own"):
             wrong()
 
 

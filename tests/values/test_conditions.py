@@ -37,7 +37,7 @@ def test_only_what_is_there_is_given_and_shown(icd):
     [
         (["type=1"], "no value for `Value`"),
         (["value=1"], "no value for `Type`"),
-        (["type=2", "value=1"], "`Value` is not there: it is only if Type is 1"),
+        (["type=2", "value=1"], "`Value` is absent: it is present only if Type is 1"),
     ],
 )
 def test_what_is_missing_or_not_there_is_said(icd, values, said):

@@ -181,11 +181,11 @@ def test_everything_wrong_is_said_at_once(icd):
 def test_a_remedy_stands_with_what_it_is_good_for(icd):
     error = refusal(encode, icd, "top", "Set Speed", ["x=1", "timeout=61"])
     assert str(error).splitlines() == [
-        "Timeout: takes 0 to 60 s, not 61 (--raw takes it all the same)",
+        "Timeout: takes 0 to 60 s, not 61 (--raw encodes it anyway)",
         "no value for `Commanded Y speed` (give each field as name=value)",
     ]
     alone = refusal(encode, icd, "top", "Set Speed", ["x=1", "y=1", "timeout=61"])
-    assert alone.help == "--raw takes it all the same"
+    assert alone.help == "--raw encodes it anyway"
 
 
 def test_a_message_without_fields_needs_nothing(icd):
@@ -255,7 +255,7 @@ def test_a_view_says_what_the_fields_make_of_its_bits_and_is_not_set(icd):
     assert [(row.field.name, row.text) for row in sent.rows] == [("Low", "90"), ("High", "129"), ("Most", "-1013.5")]
     for raw in (True, False):
         refused = refusal(encode, icd, "top", "Seen Twice", ["low=1", "high=2", "most=3"], raw=raw, kind="telemetry")
-        assert str(refused) == "Most: a view has no bits of its own"
+        assert str(refused) == "Most: an overlay field has no bits of its own"
 
 
 @pytest.mark.parametrize("text", ["12345678901", "\u00b5-blox"])

@@ -52,7 +52,7 @@ def plan(out: Path, language: str, files: Iterable[tuple[PurePosixPath, str | by
             result.files[name] = content if isinstance(content, bytes) else content.encode("utf-8")
         except UnicodeEncodeError as error:
             character = f"U+{ord(error.object[error.start]):04X}, which is no character"
-            raise UserError(f"{name} would hold {character}", "mend the template") from None
+            raise UserError(f"{name} would hold {character}", "correct the template") from None
     written = manifest.read(out, language)
     for name, data in result.files.items():
         current = read(os.path.join(out, name))

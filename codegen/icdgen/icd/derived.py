@@ -167,7 +167,7 @@ class _Trees(Arithmetic[_Tree]):
             return "^", base, exponent.text
         most = MAX_EXPONENT if isinstance(base, Fraction) else MAX_DEGREE
         if not exponent.text.isdigit() or int(exponent.text) > most:
-            raise FormulaError(f"the exponent behind `^` is neither a field nor a whole number up to {most}")
+            raise FormulaError(f"the exponent after `^` is neither a field nor a whole number up to {most}")
         number = -int(exponent.text) if is_negative else int(exponent.text)
         return power_of_number(base, number) if isinstance(base, Fraction) else ("^", base, Fraction(number))
 

@@ -32,4 +32,4 @@ def check_operands(derivation: Derivation, nodes: Iterable[LayoutNode]) -> None:
             name = derivation.fields[step.right]
             if reasons := reasons_against(by_name[name], EXPONENT):
                 wanted = f"an exponent is a `uint` or `int` of up to {EXPONENT.most_bits} bits without a formula"
-                raise FormulaError(f"`{name}` cannot stand behind `^`: it {reasons[0]}, and {wanted}")
+                raise FormulaError(f"`{name}` cannot be an exponent: it {reasons[0]}, and {wanted}")

@@ -31,7 +31,7 @@ def faults(field: Map, byte_order: str, bit_order: str) -> Iterator[Fault]:
         return
     for key in VALUE_KEYS:
         if key in field:
-            message = f"{name} is divided, so its value has no `{key}`: its parts have"
+            message = f"{name} is a split field, so it cannot have `{key}`; its parts can"
             yield Fault.at(field, key, message, "move it to the parts; an erratum removes what is printed")
     if field.get("view"):
         message = f"{name} is a split field, so it cannot be an overlay field"

@@ -145,7 +145,7 @@ class _Polynomials(Arithmetic[_Polynomial]):
     def power(self, base: _Polynomial, exponent: Token, is_negative: bool) -> _Polynomial:
         """Return a power with an integer exponent; only a constant can have a negative exponent."""
         if not exponent.text.isdigit() or int(exponent.text) > MAX_EXPONENT:
-            raise FormulaError(f"the exponent behind `^` is not a whole number up to {MAX_EXPONENT}")
+            raise FormulaError(f"the exponent after `^` is not a whole number up to {MAX_EXPONENT}")
         number = int(exponent.text)
         if len(base) > 1:
             if is_negative:

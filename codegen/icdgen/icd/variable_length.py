@@ -160,7 +160,7 @@ def _reason_against(counter: Map, message: Map) -> str:
     if reasons:
         return reasons[0]
     is_behind = counter["at"] + counter["bits"] > 8 * message["length"]
-    return "is placed behind the `length` of the message" if is_behind else ""
+    return "is placed after the `length` of the message" if is_behind else ""
 
 
 def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Fault]:

@@ -163,7 +163,9 @@ def locate_message(icd: Icd, node: Node, name: str) -> Message:
 def fitting(message: Message, one: FrameField, value: object) -> int | bytes:
     """The raw value of what a user gave. Raises `icdgen.errors.UserError`."""
     if one.role in ("overlay", "derived"):
-        raise UserError(f"{message.name}, {one.name}: a view has no bits of its own", "set the fields that have them")
+        raise UserError(
+            f"{message.name}, {one.name}: an overlay field has no bits of its own", "set the fields that have them"
+        )
     text = "true" if value is True else "false" if value is False else str(value)
     raw = typed(one, text)
     if isinstance(raw, int) and one.type != "float" and not one.raw_min <= raw <= one.raw_max:
@@ -231,7 +233,7 @@ def _step(path: Path, number: int, row: object, icd: Icd, node: Node) -> Step:
 
 def _check_wave(where: str, one: FrameField, wave: Wave) -> None:
     if one.role in ("overlay", "derived"):
-        raise UserError(f"{where}: a view has no bits of its own", "let the fields move that have them")
+        raise UserError(f"{where}: an overlay field has no bits of its own", "let the fields move that have them")
     numbers = [wave.get(key, 1) for key in ("min", "max", "period")]
     if set(wave) - {"wave", "min", "max", "period"} or wave.get("wave", "sine") not in WAVES or one.is_bytes:
         raise UserError(f"{where}: there is no such wave", f"{{wave: {'|'.join(WAVES)}, min: -1, max: 1, period: 60}}")

@@ -55,7 +55,7 @@ def write(folder: Path, name: str, style: Style | None = None, origin: str = "")
     }
     for path in files:
         if os.path.lexists(path):
-            raise UserError(f"{path.relative_to(folder)} is there already", "take another name, or move the file away")
+            raise UserError(f"{path.relative_to(folder)} already exists", "take another name, or move the file away")
     if not os.path.lexists(folder / config.NAME):
         files[folder / config.NAME] = _CONFIG.format(name=name, package=_package(name))
     if not os.path.lexists(folder / "icd" / schema.COPY):

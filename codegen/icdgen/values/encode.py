@@ -82,7 +82,7 @@ def _check_presence(
     for field in fields:
         if field.name in given and not codec.is_present(field, values):
             needs = " and ".join(condition_text(condition, message) for condition in field.conditions)
-            raise BadValue(f"`{field.name}` is not there: it is only if {needs}", f"leave `{field.name}` out")
+            raise BadValue(f"`{field.name}` is absent: it is present only if {needs}", f"leave `{field.name}` out")
 
 
 class _Errors:
@@ -250,7 +250,7 @@ def _check(field: FrameField, value: int, text: str, raw: bool) -> None:
         return
     if is_in_range and codec.special_of(field, value):
         return
-    help = "--raw takes it all the same" if is_in_range else ""
+    help = "--raw encodes it anyway" if is_in_range else ""
     if reasons := unlisted(field, value):
         raise BadValue(f"{text} is not allowed: {'; '.join(reasons)}{members(field)}", help)
     if not is_in_range or outside(field, value):

@@ -74,7 +74,7 @@ def _settable(field: FrameField) -> None:
         of = ", ".join(f"`{name}`" for name in field.derived.fields)
         raise BadValue(f"it is derived from {of or 'numbers'}", "set the fields that it is derived from")
     if field.role == "overlay":
-        raise BadValue("a view has no bits of its own", "set the fields that have them")
+        raise BadValue("an overlay field has no bits of its own", "set the fields that have them")
 
 
 def _bool(field: FrameField, text: str) -> int:

@@ -66,6 +66,6 @@ def optional_fields_are_supported(ctx: Context) -> Iterator[Fault]:
         for part in mappings(message.source.get("contains")):
             name = part.get("message")
             if isinstance(name, str) and (name in names or id(message.source) in optional):
-                absent = f"fields of {quote(name if name in names else message.name)} are not always there"
+                absent = f"{quote(name if name in names else message.name)} has optional fields"
                 text = f"{absent}, so {quote(message.name)} cannot repeat {quote(name)}"
                 yield Fault(message.source, part.at("message"), text, "remove it from `contains`")

@@ -116,7 +116,7 @@ def _missing(ctx: Context, link: Link) -> Iterator[Fault]:
             message = "no field has the role `length`, which delimits messages"
             yield Fault.at(link.section, "delimited_by", message, help)
         elif any(part == "trailer" for part, row in link.rows if row["role"] == "length"):
-            message = "the length that delimits messages is behind their data"
+            message = "the length that delimits messages is after their data"
             yield Fault.at(lengths[0], "role", message, "move it to `header`")
     for direction in DIRECTIONS:
         if len({id for id, _ in _ids(ctx, link.node, direction)}) > 1 and not link.of("id"):
@@ -297,7 +297,7 @@ def _covered(link: Link, part: str, row: Map, checksum: Map) -> Iterator[Fault]:
     inside = part == "header" and begin is not None and row["at"] + row["bits"] > begin // 8 * 8
     if inside or (part == "trailer" and row["at"] // 8 < -(-end // 8)):
         message = "the checksum covers itself"
-        help = "correct `covers`, so that it ends before the checksum or begins behind it"
+        help = "correct `covers`, so that it ends before the checksum or begins after it"
         yield Fault.at(covers, "from" if inside else "to", message, help)
 
 

@@ -38,7 +38,7 @@ def formulas_are_valid(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD061")
 def only_numbers_have_formulas(ctx: Context) -> Iterator[Fault]:
-    for key, what in (("formula", "formula"), ("points", "table of points")):
+    for key, what in (("formula", "formula"), ("points", "lookup table")):
         for field, _ in ctx.fields_with[key]:
             if field.type not in SCALED:
                 message = f"{quote(field.name)} is `{field.type}`, which takes no {what}"
@@ -50,7 +50,7 @@ def points_form_a_table(ctx: Context) -> Iterator[Fault]:
     for field, _ in ctx.fields_with["points"]:
         source = field.source
         if "formula" in source:
-            message = f"{quote(field.name)} has a formula and a table of points"
+            message = f"{quote(field.name)} has a formula and a lookup table"
             yield Fault.at(source, "points", message, "remove one of them")
         elif field.type in SCALED and field.curve is None:
             try:

@@ -88,7 +88,9 @@ def named_fields_exist(ctx: Context) -> Iterator[Fault]:
             fields = scalars_in(message.layout)
             names = {field.name for field in fields if not field.view}
             if any(field.name == owner[key] and field.view for field in fields):
-                text = f"{quote(owner[key])} of {quote(message.name)} is a view, and links read what has bits"
+                text = (
+                    f"{quote(owner[key])} of {quote(message.name)} is an overlay field, but links read fields with bits"
+                )
                 yield Fault.at(owner, key, text, "name the field that has the bits")
             elif owner[key] not in names:
                 text = f"{quote(message.name)} has no field {quote(owner[key])}"

@@ -88,7 +88,7 @@ def _packets_left(can: Map, extended: Map) -> Iterator[Fault]:
     data, left, room = extended.get("data_bytes"), extended.get("packets_left_byte"), can.get("max_data_bytes")
     if isinstance(data, int) and isinstance(left, int) and left < data:
         message = f"byte {left} counts packets, but the data take bytes 0 to {data - 1}"
-        yield Fault.at(extended, "packets_left_byte", message, f"correct it; behind the data the index is {data}")
+        yield Fault.at(extended, "packets_left_byte", message, f"correct it: the first byte after the data is {data}")
     elif isinstance(left, int) and isinstance(room, int) and left >= room:
         message = f"byte {left} is outside a packet of {room} bytes"
         yield Fault.at(extended, "packets_left_byte", message, "correct it or `max_data_bytes`")

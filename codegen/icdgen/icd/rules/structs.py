@@ -93,8 +93,8 @@ def uses_have_no_keys_of_fields(ctx: Context) -> Iterator[Fault]:
                 yield Fault.at(row, variable_length.count_key(row), message, "move it to the end of the message")
         for field in struct.layout.nodes:
             if is_overlay(field):
-                message = f"{quote(field.name)} is a view, and a struct has none: there is no frame that it would read"
-                yield Fault.at(field.source, "view", message, "write the view in the message")
+                message = f"{quote(field.name)} is an overlay field, which is not supported in a struct"
+                yield Fault.at(field.source, "view", message, "write the overlay field in the message")
 
 
 @rule("ICD049")
@@ -139,7 +139,7 @@ def split_fields_have_the_same_orders(ctx: Context) -> Iterator[Fault]:
                 continue
             if "byte_order" not in split or "bit_order" not in split:
                 line_of_split = line_of(split.at("bitfields"), node.source.place)
-                bits = f"the bits of {quote(split['name'])} ({line_of_split}), which is divided, would lie elsewhere"
+                bits = f"the bits of the split field {quote(split['name'])} ({line_of_split}) would be in other places"
                 message = f"{quote(node.name)} has other orders than `{home.name}`, so {bits}"
                 help = f"give {quote(split['name'])} a `byte_order` and a `bit_order`, or make its parts fields"
                 yield Fault.at(node.source, "struct", message, help)

@@ -48,7 +48,7 @@ def variable_parts_are_at_the_end(ctx: Context) -> Iterator[Fault]:
                 f"{quote(item['name'])} follows {quote(first['name'])}, whose length varies, so it has no fixed place"
             )
             help = (
-                f"place it in front of {quote(first['name'])}: fields of fixed size behind it are not supported, "
+                f"place it in front of {quote(first['name'])}: fields of fixed size after it are not supported, "
                 "but a checksum at the end of a frame can be part of the link (`protocol`)"
             )
             related = Related(first.at("name"), "the variable-length field")
