@@ -1,4 +1,4 @@
-"""C99: headers of messages, nodes, enumerations and support, and the sources of the wire layer and of links."""
+"""C backend: C99 headers of messages, nodes and enumerations, the support header, the wire layer, and links."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from icdgen.backends import Identifier
 from icdgen.backends.c import accessors, bits, conditional, constants, decoding, encoding, members, names, parts, types
 from icdgen.backends.c.declared_names import declared_names
 from icdgen.backends.c.decoding import THRESHOLDS, Groups, Structs
-from icdgen.backends.c.runtime import whole
+from icdgen.backends.c.runtime import assembled
 from icdgen.backends.c.short_names import with_short_names
 from icdgen.backends.c.statement import call, head, like
 from icdgen.backends.c.text import FILE, comment, described, literal, noted, prose
@@ -38,7 +38,7 @@ _FUNCTIONS = {function.__name__: function for function in _SPELLING}
 
 
 class CBackend:
-    """``--lang c``"""
+    """Backend of ``icdgen --lang c``."""
 
     name = "c"
     reserved = names.RESERVED
@@ -47,24 +47,24 @@ class CBackend:
         self.packages = Packages()
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
-        """Every file, the support header first, then node by node."""
+        """List all files: the support header, the wire layer, then the files of each node."""
         prefixed = with_prefix(icd, self.packages.c_prefix)
         yield from with_short_names(self._files(prefixed, render), lambda: self.identifiers(prefixed))
 
     def _files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
-        from icdgen.describe.links import links_of  # the rules about names need none of it
+        from icdgen.describe.links import links_of  # imported late: rules on names do not need it
 
         first = f"/* {origin()} */\n"
-        yield PurePosixPath("icdgen.h"), first + whole("icdgen.h", render)
+        yield PurePosixPath("icdgen.h"), first + assembled("icdgen.h", render)
         description = describe(icd)
-        if any(one.has_wide_steps for node in description.nodes for one in node.composites):
-            yield PurePosixPath("icdgen_wide.h"), first + whole("icdgen_wide.h", render)
+        if any(composite.has_wide_steps for node in description.nodes for composite in node.composites):
+            yield PurePosixPath("icdgen_wide.h"), first + assembled("icdgen_wide.h", render)
         links = links_of(description)
         if links:
             step_bytes = max(1, *(link.longest_step for link in links.values()))
             sizes = {"wire/sizes.h": render("sizes.h.j2", step_bytes=step_bytes)}
-            yield PurePosixPath("icdgen_wire.h"), first + whole("icdgen_wire.h", render, sizes)
-            yield PurePosixPath("icdgen_wire.c"), first + whole("icdgen_wire.c", render)
+            yield PurePosixPath("icdgen_wire.h"), first + assembled("icdgen_wire.h", render, sizes)
+            yield PurePosixPath("icdgen_wire.c"), first + assembled("icdgen_wire.c", render)
         for node in description.nodes:
             folder = PurePosixPath(node.name)
             shared = {"origin": origin(node.model), "title": prose(words(node.model.title)), **_FUNCTIONS}
@@ -86,75 +86,78 @@ class CBackend:
             yield PurePosixPath(f"{node.name}.h"), render("node.h.j2", node=node, **of_node, **shared)
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
-        """Every name that the headers declare."""
+        """List every name that the headers declare."""
         return declared_names(describe(icd))
 
 
-def _composite(one: Composite[Any], more: Iterable[str] = ()) -> dict[str, object]:
-    """What is said of a struct, and of a message, which needs ``more`` headers."""
-    folders = sorted({enum.node.name for enum in one.enums})
-    used = [(folder, "enums") for folder in folders] + [(struct.node.name, struct.name) for struct in one.structs]
-    headers = (f"{name}.h" if folder == one.node.name else f"../{folder}/{name}.h" for folder, name in used)
-    about = one.comment
+def _composite(composite: Composite[Any], more_headers: Iterable[str] = ()) -> dict[str, object]:
+    """Return the values for a struct, and for a message, which includes ``more_headers``."""
+    folders = sorted({enum.node.name for enum in composite.enums})
+    used = [(folder, "enums") for folder in folders] + [(struct.node.name, struct.name) for struct in composite.structs]
+    headers = (f"{name}.h" if folder == composite.node.name else f"../{folder}/{name}.h" for folder, name in used)
+    about = composite.comment
     return {
         "about": comment([FILE, about.head, *about.details, *noted(about)]),
-        "includes": ["../icdgen_wide.h" if one.has_wide_steps else "../icdgen.h", *dict.fromkeys((*headers, *more))],
-        "constants": constants.of_fields(one),
-        "initial": members.initial(one),
+        "includes": [
+            "../icdgen_wide.h" if composite.has_wide_steps else "../icdgen.h",
+            *dict.fromkeys((*headers, *more_headers)),
+        ],
+        "constants": constants.of_fields(composite),
+        "initial": members.initial(composite),
         "declaration": types.declaration,
-        "integer_accessors": accessors.integer_accessors(one),
-        "accessors": accessors.accessors(one),
-        "known": constants.table(one),
+        "integer_accessors": accessors.integer_accessors(composite),
+        "accessors": accessors.accessors(composite),
+        "known": constants.table(composite),
     }
 
 
 def _message(message: MessageDescription) -> dict[str, object]:
     fields = [
         *groups(message, THRESHOLDS),
-        *_arrays(message, (one for one in struct_arrays_in(message) if not one.field.is_in_last_part)),
+        *_arrays(message, (array for array in struct_arrays_in(message) if not array.field.is_in_last_part)),
     ]
     return {
         **_composite(message, parts.headers(message)),
         "empty": decoding.EMPTY,
         "decode": decoding.statements(message, fields),
-        "repeated": [_repeated(message, one) for one in all_struct_arrays(message)],
+        "repeated": [_repeated(message, array) for array in all_struct_arrays(message)],
         "element": None,
         "earlier": [],
         "miscount": "",
-        "misfits": members.misfits(message, is_open=False),
-        "misfits_of_end": members.misfits(message, is_open=True),
+        "misfits": members.misfits(message, is_last_part=False),
+        "misfits_of_end": members.misfits(message, is_last_part=True),
         "excess": members.excess(message),
         "excess_type": bits.excess_type(message),
         "encode": encoding.statements(message, fields),
         "conditional": conditional.conditional(message),
         **(_of_variable_length(message, message.last_part) if message.last_part else {}),
-        "views": [accessors.view(field) for field in message.overlays],
+        "overlays": [accessors.overlay(field) for field in message.overlays],
         "parts": parts.parts(message),
     }
 
 
 def _arrays(message: MessageDescription, arrays: Iterable[StructArray]) -> Groups:
-    return [Structs(one, names.reading(message, one.name), names.writing(message, one.name)) for one in arrays]
+    return [Structs(array, names.reading(message, array.name), names.writing(message, array.name)) for array in arrays]
 
 
-def _repeated(message: MessageDescription, one: StructArray) -> dict[str, object]:
-    """The functions that read and write an element of an array of structs."""
+def _repeated(message: MessageDescription, array: StructArray) -> dict[str, object]:
+    """Return the functions that read and write an element of an array of structs."""
     fields = [
-        *groups(one.element_struct, THRESHOLDS),
-        *_arrays(message, struct_arrays_in(one.element_struct, f"{one.name}_")),
+        *groups(array.element_struct, THRESHOLDS),
+        *_arrays(message, struct_arrays_in(array.element_struct, f"{array.name}_")),
     ]
     return {
-        "field": one.field,
-        "type": f"{names.stem(one.element_struct)}_t",
-        "reading": names.reading(message, one.name),
-        "writing": names.writing(message, one.name),
-        "read": decoding.statements(one.element_struct, fields),
-        "write": encoding.statements(one.element_struct, fields),
+        "field": array.field,
+        "type": f"{names.stem(array.element_struct)}_t",
+        "reading": names.reading(message, array.name),
+        "writing": names.writing(message, array.name),
+        "read": decoding.statements(array.element_struct, fields),
+        "write": encoding.statements(array.element_struct, fields),
     }
 
 
 def _of_variable_length(message: MessageDescription, last: VariablePartDescription) -> dict[str, object]:
-    """What the code of frames that differ in length needs."""
+    """Return the values for messages whose frames differ in length."""
     of_element = None
     if last.element_struct is not None:
         reading, writing = names.reading(message, last.field.name), names.writing(message, last.field.name)
@@ -173,7 +176,7 @@ def _of_variable_length(message: MessageDescription, last: VariablePartDescripti
         }
     return {
         "element": of_element,
-        "earlier": decoding.of_inner(message),
+        "earlier": decoding.of_earlier_parts(message),
         "size": encoding.size(message),
         "misfit_length": decoding.misfit_length(
             last, names.constant(message, "length"), last.model.begin if message.earlier_parts else 0
@@ -197,23 +200,26 @@ def _link(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
 
 
 def _client(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
-    headers = sorted({*(f"../{name}.h" for name in node.model.includes), *(f"{one.name}.h" for one in node.messages)})
+    headers = sorted(
+        {*(f"../{name}.h" for name in node.model.includes), *(f"{message.name}.h" for message in node.messages)}
+    )
     common = {
         "node": node.name,
         "about": comment([FILE, f"{words(node.model.title)}: a client that takes its messages only."]),
         "includes": ["link.h", *headers],
-        "telecommands": [(one, one.telecommand_id_name) for one in node.telecommands],
+        "telecommands": [(message, message.telecommand_id_name) for message in node.telecommands],
     }
     form = link.facts.stream
     if form is None:
-        known = {"uart": link.facts.framing, "i2c": link.facts.i2c_address, "can": link.can}
-        buses = [bus for bus, one in known.items() if one is not None]
-        return {**common, "buses": buses, "telemetry": [(one, one.telemetry_id_name) for one in node.telemetry]}
-    asked = {row.reply for row in form.telecommands if row.least == 0}
+        facts = {"uart": link.facts.framing, "i2c": link.facts.i2c_address, "can": link.can}
+        buses = [bus for bus, fact in facts.items() if fact is not None]
+        telemetry_ids = [(message, message.telemetry_id_name) for message in node.telemetry]
+        return {**common, "buses": buses, "telemetry": telemetry_ids}
+    replies = {row.reply for row in form.telecommands if row.least == 0}
     telemetry = [
-        (under.id in asked, one, under.tested[: place + 1])
+        (under.id in replies, candidate, under.tested[: place + 1])
         for under in node.ids("telemetry")
-        for place, one in enumerate(under.messages)
+        for place, candidate in enumerate(under.messages)
     ]
     return {**common, "sequences": form.sequences, "telemetry": telemetry}
 
@@ -221,7 +227,7 @@ def _client(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
 def _node(node: NodeDescription) -> dict[str, object]:
     headers = [f"{name}.h" for name in node.model.includes]
     headers += [f"{node.name}/enums.h"] if node.enums else []
-    headers += [f"{node.name}/{one.name}.h" for one in node.composites]
+    headers += [f"{node.name}/{composite.name}.h" for composite in node.composites]
     headers += [f"{node.name}/link.h", f"{node.name}/client.h"] if node.is_linked else []
     return {
         "about": comment([FILE, f"{words(node.model.title)}: all messages.", sentence(node.model.summary)]),

@@ -1,4 +1,4 @@
-"""Accessors of physical values."""
+"""Accessors of physical values, overlay fields and derived values."""
 
 from __future__ import annotations
 
@@ -16,41 +16,41 @@ from icdgen.describe.derived import derived
 from icdgen.describe.description import Composite
 
 ELEMENT = "element"
-"""Name of the parameter for the index of an array element."""
+"""Parameter for the index of an element of an array."""
 
 
 class Accessor(NamedTuple):
-    """A getter and a setter of a physical value; ``test`` holds for values that the setter refuses by itself.
+    """Getter and setter of a physical value. ``test`` is the condition for values that the setter refuses by itself.
 
-    Of a view there is no setter, nor where a formula does not lead back, and ``assignment`` is empty.
+    Without a setter, for overlay fields and calibrations without an inverse, ``assignment`` is empty.
     """
 
-    end: str  # of the names
+    end: str  # end of the names
     type: str
     about: str
-    what: str  # what the setter sets
+    what: str  # title of the value
     expression: str
     assignment: str
     test: str = ""
-    declared: tuple[str, ...] = ()  # lines before both
-    elements: int = 0  # of an array: both take which of so many is meant
+    declared: tuple[str, ...] = ()  # lines at the start of both functions
+    elements: int = 0  # of an array: both functions have the index as a parameter
 
 
 def accessors(message: Composite[Any]) -> list[Accessor]:
-    """In double precision."""
+    """Return the accessors in double precision."""
     scaled = [_double(field) for field in message.declared_members if field.is_scaled]
     return [*scaled, *map(_derived, message.derived)]
 
 
 def _derived(field: FieldDescription) -> Accessor:
-    found = derived(field, taken=RESERVED | {"message"})
-    lines = [_constant(f"const double {name}", _as_double(one)) for name, one in found.fields]
-    for name, operator, *both in found.statements:
-        left, right = (one if isinstance(one, str) else repr(one) for one in both)
+    computation = derived(field, taken=RESERVED | {"message"})
+    lines = [_constant(f"const double {name}", _as_double(operand)) for name, operand in computation.fields]
+    for name, operator, *operands in computation.statements:
+        left, right = (operand if isinstance(operand, str) else repr(operand) for operand in operands)
         value = f"icdgen_power({left}, {right})" if operator == "^" else f"{left} {operator} {right}"
         lines.append(_constant(f"const volatile double {name}", value))
     about = " ".join(field.comment.paragraphs)
-    return Accessor(field.name, "double", about, "", f"icdgen_quiet({found.result})", "", declared=tuple(lines))
+    return Accessor(field.name, "double", about, "", f"icdgen_quiet({computation.result})", "", declared=tuple(lines))
 
 
 def _constant(head: str, value: str) -> str:
@@ -59,42 +59,42 @@ def _constant(head: str, value: str) -> str:
 
 
 def _as_double(field: FieldDescription) -> str:
-    """The physical value of a field of ``message``, of one without a formula the raw one."""
+    """Return the physical value of a field of ``message`` as a double; the raw value without a scale."""
     if field.is_scaled:
         return f"{stem(field.message)}_{field.physical_name}(message)"
     raw = f"{stem(field.message)}_{field.name}(message)" if field.model.view else _member(field)
     return raw if field.model.type == "float" and field.model.bits == 64 else f"ICDGEN_CAST(double, {raw})"
 
 
-_MADE = "Read from the frame that the message makes: 0 if it makes none, as a raw value does not fit its field."
+_FROM_FRAME = "Read from the frame that the message makes: 0 if it makes none, as a raw value does not fit its field."
 
 
-def view(field: FieldDescription) -> dict[str, str]:
-    """The getter of a view; its ``statement`` gives ``value`` its value, from ``buffer``."""
+def overlay(field: FieldDescription) -> dict[str, str]:
+    """Return the getter of an overlay field. Its ``statement`` reads ``value`` from ``buffer``."""
     about = field.comment._replace(
-        details=(*field.comment.details, _MADE) if field.message.is_narrow else field.comment.details
+        details=(*field.comment.details, _FROM_FRAME) if field.message.is_narrow else field.comment.details
     )
     statement = decoding.number(field, "value")
     return {"name": field.name, "type": type_of(field), "about": described(about), "statement": statement}
 
 
 def _double(field: FieldDescription) -> Accessor:
-    found = physical.scaled(field)
-    function, *arguments = found.setter
+    scaled = physical.scaled(field)
+    function, *arguments = scaled.setter
     return Accessor(
         end=field.physical_name,
         type="double",
         about=physical_comment(field.model),
         what=physical_name(field.model),
-        expression=found.getter.format(raw=_raw(field)),
+        expression=scaled.getter.format(raw=_raw(field)),
         assignment="" if not field.is_settable else call(f"return {function}", (f"&{_member(field)}", *arguments)),
-        declared=found.declared,
+        declared=scaled.declared,
         elements=field.count,
     )
 
 
 def _raw(field: FieldDescription) -> str:
-    """The raw value of a field of ``message``."""
+    """Return the raw value of a field of ``message``."""
     return f"{stem(field.message)}_{field.name}(message)" if field.model.view else _member(field)
 
 
@@ -103,9 +103,10 @@ def _member(field: FieldDescription) -> str:
 
 
 def integer_accessors(message: Composite[Any]) -> list[Accessor]:
-    """In whole thousandths or millionths of the unit."""
-    found = ((field, physical.scaled(field).integers) for field in message.declared_members if field.steps is not None)
-    return [_integer_accessor(field, integers) for field, integers in found if integers is not None]
+    """Return the accessors in whole thousandths or millionths of the unit."""
+    scaled = [field for field in message.declared_members if field.steps is not None]
+    candidates = ((field, physical.scaled(field).integers) for field in scaled)
+    return [_integer_accessor(field, integers) for field, integers in candidates if integers is not None]
 
 
 def _integer_accessor(field: FieldDescription, integers: physical.IntegerAccessors) -> Accessor:

@@ -1,4 +1,4 @@
-"""Expressions that read a field from the bytes of a frame, and that put it there."""
+"""Expressions that read a field from the bytes of a frame, and that write it there."""
 
 from __future__ import annotations
 
@@ -10,24 +10,25 @@ from icdgen.backends.c.types import cast, mask
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.layout import Piece
 
-BITS = "{bits}"  # stands for the bits of the field in the expressions made here
+BITS = "{bits}"
+"""Placeholder of the bits of the field in expressions."""
 
 
 class Read(NamedTuple):
-    """The bits of a field, as terms to be or-ed together, and how the raw value is made of them."""
+    """Expression that reads a field: terms to combine by ``|``, and the raw value over the result."""
 
-    bits: int  # 32 or 64: the type in which they are joined
+    bits: int  # 32 or 64: width in which the terms are combined
     terms: tuple[str, ...]
-    value: str  # over ``{bits}``
+    value: str  # expression over ``{bits}``
 
     @property
     def whole(self) -> str:
-        """The raw value in one expression."""
+        """Raw value in one expression."""
         return self.value.format(bits=joined(self.terms))
 
 
 def read(field: FieldDescription, frame: str = "buffer") -> Read:
-    """The raw value of an integer, enum or bool field (the bits of a float) over the bytes that ``frame`` points to."""
+    """Return the expression of the raw value, for a float its bits, over the bytes at ``frame``."""
     bits = field.model.bits
     if field.is_word:
         return Read(32, (_load(field, frame),), f"icdgen_i{bits}({BITS})" if field.storage.signed else BITS)
@@ -62,20 +63,20 @@ def _byte(piece: Piece, frame: str) -> str:
 
 
 def _low_bits(piece: Piece, frame: str) -> str:
-    """The run of bits, moved down to bit 0."""
+    """Return a run of bits, shifted down to bit 0."""
     if piece.shift == 0:
         return _byte(piece, frame) if piece.is_byte else f"{_byte(piece, frame)} & {mask(piece.mask, 8)}"
     return f"({_byte(piece, frame)} >> {piece.shift}) & {mask(piece.low_mask, 8)}"
 
 
 def _shifted(piece: Piece, wide: int, frame: str) -> str:
-    """The run of bits, moved to its place in the value."""
+    """Return a run of bits, shifted to its place in the value."""
     low = cast(_low_bits(piece, frame), wide)
     return f"{low} << {piece.at}" if piece.at else low
 
 
 def put(field: FieldDescription, piece: Piece) -> str:
-    """What the field contributes to the byte of ``piece``: an `int`; what goes beyond the byte is cut off by the caller."""
+    """Return the term of a field for the byte of ``piece``, an `int`. The caller removes bits beyond the byte."""
     storage, value = field.storage, _raw(field)
     if piece.at:
         value = f"{cast(value, storage.bits) if storage.signed else value} >> {piece.at}"
@@ -88,7 +89,7 @@ def put(field: FieldDescription, piece: Piece) -> str:
 
 
 def store(field: FieldDescription, frame: str = "buffer") -> str:
-    """The statement that stores a field that is a word in the bytes that ``frame`` points to."""
+    """Return the statement that stores a word in the bytes at ``frame``."""
     byte, bits, value = field.model.at // 8, field.model.bits, _raw(field)
     if field.storage.signed or field.storage.bits > bits:
         value = cast(value, bits)
@@ -98,24 +99,27 @@ def store(field: FieldDescription, frame: str = "buffer") -> str:
 
 
 def _raw(field: FieldDescription) -> str:
-    """The raw value, or the bits of a float."""
+    """Return the raw value; for a float its bits."""
     member = f"message->{field.member}"
     return f"icdgen_bits_f{field.model.bits}(&{member})" if field.model.type == "float" else member
 
 
 def excess(field: FieldDescription, member: str) -> str:
-    """An expression that is 0 if and only if the raw value of a narrow field, which is in ``member``, fits."""
-    storage, one = field.storage, field.model
+    """Return an expression that is 0 if and only if the raw value in ``member`` fits its field."""
+    storage, place = field.storage, field.model
     wide = 64 if storage.bits == 64 else 32
     if storage.signed:
-        beyond = ((1 << wide) - 1) ^ ((1 << one.bits) - 1)
-        found = f"({cast(f'message->{member}', wide)} + {mask(1 << (one.bits - 1), wide)}) & {mask(beyond, wide)}"
+        # The sum maps the valid values to 0 .. 2**bits - 1, so that one mask tests both ends.
+        beyond = ((1 << wide) - 1) ^ ((1 << place.bits) - 1)
+        excess_bits = (
+            f"({cast(f'message->{member}', wide)} + {mask(1 << (place.bits - 1), wide)}) & {mask(beyond, wide)}"
+        )
     else:
-        beyond = ((1 << storage.bits) - 1) ^ one.raw_max
-        found = f"message->{member} & {mask(beyond, storage.bits)}"
-    return f"{has(field)}(message) ? ({found}) : 0u" if one.when else found
+        beyond = ((1 << storage.bits) - 1) ^ place.raw_max
+        excess_bits = f"message->{member} & {mask(beyond, storage.bits)}"
+    return f"{has(field)}(message) ? ({excess_bits}) : 0u" if place.when else excess_bits
 
 
 def excess_type(message: MessageDescription) -> str:
-    """The type that holds what does not fit of any field."""
+    """Return the type for the bits that do not fit, of any field."""
     return "uint64_t" if message.range_check_bits == 64 else "uint32_t"

@@ -1,4 +1,4 @@
-"""Fields that are not always there: the function that tells, and what it decides."""
+"""Optional fields: the function that returns whether a field is present, and the code that depends on it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from icdgen.describe.description import Need
 
 
 def conditional(message: MessageDescription) -> list[dict[str, object]]:
-    """Those of a message: what each is where it isn't there, and what is done where it is."""
+    """Return the values for the template per optional field: the value if it is absent, and the code if it is present."""
     return [
         {
             "name": has(field),
@@ -27,14 +27,14 @@ def conditional(message: MessageDescription) -> list[dict[str, object]]:
 
 
 def _absent(field: FieldDescription) -> str:
-    """What it has where it is not there: the only valid value, which is right once it is there; else 0."""
+    """Return the value of an absent field: its constant, so that the message is valid once the field is present; else 0."""
     if field.model.const is not None:
         return constants.only(field)
     return {"bool": "false", "float": "0"}.get(field.model.type, "0" if field.storage.signed else "0u")
 
 
 def _test(need: Need) -> str:
-    """Whether a member has one of the values."""
+    """Return the test whether a field has one of the values."""
     field, member = need.field, f"message->{need.field.name}"
     if field.model.type == "bool":
         tests = [member if value else f"!{member}" for value in need.values]
@@ -44,16 +44,16 @@ def _test(need: Need) -> str:
 
 
 def _literal(field: FieldDescription, value: int) -> str:
-    one = field.enum.member(value) if field.enum is not None else None
-    if field.enum is not None and one is not None:
-        return enumerator(field.enum, one)
+    member = field.enum.member(value) if field.enum is not None else None
+    if field.enum is not None and member is not None:
+        return enumerator(field.enum, member)
     if field.storage.signed:
         return f"({value})" if value < 0 else str(value)
     return f"{value}u" if value < 1 << 16 else mask(value, field.storage.bits)
 
 
 def _written(field: FieldDescription) -> list[str]:
-    """Statements that put it into bytes that hold none of its bits yet."""
+    """Return the statements that write a field into a frame in which its bits are 0."""
     if field.is_word:
         return [bits.store(field)]
     return [

@@ -1,7 +1,4 @@
-"""Values of macros and enumerators: the only valid raw values, raw values with a meaning of their own, limits.
-
-And what is said of fields as data: rows of tables.
-"""
+"""Values of macros and enumerators, and fields as rows of tables."""
 
 from __future__ import annotations
 
@@ -20,62 +17,62 @@ from icdgen.icd import floats
 from icdgen.icd.model import Member
 
 _MAX_ENUMERATOR = 32767
-"""Range of `int` that C guarantees."""
+"""Largest `int` that C guarantees."""
 
 
 def of_fields(message: Composite[Any]) -> list[tuple[Constant, str]]:
-    """The constants of a message's fields, and their values."""
-    return [(one, _value(one, field)) for field in message.declared_members for one in field.constants]
+    """Return the constants of the fields of a message, and their values."""
+    return [(constant, _value(constant, field)) for field in message.declared_members for constant in field.constants]
 
 
-def _value(one: Constant, field: FieldDescription) -> str:
-    if one.number:
-        return _float(one, field.model.bits)
-    if isinstance(one.value, int) and one.key in ("const", "special") and not field.storage.signed:
-        return mask(one.value, field.storage.bits)
-    if one.is_raw and field.storage.signed and one.value == -(1 << field.storage.bits - 1):
-        return f"INT{field.storage.bits}_MIN"  # of 64 bits it cannot be written: what `-` stands before is too large
-    text = exact_text(one.value)
-    if one.is_raw and one.value >= 1 << 63 and text.isdigit():
-        return f"UINT64_C({text})"  # without it, what no signed type holds draws a warning
-    if not one.is_raw and text.lstrip("-").isdigit():
+def _value(constant: Constant, field: FieldDescription) -> str:
+    if constant.number:
+        return _float(constant, field.model.bits)
+    if isinstance(constant.value, int) and constant.key in ("const", "special") and not field.storage.signed:
+        return mask(constant.value, field.storage.bits)
+    if constant.is_raw and field.storage.signed and constant.value == -(1 << field.storage.bits - 1):
+        return f"INT{field.storage.bits}_MIN"  # `-9223372036854775808` is no literal: the operand of `-` is too large
+    text = exact_text(constant.value)
+    if constant.is_raw and constant.value >= 1 << 63 and text.isdigit():
+        return f"UINT64_C({text})"  # compilers warn about plain literals that no signed type can store
+    if not constant.is_raw and text.lstrip("-").isdigit():
         text += ".0"  # a physical value is a double
-    return f"({text})" if one.value < 0 and one.key not in ("const", "special") else text
+    return f"({text})" if constant.value < 0 and constant.key not in ("const", "special") else text
 
 
-def _float(one: Constant, bits: int) -> str:
-    """A special value of a float; what is no number by its bits, for not every target has a name for it."""
-    assert isinstance(one.value, int)
-    if one.number in floats.NAMED:
-        return f"icd_f{bits}_of({mask(one.value, bits)})"
-    text = f"{one.number}{'f' if bits == 32 else ''}"
+def _float(constant: Constant, bits: int) -> str:
+    """Return a special value of a float; NaN and infinity by their bits, as some targets have no names for them."""
+    assert isinstance(constant.value, int)
+    if constant.number in floats.NAMED:
+        return f"icd_f{bits}_of({mask(constant.value, bits)})"
+    text = f"{constant.number}{'f' if bits == 32 else ''}"
     return f"({text})" if text.startswith("-") else text
 
 
 def only(field: FieldDescription) -> str:
-    """The constant of the only valid value of a field that has one."""
-    (name,) = (one.name for one in field.constants if one.key == "const")
+    """Return the macro of the only valid value of a field that has one."""
+    (name,) = (constant.name for constant in field.constants if constant.key == "const")
     return names.constant(field.declaration.message, name)
 
 
 def of_enum(enum: EnumDescription) -> tuple[bool, Callable[[int], str]]:
-    """Whether the values of an enumeration must be macros, as not every `int` holds them; and what spells their literals."""
-    are_macros = any(abs(one.model.value) > _MAX_ENUMERATOR for one in enum.members)
+    """Return whether values of an enumeration must be macros because an `int` may be too small, and the function for literals."""
+    are_macros = any(abs(member.model.value) > _MAX_ENUMERATOR for member in enum.members)
     if enum.storage.signed:
         return are_macros, partial(_signed, bits=enum.storage.bits if are_macros else 0)
     form = "UINT64_C(%d)" if enum.storage.bits == 64 else "%du" if are_macros else "%d"
     return are_macros, form.__mod__
 
 
-def within(enum: EnumDescription, one: Member) -> str:
-    """Whether ``value`` lies between the ends of a range."""
+def within(enum: EnumDescription, member: Member) -> str:
+    """Return the test whether ``value`` is between the ends of a range."""
     bits, signed = enum.storage
     form = partial(_signed, bits=bits) if signed else ("UINT64_C(%d)" if bits == 64 else "%du").__mod__
-    return f"value > {form(one.value)} && value < {form(one.last)}"
+    return f"value > {form(member.value)} && value < {form(member.last)}"
 
 
 def _signed(value: int, bits: int) -> str:
-    """A literal of so many bits; of an `int` if 0."""
+    """Return the literal of a signed integer of ``bits`` bits; of an `int` if ``bits`` is 0."""
     if bits and value == -(1 << bits - 1):
         return f"INT{bits}_MIN"
     text = f"INT64_C({value})" if bits == 64 else str(value)
@@ -83,22 +80,22 @@ def _signed(value: int, bits: int) -> str:
 
 
 class Fields(NamedTuple):
-    """Rows of the fields, and of their limits, to which they point."""
+    """Rows for fields, and rows for their limits, to which the former point."""
 
     limits: list[str]
     rows: list[str]
 
 
-def table(one: Composite[Any]) -> Fields:
-    """Those of a message or a struct, in the order of the ICD, an array as one, and a struct."""
-    found = Fields([], [])
-    for field in one.members:
+def table(composite: Composite[Any]) -> Fields:
+    """Return the rows of a message or struct: one per member, in the order of the ICD."""
+    table = Fields([], [])
+    for field in composite.members:
         model, bounds = field.model, field.bounds
-        limits = f"&limits[{len(found.limits)}]" if bounds else "NULL"
+        limits = f"&limits[{len(table.limits)}]" if bounds else "NULL"
         unit = literal(model.unit_symbol)
         inside = "NULL" if field.struct is None else f"{names.stem(field.struct)}_fields"
         place = f"{model.at}u, {model.bits}u, {field.count or 1}u"
-        found.rows.append(f"{{{literal(model.name)}, {unit}, {place}, {limits}, {len(bounds)}u, {inside}}}")
+        table.rows.append(f"{{{literal(model.name)}, {unit}, {place}, {limits}, {len(bounds)}u, {inside}}}")
         for bound in bounds:
-            found.limits.append(f"{{ICD_LIMIT_{bound.key.upper()}, {bound.double!r}}}")
-    return found
+            table.limits.append(f"{{ICD_LIMIT_{bound.key.upper()}, {bound.double!r}}}")
+    return table

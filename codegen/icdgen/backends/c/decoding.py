@@ -1,4 +1,4 @@
-"""The statements of a message's decode function."""
+"""Statements of decode functions."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from icdgen.describe.groups import Flags, Group, Rounds, Row, Thresholds
 from icdgen.describe.lengths import length_tests
 
 THRESHOLDS = Thresholds(flags=(8, 4), row=8)
-"""Groups for which the support header has macros."""
+"""Sizes of groups for which the support header has macros."""
 
 EMPTY = "empty"
-"""Member of the struct of a message without fields: C has no empty structs."""
+"""Member of the struct of a message without fields, because C has no empty structs."""
 
 
 class Structs(NamedTuple):
-    """An array of structs, which a loop reads and writes."""
+    """Array of structs, which a loop reads and writes."""
 
     array: StructArray
-    reading: str  # the function for an element
-    writing: str
+    reading: str  # function that reads an element
+    writing: str  # function that writes an element
 
     @property
     def length(self) -> int:
-        """Bytes of the frame."""
+        """Number of bytes of the frame."""
         return self.array.field.count * self.array.step
 
 
@@ -41,66 +41,69 @@ Groups = list[Group | Structs]
 
 
 def members_of_round(group: Rounds) -> tuple[FieldDescription, ...]:
-    """The elements of a round; ``element`` is the first of them in the array."""
+    """Return the elements of a round, the first of which is ``element`` in the array."""
     name = group.array.member
     return group.rounds.members(group.first, lambda element: f"{name}[element{f' + {element}u' if element else ''}]")
 
 
 def macro_of(group: Flags | Row) -> str:
-    """How the name of the macro for a group ends."""
+    """Return the end of the name of the macro for a group."""
     if isinstance(group, Row):
         return f"ROW_{group.fields[0].order.upper()}"
     return f"{len(group.fields)}_FLAGS{'_FALLING' if group.is_falling else ''}"
 
 
 def statements(message: Composite[Any], groups: Groups) -> list[str]:
-    """One statement a field or a group, in the order of the groups."""
+    """Return a statement per field or group, in the order of the groups."""
     if not message.members:
         return ["(void)buffer;", f"message->{EMPTY} = 0u;"]
-    found = [_one(one) if isinstance(one, FieldDescription) else _group(one, message) for one in groups]
+    lines = [_field(item) if isinstance(item, FieldDescription) else _group(item, message) for item in groups]
     if message.last_part is not None and message.last_part.counter.model.is_count:
         counter = message.last_part.counter
-        found.append(f"message->{counter.name} = {cast(_count(message.last_part), counter.storage.bits)};")
-    return found
+        lines.append(f"message->{counter.name} = {cast(_count(message.last_part), counter.storage.bits)};")
+    return lines
 
 
 def _count(part: VariablePartDescription) -> str:
-    """How many elements there are in ``length`` bytes, without the fewest that there can be."""
-    rest = f"length - {part.model.shortest}u" if part.model.shortest else "length"
+    """Return the number of elements in ``length`` bytes beyond the fewest."""
+    remaining = f"length - {part.model.shortest}u" if part.model.shortest else "length"
     if part.model.step == 1:
-        return rest
-    return f"({rest}) / {part.model.step}u" if part.model.shortest else f"{rest} / {part.model.step}u"
+        return remaining
+    return f"({remaining}) / {part.model.step}u" if part.model.shortest else f"{remaining} / {part.model.step}u"
 
 
-def misfit_length(part: VariablePartDescription, longest: str, known: int = 0) -> str:
-    """What holds of a ``length`` of ``known`` bytes or more that no frame has; ``longest`` is the macro of the longest."""
-    return either([failed_length_test(test, longest) for test in length_tests(part.model.lengths, known)])
+def misfit_length(part: VariablePartDescription, longest: str, minimum: int = 0) -> str:
+    """Return the condition for a ``length`` that no frame has. ``longest`` is the macro of the longest.
+
+    The code before it rejects frames of less than ``minimum`` bytes.
+    """
+    return either([failed_length_test(test, longest) for test in length_tests(part.model.lengths, minimum)])
 
 
 def miscounted(part: VariablePartDescription) -> tuple[str, str, str] | None:
-    """Type and reading of the count that a frame holds, as ``value``, and what holds where it is not that of its length."""
+    """Return type and statement of the count in a frame, as ``value``, and the condition that it does not match the length."""
     if part.counter.model.is_count:
         return None
     bits = max(part.counter.storage.bits, 32)
     value = "value" if part.counter.storage.bits == bits else cast("value", bits)
-    told = cast(_count(part), bits) + (f" + {part.model.low}u" if part.model.low else "")
-    return type_of(part.counter), number(part.counter, "value"), f"{value} != {told}"
+    expected = cast(_count(part), bits) + (f" + {part.model.low}u" if part.model.low else "")
+    return type_of(part.counter), number(part.counter, "value"), f"{value} != {expected}"
 
 
-def of_inner(message: MessageDescription) -> list[dict[str, object]]:
-    """How the open parts in front of the part are found in a frame, whose fixed part is in ``buffer``, and put into one."""
+def of_earlier_parts(message: MessageDescription) -> list[dict[str, object]]:
+    """Return the values for variable parts in front of the last one: how they are located, decoded and encoded."""
     return [
         {
-            "type": type_of(one.counter),
-            "reading": number(one.counter, "value"),
-            "misfit": miscount(one, "value") if one.needs_count_check else "",
-            "begin": one.model.begin,
-            "there": _bytes(elements(one, "value"), one.model.step),
-            "given": _bytes(elements(one), one.model.step),
-            "miscount": miscount(one) if one.needs_count_check else "",
-            "counter": one.counter,
+            "type": type_of(part.counter),
+            "reading": number(part.counter, "value"),
+            "misfit": miscount(part, "value") if part.needs_count_check else "",
+            "begin": part.model.begin,
+            "there": _bytes(elements(part, "value"), part.model.step),
+            "given": _bytes(elements(part), part.model.step),
+            "miscount": miscount(part) if part.needs_count_check else "",
+            "counter": part.counter,
         }
-        for one in message.earlier_parts
+        for part in message.earlier_parts
     ]
 
 
@@ -109,41 +112,41 @@ def _bytes(count: str, step: int) -> str:
 
 
 def of_elements(part: VariablePartDescription, reading: str) -> list[str]:
-    """The statements that read the structs of an open end, each where it stands in ``buffer``."""
+    """Return the statements that read the structs of the last variable part from ``buffer``."""
     name = part.field.member
     loop_over = for_each(name, there(part), reading, part.model.begin, part.model.step)
     return [f"(void)memset(message->{name}, 0, sizeof message->{name});", loop_over]
 
 
 def for_each(name: str, count: str, function: str, begin: int, step: int) -> str:
-    """The loop that calls a function for each element of an array of structs, and where it stands in ``buffer``."""
+    """Return the loop that calls a function with each element of an array of structs and its place in ``buffer``."""
     if count == "1u":
         return call(function, (f"&message->{name}[0]", f"&buffer[{begin}]"))
-    made = call(function, (f"&message->{name}[element]", f"&buffer[{place(begin, step)}]"), depth=2)
-    return f"{loop('element', count)}\n{STEP * 2}{made}\n{STEP}}}"
+    statement = call(function, (f"&message->{name}[element]", f"&buffer[{place(begin, step)}]"), depth=2)
+    return f"{loop('element', count)}\n{STEP * 2}{statement}\n{STEP}}}"
 
 
 def of_array(array: StructArray, function: str) -> str:
-    """The same for all of an array."""
+    """Return the loop that calls a function with each element of a complete array of structs."""
     return for_each(array.field.member, f"{array.field.count}u", function, array.begin, array.step)
 
 
 def there(part: VariablePartDescription) -> str:
-    """How many elements a frame of ``length`` bytes has."""
+    """Return the number of elements in a frame of ``length`` bytes."""
     count = _count(part)
     count = f"({count})" if " " in count else count
     return count + (f" + {part.model.fewest}u" if part.model.fewest else "")
 
 
 def place(begin: int, step: int, in_round: int = 1) -> str:
-    """The byte at which ``element`` begins, or the round of so many of them that begins with it."""
+    """Return the first byte of ``element``, or of the round that starts with it."""
     number = "element" if in_round == 1 else f"(element / {in_round}u)"
     offset = number if step == 1 else f"{number} * {step}u"
     return f"{begin}u + {f'({offset})' if step > 1 else offset}" if begin else offset
 
 
 def elements(part: VariablePartDescription, counter: str = "") -> str:
-    """How many elements a message has."""
+    """Return the number of elements of a variable part in a message."""
     count = f"ICDGEN_SIZE({counter or f'message->{part.counter.name}'})"
     if not part.model.plus:
         return count
@@ -151,7 +154,7 @@ def elements(part: VariablePartDescription, counter: str = "") -> str:
 
 
 def miscount(part: VariablePartDescription, counter: str = "") -> str:
-    """What holds of a message whose count is none that it can have."""
+    """Return the condition for a count that the variable part cannot have."""
     count = counter or f"message->{part.counter.name}"
     tests = [f"{count} < {part.model.low}u"] if part.model.low else []
     tests += [f"{count} > {part.model.high}u"] if part.counter.storage.max > part.model.high else []
@@ -159,7 +162,7 @@ def miscount(part: VariablePartDescription, counter: str = "") -> str:
 
 
 def in_rounds(rounds: ElementRounds, const: str, lines: Iterable[str]) -> str:
-    """The loop around lines for one round, whose bytes ``part`` points to; ``const`` if they are only read."""
+    """Return the loop around the lines of a round. ``part`` points to the bytes of the round, ``const`` if they are read."""
     pointer = f"{const}uint8_t *const part = &buffer[{place(rounds.begin, rounds.step, rounds.in_round)}];"
     body = "".join(f"{STEP * 2}{line}\n".replace(f"\n{STEP}", f"\n{STEP * 2}") for line in (pointer, *lines))
     return f"{loop('element', f'{rounds.elements}u', rounds.in_round)}\n{body}{STEP}}}"
@@ -167,7 +170,7 @@ def in_rounds(rounds: ElementRounds, const: str, lines: Iterable[str]) -> str:
 
 def _group(group: Flags | Row | Rounds | Structs, message: Composite[Any]) -> str:
     if isinstance(group, Rounds):
-        lines = (number(one, f"message->{one.member}", "part") for one in members_of_round(group))
+        lines = (number(element, f"message->{element.member}", "part") for element in members_of_round(group))
         return in_rounds(group.rounds, "const ", lines)
     if isinstance(group, Structs):
         return of_array(group.array, group.reading)
@@ -180,23 +183,23 @@ def _group(group: Flags | Row | Rounds | Structs, message: Composite[Any]) -> st
     return call(f"ICDGEN_READ_{macro_of(group)}", (*target, value, f"{len(members)}u", members[0], members[-1]))
 
 
-def _one(field: FieldDescription) -> str:
-    one = field.model
-    if one.is_bytes:
-        return f"(void)memcpy(message->{field.member}, &buffer[{one.at // 8}], {one.width // 8}u);"
+def _field(field: FieldDescription) -> str:
+    place = field.model
+    if place.is_bytes:
+        return f"(void)memcpy(message->{field.member}, &buffer[{place.at // 8}], {place.width // 8}u);"
     return number(field, f"message->{field.member}")
 
 
 def number(field: FieldDescription, target: str, frame: str = "buffer") -> str:
-    """The statement that reads a number from the bytes that ``frame`` points to."""
+    """Return the statement that reads a number from the bytes at ``frame``."""
     read = bits.read(field, frame)
     line = _assigned(field, target, read.whole)
     if len(STEP) + len(line) <= WIDTH or len(read.terms) == 1:
         return line
-    within = "" if frame == "buffer" else f"{frame}_"  # in a loop it hides none that stands before it
+    within = "" if frame == "buffer" else f"{frame}_"  # in a loop the variable must not hide one of the function
     local = f"{within}bits_{field.model.at}"
-    first, *others = read.terms
-    joined = [f"uint{read.bits}_t {local} = {first};", *(f"{local} |= {term};" for term in others)]
+    first, *further = read.terms
+    joined = [f"uint{read.bits}_t {local} = {first};", *(f"{local} |= {term};" for term in further)]
     return f"\n{STEP}".join([*joined, _assigned(field, target, read.value.format(bits=local))])
 
 

@@ -1,4 +1,4 @@
-"""The statements of a message's encode function."""
+"""Statements of encode functions."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from icdgen.describe.groups import Flags, FrameBytes, Rounds, Row
 
 
 def size(message: MessageDescription) -> list[str]:
-    """Bytes of the frame that a message makes, as the terms of a sum."""
+    """Return the length of the frame of a message as the terms of a sum."""
     last = message.last_part
     assert last is not None
     parts = [
-        _held(one) if one.model.step == 1 else f"{_held(one)} * {one.model.step}u"
-        for one in (*message.earlier_parts, last)
+        _encoded_elements(part) if part.model.step == 1 else f"{_encoded_elements(part)} * {part.model.step}u"
+        for part in (*message.earlier_parts, last)
     ]
     if message.earlier_parts:
         return [f"{message.model.layout.length}u", *parts]
@@ -28,22 +28,22 @@ def size(message: MessageDescription) -> list[str]:
     return [f"{last.model.begin}u", parts[0] if last.model.step == 1 else f"({parts[0]})"]
 
 
-def _held(last: VariablePartDescription) -> str:
-    """How many elements there are; none where the counter is smaller than any frame has it."""
+def _encoded_elements(last: VariablePartDescription) -> str:
+    """Return the number of elements; 0 for a counter below the smallest, which encode refuses."""
     if not last.model.low:
         return elements(last)
     return f"((message->{last.counter.name} > {last.model.low}u) ? {elements(last)} : 0u)"
 
 
 def counted_text(last: VariablePartDescription) -> str:
-    """What the counter of an open text says of a ``text``, which is filled up to the fewest characters."""
+    """Return the value of the counter for a ``text``, which is padded to the fewest characters."""
     if last.model.fewest:
         return f"(strlen(text) > {last.model.fewest}u) ? (strlen(text) - {last.model.fewest}u) : 0u"
     return f"strlen(text) + {last.model.low}u" if last.model.low else "strlen(text)"
 
 
 def statements(message: Composite[Any], groups: Groups) -> list[str]:
-    """Statements that write every byte of the frame once, in order, but for structs of an open end."""
+    """Return the statements that write every byte of the frame once, except structs of the last variable part."""
     if message.last_part is not None and message.last_part.element_struct is not None:
         return _Frame(message, groups, message.last_part.model.begin).in_order()
     frame = _Frame(message, groups, message.model.length)
@@ -54,21 +54,21 @@ def statements(message: Composite[Any], groups: Groups) -> list[str]:
 
 
 class _Frame:
-    """Statements for the bytes of a frame, and what has to stand before them."""
+    """Statements for the bytes of a frame, and variables that these statements need."""
 
     def __init__(self, message: Composite[Any], groups: Groups, length: int, frame: str = "buffer") -> None:
         self.message, self.frame, self.bytes = message, frame, FrameBytes(length)
-        self.joined: dict[int, list[str]] = {}  # byte -> statements that its terms need
-        for one in groups:
-            if isinstance(one, FieldDescription):
-                self._one(one)
+        self.joined: dict[int, list[str]] = {}  # byte -> variables of its terms
+        for item in groups:
+            if isinstance(item, FieldDescription):
+                self._add_field(item)
             else:
-                self._group(one)
+                self._add_group(item)
 
-    def _one(self, field: FieldDescription) -> None:
-        one = field.model
-        first, size = one.at // 8, one.width // 8
-        if one.is_bytes:
+    def _add_field(self, field: FieldDescription) -> None:
+        place = field.model
+        first, size = place.at // 8, place.width // 8
+        if place.is_bytes:
             self.bytes.add_whole(first, size, f"(void)memcpy(&buffer[{first}], message->{field.member}, {size}u);")
         elif field.is_word:
             self.bytes.add_whole(first, size, bits.store(field, self.frame))
@@ -76,7 +76,7 @@ class _Frame:
             for piece in field.pieces:
                 self.bytes.add_part(piece.byte, piece.shift, bits.put(field, piece))
 
-    def _group(self, group: Flags | Row | Rounds | Structs) -> None:
+    def _add_group(self, group: Flags | Row | Rounds | Structs) -> None:
         if isinstance(group, Rounds):
             rounds = group.rounds
             lines = _Frame(self.message, list(members_of_round(group)), rounds.step, "part").in_order()
@@ -100,17 +100,17 @@ class _Frame:
         self.bytes.add_part(byte, group.shift, f"{name} << {group.shift}" if group.shift else name)
 
     def in_order(self) -> list[str]:
-        """The statements, byte by byte; bytes without a field become 0."""
-        found = []
-        for byte, length, whole, parts in self.bytes.segments():
-            if whole is not None:
-                found.append(whole)
-            elif parts:
-                found += self.joined.get(byte, ())
-                found.append(assigned_byte(f"{self.frame}[{byte}]", parts))
+        """Return the statements in the order of the bytes; bytes without a field become 0."""
+        lines = []
+        for byte, length, statement, terms in self.bytes.segments():
+            if statement is not None:
+                lines.append(statement)
+            elif terms:
+                lines += self.joined.get(byte, ())
+                lines.append(assigned_byte(f"{self.frame}[{byte}]", terms))
             else:
-                found.append(_zero(byte, length))
-        return found
+                lines.append(_zero(byte, length))
+        return lines
 
 
 def _zero(first: int, count: int) -> str:

@@ -1,4 +1,4 @@
-"""Declared facts of the protocol -> values of an initialiser."""
+"""Facts of the protocol as values of initialisers."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ TYPES: dict[type, str] = {
 }  # fmt: skip
 
 
-def is_told_apart(fact: Fact) -> bool:
-    """Whether a member of its own says if an optional fact is known: neither -1 nor 0 can stand for unknown."""
+def has_presence_flag(fact: Fact) -> bool:
+    """Return whether a separate member states if an optional fact is given, because neither -1 nor 0 can mean that it is not."""
     return fact.is_optional and fact.least == 0 and fact.holds > MOST_SIGNED
 
 
@@ -31,20 +31,20 @@ def boolean(value: bool) -> str:
 
 
 def or_none(value: int | None) -> str:
-    """-1 for what there is not."""
+    """Return the value, or -1 for None."""
     return "-1" if value is None else str(value)
 
 
 def spelled(fact: Fact, value: Any) -> str:
-    """The value, before which stands whether it is known if the fact `is_told_apart`."""
-    if is_told_apart(fact):
-        return f"{boolean(value is not None)}, {_known(fact, value or 0)}"
+    """Return the value of a fact, after its presence flag if it `has_presence_flag`."""
+    if has_presence_flag(fact):
+        return f"{boolean(value is not None)}, {_literal(fact, value or 0)}"
     if fact.is_optional and fact.least == 0:
         return or_none(value)
-    return _known(fact, value or 0)
+    return _literal(fact, value or 0)
 
 
-def _known(fact: Fact, value: Any) -> str:
+def _literal(fact: Fact, value: Any) -> str:
     if fact.kind is Kind.FLAG:
         return boolean(value)
     if fact.kind is Kind.BUSES:

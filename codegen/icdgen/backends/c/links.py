@@ -1,4 +1,4 @@
-"""The link of a node: its protocol facts as tables of the wire layer."""
+"""Links: the protocol facts of a node as tables of the wire layer."""
 
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ _CRC = f"/* width, polynomial, init, reflected in, out, xor out, whether there i
 
 
 class Table(NamedTuple):
-    """A constant of the link."""
+    """Constant of the link."""
 
     comment: str
     type: str
     name: str
     rows: Sequence[str]
-    unless: str = ""  # the macro that leaves it out
+    unless: str = ""  # macro that omits the table
 
 
 class Row(NamedTuple):
-    """A value of an initialiser, and what it is; it is there only if a condition of the preprocessor holds."""
+    """Value of an initialiser, with a comment; subject to a condition of the preprocessor if there is one."""
 
     value: str
     text: str = ""
@@ -49,27 +49,27 @@ class Row(NamedTuple):
 
 
 def sizes(link: LinkDescription) -> list[tuple[str, int, str]]:
-    """Sizes of buffers: name, bytes, what it is."""
-    known = link.facts
-    if known.stream:
-        return _stream_sizes(known.stream)
-    rows = [("LONGEST", known.longest, "Bytes of the longest message of either direction, with id and checksum.")]
-    slot = 1 + link.joined_bytes if known.can else 0
-    if known.can:
+    """Return the sizes of buffers: name, bytes and comment."""
+    facts = link.facts
+    if facts.stream:
+        return _stream_sizes(facts.stream)
+    rows = [("LONGEST", facts.longest, "Bytes of the longest message of either direction, with id and checksum.")]
+    slot = 1 + link.joined_bytes if facts.can else 0
+    if facts.can:
         rows.append(("CAN_SLOT_BYTES", slot, "Bytes that joining CAN packets takes for each sender at once."))
-    rows.append(("CLIENT_BYTES", known.longest_telecommand + max(slot, known.longest), "Bytes of a client's buffer."))
-    if known.log_file and known.mask:
-        most = max(known.mask.size + link.log_entry_bytes, known.log_file.header_bytes)
+    rows.append(("CLIENT_BYTES", facts.longest_telecommand + max(slot, facts.longest), "Bytes of a client's buffer."))
+    if facts.log_file and facts.mask:
+        most = max(facts.mask.size + link.log_entry_bytes, facts.log_file.header_bytes)
         rows.append(("LOG_BYTES", most, "Bytes of a log reader's buffer."))
-    if known.files:
-        packets = known.packets_of(known.files.block_bytes)
-        rows.append(("BLOCK_BYTES", packets * known.files.packet_bytes, "Bytes of the largest block of a file."))
+    if facts.files:
+        packets = facts.packets_of(facts.files.block_bytes)
+        rows.append(("BLOCK_BYTES", packets * facts.files.packet_bytes, "Bytes of the largest block of a file."))
         rows.append(("BLOCK_BITMAP_BYTES", -(-packets // 8), "Bytes of a bit for each packet of such a block."))
     return rows
 
 
 def _stream_sizes(form: Stream) -> list[tuple[str, int, str]]:
-    """Those of a node whose messages have an envelope."""
+    """Return the sizes of buffers of a node with packets."""
     return [
         ("LONGEST", form.longest, "Bytes of a decoder's buffer: the longest message with its envelope."),
         ("LINE_BYTES", form.longest_line, "Most bytes of a message on the line."),
@@ -83,46 +83,46 @@ def _stream_sizes(form: Stream) -> list[tuple[str, int, str]]:
 
 
 def tables(link: LinkDescription) -> list[Table]:
-    """The tables of a node, in the order in which they are declared."""
+    """Return the tables of a node, in the order of their declaration."""
     return _Tables(link).all()
 
 
 class _Tables:
-    """Each method gives the expression that leads to the table that it declares."""
+    """Tables of a node. Each method declares a table and returns the expression that refers to it."""
 
     def __init__(self, link: LinkDescription) -> None:
-        self.link, self.known, self.assumed = link, link.facts, Assumptions(link.facts)
+        self.link, self.facts_of_link, self.assumed = link, link.facts, Assumptions(link.facts)
         self.tables: list[Table] = []
 
     def all(self) -> list[Table]:
-        """Those of the parts, then the link itself."""
-        link, known = self.link, self.known
+        """Return the tables of the parts, then that of the link."""
+        link, facts = self.link, self.facts_of_link
         telecommands, telemetry = _short(link.telecommands), _short(link.telemetry)
         codes = link.error_codes
-        longest = f"{known.longest_telecommand}u, {known.longest_reply}u, {known.longest}u"
-        settings = f"{{{self.values('client', known.client)}}}"
+        longest = f"{facts.longest_telecommand}u, {facts.longest_reply}u, {facts.longest}u"
+        settings = f"{{{self.values('client', facts.client)}}}"
         rows = [
-            Row(self.array("nodes", "char *const", (f'"{name}"' for name in known.owners)), "whose messages"),
-            Row(f"{len(known.owners)}u", "how many"),
-            Row(boolean(known.little), "byte order: little"),
-            Row(boolean(known.node.bit_order == "msb0"), "bit 0 is the most significant one"),
-            Row(f"{known.telemetry_ids.first}u, {known.telemetry_ids.last}u", "ids of telemetry"),
+            Row(self.array("nodes", "char *const", (f'"{name}"' for name in facts.owners)), "whose messages"),
+            Row(f"{len(facts.owners)}u", "how many"),
+            Row(boolean(facts.little), "byte order: little"),
+            Row(boolean(facts.node.bit_order == "msb0"), "bit 0 is the most significant one"),
+            Row(f"{facts.telemetry_ids.first}u, {facts.telemetry_ids.last}u", "ids of telemetry"),
             Row(self.messages("telecommands", map(self.telecommand, telecommands)), "what can be sent"),
-            Row(self.messages("telemetry", (self.message(one, "0u") for one in telemetry)), "what can be requested"),
+            Row(self.messages("telemetry", (self.message(sent, "0u") for sent in telemetry)), "what can be requested"),
             Row(_count("telecommands", telecommands), "how many can be sent"),
             Row(_count("telemetry", telemetry), "how many can be requested"),
             Row(longest, "longest telecommand, reply, any"),
-            Row(f"{known.longest_data}u", "longest without id and checksum"),
-            Row(or_none(known.node.node_type), "node type"),
-            Row(or_none(known.node.interface_version), "interface version"),
+            Row(f"{facts.longest_data}u", "longest without id and checksum"),
+            Row(or_none(facts.node.node_type), "node type"),
+            Row(or_none(facts.node.interface_version), "interface version"),
             Row(settings, "ms for a reply, retries, ms between polls, ms of polling"),
             Row(self.array("errors", "icd_error_code_t", map(_error_code, codes)), "error codes"),
-            Row(f"{len(codes)}u, {known.errors.get('none', 0)}u", "how many; no error"),
-            Row(self.part("framing", known.framing, "uart.framing"), "framing of the UART"),
-            Row(self.part("acknowledge", known.acknowledge, "uart.acknowledge"), "acknowledges on the UART"),
-            Row(or_none(known.i2c_address), "I2C address"),
-            Row(boolean(known.i2c_repeated_start), "I2C: a read may follow its write without a stop"),
-            Row(or_none(known.boot_ms), "boot time in ms"),
+            Row(f"{len(codes)}u, {facts.errors.get('none', 0)}u", "how many; no error"),
+            Row(self.part("framing", facts.framing, "uart.framing"), "framing of the UART"),
+            Row(self.part("acknowledge", facts.acknowledge, "uart.acknowledge"), "acknowledges on the UART"),
+            Row(or_none(facts.i2c_address), "I2C address"),
+            Row(boolean(facts.i2c_repeated_start), "I2C: a read may follow its write without a stop"),
+            Row(or_none(facts.boot_ms), "boot time in ms"),
             Row(self.named_step("polled", link.polled), "what is polled for an acknowledge"),
             Row(self.can(), "CAN"),
             Row(self.checksum(), "checksums of messages"),
@@ -132,77 +132,81 @@ class _Tables:
             Row(self.named_step("identification", link.identification), "identification"),
             Row(self.stream(), "envelope"),
         ]
-        others = (f"{key}: {why}" for section, key, why in self.assumed.others() if not section.startswith("message "))
-        self.add("link", "icd_link_t", rows, map(plain, others))
+        assumptions = (
+            f"{key}: {why}" for section, key, why in self.assumed.others() if not section.startswith("message ")
+        )
+        self.add("link", "icd_link_t", rows, map(plain, assumptions))
         return self.tables
 
     def logs(self) -> Iterator[Row]:
-        known = self.known
+        facts = self.facts_of_link
         yield Row(self.log_mask(), "mask of logs")
-        yield Row(self.part("log_file", known.log_file, "telemetry_log"), "log files")
-        yield Row(self.part("log_message", known.mask and known.log_message, "unsolicited_log"), "unsolicited logs")
+        yield Row(self.part("log_file", facts.log_file, "telemetry_log"), "log files")
+        yield Row(self.part("log_message", facts.mask and facts.log_message, "unsolicited_log"), "unsolicited logs")
 
     def of_files(self) -> Iterator[Row]:
-        known = self.known
+        facts = self.facts_of_link
         yield Row(self.time(), "packed times")
         yield Row(self.index(), "index of files")
         yield Row(self.hole_map(), "hole map")
         yield Row(self.files(), "file transfer")
         yield from (Row(self.procedure(name), name) for name in PROCEDURES)
-        yield Row(self.part("program_copy", known.program_copy, "program_copy"), "program copy")
-        information = self.part("program_information", known.program_information, "program_information")
+        yield Row(self.part("program_copy", facts.program_copy, "program_copy"), "program copy")
+        information = self.part("program_information", facts.program_information, "program_information")
         yield Row(information, "program information")
 
     def optional(self, what: str, rows: Iterable[Row]) -> Iterator[Row]:
-        """Rows that a program may do without, and so without their tables."""
+        """List rows that a program can omit, together with their tables."""
         first = len(self.tables)
         for row in rows:
             yield row if row.value == "NULL" else row._replace(value=f"ICDGEN_OF_{what}({row.value})")
         self.tables[first:] = [table._replace(unless=f"ICDGEN_NO_{what}") for table in self.tables[first:]]
 
     def messages(self, name: str, rows: Iterable[Row]) -> str:
-        """The messages of a direction. The last one is none, for a program may leave out all others, but no table is empty."""
-        found = list(rows)
-        return self.array(name, "icd_message_t", [*found, Row("{0u, 0u, 0u}", "the end")] if found else ())
+        """Return the messages of a direction. A last row of zeros is there because a program can omit all others."""
+        messages = list(rows)
+        return self.array(name, "icd_message_t", [*messages, Row("{0u, 0u, 0u}", "the end")] if messages else ())
 
-    def message(self, one: SentMessage, flags: str) -> Row:
-        """The row of a message."""
+    def message(self, sent: SentMessage, flags: str) -> Row:
+        """Return the row of a message."""
         conditions = []
-        if not any(one.message is needed for needed in self.link.always_needed):
-            node = self.known.node.name.upper()
-            conditions = [f"!defined({node}_CHOSEN)", f"defined({node}_WITH_{self.link.name_of(one.message).upper()})"]
-            if any(one.message is needed for needed in self.link.in_procedures):
+        if not any(sent.message is needed for needed in self.link.always_needed):
+            node = self.facts_of_link.node.name.upper()
+            conditions = [f"!defined({node}_CHOSEN)", f"defined({node}_WITH_{self.link.name_of(sent.message).upper()})"]
+            if any(sent.message is needed for needed in self.link.in_procedures):
                 conditions.append("!defined(ICDGEN_NO_FILES)")
-        return Row(f"{{{one.id}u, {flags}, {one.message.length}u}}", plain(one.message.name), " || ".join(conditions))
+        return Row(
+            f"{{{sent.id}u, {flags}, {sent.message.length}u}}", plain(sent.message.name), " || ".join(conditions)
+        )
 
     def add(self, name: str, type: str, rows: Iterable[str | Row], assumed: Iterable[str] = ()) -> str:
-        """Declares a table; above it stands what is assumed in it."""
+        """Declare a table, with a comment on assumed facts."""
         about = " ".join(f"Assumed {text}" for text in assumed)
         self.tables.append(Table(comment([about], STEP) if about else "", type, name, list(map(str, rows))))
         return f"&{name}"
 
     def array(self, name: str, type: str, rows: Iterable[str | Row]) -> str:
-        """Declares an array, NULL if it is empty."""
-        found = [row if isinstance(row, Row) else Row(row) for row in rows]
-        return self.add(f"{name}[]", type, found).strip("&[]") if found else "NULL"
+        """Declare an array; return NULL if it is empty."""
+        items = [row if isinstance(row, Row) else Row(row) for row in rows]
+        return self.add(f"{name}[]", type, items).strip("&[]") if items else "NULL"
 
     def numbers(self, name: str, type: str, numbers: Iterable[str], count: int) -> str:
-        """Declares an array of numbers, ``count`` a line; NULL if it is empty."""
+        """Declare an array of numbers, ``count`` per line; return NULL if it is empty."""
         rows = in_rows(numbers, count)
         return self.add(f"{name}[]", type, rows).strip("&[]") if rows else "NULL"
 
-    def part(self, name: str, part: object, section: str, *made: Row) -> str:
-        """The table of a part: its facts, then the rows that code ``made``. NULL if there is no such part."""
+    def part(self, name: str, part: object, section: str, *further: Row) -> str:
+        """Declare the table of a part: its facts, then further rows. Return NULL for None."""
         if part is None:
             return "NULL"
-        return self.add(name, TYPES[type(part)], [*self.facts(name, part), *made], self.assumed_in(section))
+        return self.add(name, TYPES[type(part)], [*self.facts(name, part), *further], self.assumed_in(section))
 
     def assumed_in(self, section: str) -> list[str]:
-        """What is assumed in a section, and why."""
+        """Return the assumed facts of a section, with reasons."""
         return [plain(f"{key}: {why}") for key, why in self.assumed.of_section(section)]
 
     def facts(self, name: str, part: object) -> list[Row]:
-        """A row for each declared fact."""
+        """Return a row for each declared fact."""
         rows = []
         for fact in facts_of(part):
             value, text = getattr(part, fact.name), fact.name
@@ -217,33 +221,35 @@ class _Tables:
         return rows
 
     def values(self, name: str, part: object) -> str:
-        """The facts of a part as one row."""
+        """Return the facts of a part as one row."""
         return ", ".join(row.value for row in self.facts(name, part))
 
     def step(self, name: str, step: StepDescription) -> str:
-        """The initialiser of a step without its braces; its places and its fresh frame are tables of their own."""
+        """Return the initialiser of a step without braces; its places and its initial frame are separate tables."""
         rows = [
             Row(f"{{ICD_ROLE_{role.upper()}, {field.model.at}u, {field.model.bits}u}}", plain(field.model.name))
             for role, field in step.places
         ]
         places = self.array(f"{name}_places", "icd_place_t", rows)
-        fresh = "NULL"
+        initial_frame = "NULL"
         if any(step.initial_frame):
-            fresh = self.numbers(f"{name}_fresh", "uint8_t", (f"{byte:#04x}u" for byte in step.initial_frame), 16)
+            initial_frame = self.numbers(
+                f"{name}_fresh", "uint8_t", (f"{byte:#04x}u" for byte in step.initial_frame), 16
+            )
         ids = f"{or_none(step.message.telecommand_id)}, {or_none(step.message.telemetry_id)}"
-        return f"{ids}, {step.message.length}u, {len(rows)}u, {places}, {fresh}"
+        return f"{ids}, {step.message.length}u, {len(rows)}u, {places}, {initial_frame}"
 
     def named_step(self, name: str, step: StepDescription | None) -> str:
-        """A step by itself."""
+        """Declare the table of a single step."""
         return self.add(name, "icd_step_t", [Row(self.step(name, step))]) if step else "NULL"
 
-    def telecommand(self, one: SentMessage) -> Row:
-        """The row of a telecommand, with what is assumed of it."""
-        message = one.message
+    def telecommand(self, sent: SentMessage) -> Row:
+        """Return the row of a telecommand, with a comment on assumed facts."""
+        message = sent.message
         flags = ["ICD_ACKNOWLEDGED"] if message.acknowledge else []
         flags += ["ICD_EXPECTS_RESET"] if message.expects_reset else []
-        flags += ["ICD_SETTING"] if one.is_setting else []
-        row = self.message(one, " | ".join(flags) or "0u")
+        flags += ["ICD_SETTING"] if sent.is_setting else []
+        row = self.message(sent, " | ".join(flags) or "0u")
         why = self.assumed.why(f"message {message.name}", "acknowledge")
         about = comment([f"Assumed acknowledge: {plain(why)}"], STEP * 2).lstrip().replace("/**", "/*", 1)
         return row._replace(value=f"{about}\n{STEP * 2}{row.value}") if why else row
@@ -254,7 +260,7 @@ class _Tables:
         if can is None or (form and self.link.joined_bytes > _MOST_PACKETS * form.data_bytes):
             return "NULL"
         types, extended_types = (
-            ", ".join(str(known.get(kind, -1)) for kind in CAN_KINDS) for known in (can.types, can.extended_types)
+            ", ".join(str(values.get(kind, -1)) for kind in CAN_KINDS) for values in (can.types, can.extended_types)
         )
         return self.part(
             "can",
@@ -269,26 +275,30 @@ class _Tables:
             Row(self.part("can_extended", form, "can.extended"), "messages of several packets"),
         )
 
-    def crc(self, name: str, one: Crc, is_crc: bool = True) -> str:
-        """The initialiser of a CRC without its braces; the table for whole bytes is one of its own."""
-        found = ["NULL", "NULL"]
-        if is_crc and one.width <= 16:
-            entries = (f"{value:#0{2 + -(-one.width // 4)}x}u" for value in byte_table(one))
-            bits = 8 if one.width <= 8 else 16
-            found[bits // 8 - 1] = f"ICDGEN_TABLE({self.numbers(f'{name}_table', f'uint{bits}_t', entries, 8)})"
+    def crc(self, name: str, parameters: Crc, is_crc: bool = True) -> str:
+        """Return the initialiser of a CRC without braces; the table for whole bytes is separate."""
+        tables = ["NULL", "NULL"]
+        if is_crc and parameters.width <= 16:
+            entries = (f"{value:#0{2 + -(-parameters.width // 4)}x}u" for value in byte_table(parameters))
+            bits = 8 if parameters.width <= 8 else 16
+            tables[bits // 8 - 1] = f"ICDGEN_TABLE({self.numbers(f'{name}_table', f'uint{bits}_t', entries, 8)})"
             self.tables[-1] = self.tables[-1]._replace(unless="ICDGEN_NO_TABLES")
-        return ", ".join((self.values(name, one), *found))
+        return ", ".join((self.values(name, parameters), *tables))
 
     def checksum(self) -> str:
-        one = self.known.checksum
-        return self.part("checksum", one, "crc8", Row(f"{_CRC}{{{self.crc('crc8', one.crc)}}}")) if one else "NULL"
+        checksum = self.facts_of_link.checksum
+        return (
+            self.part("checksum", checksum, "crc8", Row(f"{_CRC}{{{self.crc('crc8', checksum.crc)}}}"))
+            if checksum
+            else "NULL"
+        )
 
     def crc16(self) -> str:
-        one = self.known.crc16
-        return self.add("crc16", TYPES[Crc], [Row(f"{_CRC}{self.crc('crc16', one)}")]) if one else "NULL"
+        crc = self.facts_of_link.crc16
+        return self.add("crc16", TYPES[Crc], [Row(f"{_CRC}{self.crc('crc16', crc)}")]) if crc else "NULL"
 
     def stream(self) -> str:
-        form = self.known.stream
+        form = self.facts_of_link.stream
         if form is None:
             return "NULL"
         fields = self.array("envelope", "icd_envelope_field_t", map(_field, form.fields))
@@ -298,8 +308,8 @@ class _Tables:
             row = Row(f"ICD_CHECK_{form.check.kind.upper()}, {{{crc}}}")
             covered = f"{form.check.covered_from}u, {form.check.covered_trailer}u, {boolean(form.check.is_seeded)}"
             check = self.add("check", "icd_check_form_t", [row, Row(covered, "covered")])
-        both = (("sent", form.telecommands), ("received", form.telemetry))
-        rows = [self.array(name, "icd_stream_row_t", map(_enveloped, found)) for name, found in both]
+        directions = (("sent", form.telecommands), ("received", form.telemetry))
+        rows = [self.array(name, "icd_stream_row_t", map(_packet_row, rows)) for name, rows in directions]
         delimiter = "packet" if form.delimited_by == PACKET else form.delimited_by
         sizes = f"ICD_DELIMITED_BY_{delimiter.upper()}, {form.header_bytes}u, {form.trailer_bytes}u"
         parts = [
@@ -312,25 +322,27 @@ class _Tables:
         return self.add("stream", "icd_stream_form_t", parts, self.assumed_in("stream"))
 
     def log_mask(self) -> str:
-        mask = self.known.mask
+        mask = self.facts_of_link.mask
         if mask is None:
             return "NULL"
         rows = []
         for bit in range(mask.size * 8):
-            one = mask.bits.get(bit)
-            id, length = (one.id, one.length) if one else (None, mask.slot_bytes)
-            text = f"bit {bit}" + (f": {plain(one.name)}" if one and one.name else "")
+            row = mask.bits.get(bit)
+            id, length = (row.id, row.length) if row else (None, mask.slot_bytes)
+            text = f"bit {bit}" + (f": {plain(row.name)}" if row and row.name else "")
             rows.append(Row(f"{{{or_none(id)}, {length}u}}", text))
         return self.part("log_mask", mask, "log_mask", Row(self.array("log_bits", "icd_log_bit_t", rows)))
 
     def time(self) -> str:
-        rows = [Row(f"{{{one.at}u, {one.bits}u, {one.factor}u, {one.offset}u}}", name) for name, one in self.link.time]
+        rows = [
+            Row(f"{{{part.at}u, {part.bits}u, {part.factor}u, {part.offset}u}}", name) for name, part in self.link.time
+        ]
         return self.add("packed_time", "icd_time_form_t", rows) if rows else "NULL"
 
     def index(self) -> str:
         form = self.link.index
         fields = [(name, form.fields[name]) for name in INDEX_PARTS] if form else []
-        rows = (Row(f"{{{one.at}u, {one.bytes}u}}", name) for name, one in fields)
+        rows = (Row(f"{{{span.at}u, {span.bytes}u}}", name) for name, span in fields)
         return self.part("index_entry", form, "index_file", *rows)
 
     def hole_map(self) -> str:
@@ -340,40 +352,40 @@ class _Tables:
             ids = f"{or_none(message.telecommand_id)}, {or_none(message.telemetry_id)}"
             rows.append(Row(f"{{{ids}, {message.length}u, {field.model.at // 8}u}}", plain(message.name)))
         messages = self.array("hole_maps", "icd_hole_map_message_t", rows)
-        made = Row(f"{len(rows)}u, {messages}", "messages")
-        return self.part("hole_map", self.known.hole_map, "file_transfer.hole_map", made)
+        further = Row(f"{len(rows)}u, {messages}", "messages")
+        return self.part("hole_map", self.facts_of_link.hole_map, "file_transfer.hole_map", further)
 
     def files(self) -> str:
-        one = self.known.files
-        ids = ", ".join(or_none(one.packet_ids.get(bus)) for bus in BUSES) if one else ""
-        return self.part("files", one, "file_transfer", Row(f"{{{ids}}}", "ids of download packets"))
+        files = self.facts_of_link.files
+        ids = ", ".join(or_none(files.packet_ids.get(bus)) for bus in BUSES) if files else ""
+        return self.part("files", files, "file_transfer", Row(f"{{{ids}}}", "ids of download packets"))
 
     def procedure(self, name: str) -> str:
-        """A procedure of file transfer."""
-        return self.part(name, getattr(self.known.files, name, None), f"file_transfer.{name}")
+        """Declare the table of a procedure of file transfer."""
+        return self.part(name, getattr(self.facts_of_link.files, name, None), f"file_transfer.{name}")
 
 
 def _error_code(code: tuple[str, int]) -> str:
     return f"{{ICD_REASON_{code[0].upper()}, {code[1]}u}}"
 
 
-def _field(one: EnvelopeField) -> Row:
-    """A field of the envelope."""
-    values = ", ".join(f"{value:#x}u" for value in one.values)
-    numbers = f"{one.at}u, {one.size}u, {one.shift}u, {one.bits}u, {boolean(one.little)}, {{{values}}}"
-    return Row(f"{{ICD_ENVELOPE_{one.role.upper()}, {boolean(one.in_trailer)}, {numbers}}}")
+def _field(field: EnvelopeField) -> Row:
+    """Return the row of a field of packets."""
+    values = ", ".join(f"{value:#x}u" for value in field.values)
+    numbers = f"{field.at}u, {field.size}u, {field.shift}u, {field.bits}u, {boolean(field.little)}, {{{values}}}"
+    return Row(f"{{ICD_ENVELOPE_{field.role.upper()}, {boolean(field.in_trailer)}, {numbers}}}")
 
 
-def _enveloped(row: StreamRow) -> Row:
-    """A message in an envelope."""
+def _packet_row(row: StreamRow) -> Row:
+    """Return the row of a message in packets."""
     numbers = f"{row.id:#x}u, {row.least}u, {row.most}u, {boolean(row.cuts_zeros)}, {row.seed}u, "
     numbers += f"{boolean(row.reply is not None)}, {row.reply or 0:#x}u"
     return Row(f"{{{numbers}}}", plain(row.name))
 
 
 def _short(messages: Iterable[SentMessage]) -> list[SentMessage]:
-    """Messages that can be told by an id of one byte."""
-    return [one for one in messages if one.id <= _MOST_ID and one.message.length <= _MOST_LENGTH]
+    """Return the messages that the tables of the wire layer can store."""
+    return [sent for sent in messages if sent.id <= _MOST_ID and sent.message.length <= _MOST_LENGTH]
 
 
 def _count(name: str, messages: list[SentMessage]) -> str:

@@ -1,6 +1,6 @@
-"""Statements for the members of a message, one by one; for what stands in arrays, in loops.
+"""Statements for members of a message that set initial values, and that test raw values against the bits of their fields.
 
-They give members their first values, and look for raw values with more bits than their fields.
+Elements of arrays have the same statements in a loop.
 """
 
 from __future__ import annotations
@@ -16,25 +16,27 @@ from icdgen.backends.lines import STEP
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.description import Composite, Into
 
-_Said = Callable[[FieldDescription, str, str], list[str]]
-"""The lines for a field, for what it is called in C from the message on, and in the ICD; none if there is nothing to do."""
+_Lines = Callable[[FieldDescription, str, str], list[str]]
+"""Function that returns the lines for a field, given its names in C and in the ICD; empty if the field needs none."""
 
 
 def _statements(
-    field: FieldDescription, said: _Said, count: str, owner: str = "", of: str = "", depth: int = 1
+    field: FieldDescription, lines_of: _Lines, count: str, owner: str = "", of: str = "", depth: int = 1
 ) -> list[str]:
-    """The lines for one of the `flat_members` of a message; of an array for so many elements, ``count`` in C."""
+    """Return the lines for a field; for an array in a loop over ``count`` elements, an expression in C."""
     name, member = of + field.model.name, owner + field.member
     if not field.count:
-        return said(field, member, name)
+        return lines_of(field, member, name)
     index = "0" if count == "1u" else "element" if depth == 1 else f"element_{depth}"
     member += f"[{index}]"
     if field.element_struct is None:
-        lines = said(field, member, name)
+        lines = lines_of(field, member, name)
     else:
-        inner = ((one, f"{one.count}u") for one in field.element_struct.walk(Into.STRUCTS))
+        members = ((inner, f"{inner.count}u") for inner in field.element_struct.walk(Into.STRUCTS))
         lines = [
-            line for one, many in inner for line in _statements(one, said, many, f"{member}.", f"{name}[].", depth + 1)
+            line
+            for inner, many in members
+            for line in _statements(inner, lines_of, many, f"{member}.", f"{name}[].", depth + 1)
         ]
     if not lines or index == "0":
         return lines
@@ -42,37 +44,42 @@ def _statements(
 
 
 def initial(message: Composite[Any]) -> list[str]:
-    """Statements that give fields with only one valid value that value, and what counts an open end its smallest."""
+    """Return the statements that set constants, and counters to their smallest value."""
     counters = [field for field in message.members if field.model.smallest_raw]
-    found = [f"message->{field.member} = {field.initial_raw}u;" for field in counters]
+    lines = [f"message->{field.member} = {field.initial_raw}u;" for field in counters]
     for field in message.walk(Into.STRUCTS):
         if field.initial_count or not field.count:
-            found += _statements(field, _valid, f"{field.initial_count}u")
-    return found
+            lines += _statements(field, _valid, f"{field.initial_count}u")
+    return lines
 
 
 def _valid(field: FieldDescription, member: str, name: str) -> list[str]:
     return [] if field.model.const is None else [f"message->{member} = {constants.only(field)};"]
 
 
-def misfits(message: MessageDescription, is_open: bool) -> list[str]:
-    """Those that return the name of the first field whose raw value does not fit: of the open end, or of all others."""
-    return _looked_at(message, is_open, _named)
+def misfits(message: MessageDescription, is_last_part: bool) -> list[str]:
+    """Return the statements that return the name of the first field whose raw value does not fit.
+
+    They test the fields of the last variable part, or all others: the count must be valid before its elements are tested.
+    """
+    return _tests(message, is_last_part, _named)
 
 
 def excess(message: MessageDescription) -> list[str]:
-    """Those that gather in ``excess`` what does not fit."""
-    return [line for is_open in (False, True) for line in _looked_at(message, is_open, _gathered)]
+    """Return the statements that collect bits that do not fit in ``excess``."""
+    return [line for is_last_part in (False, True) for line in _tests(message, is_last_part, _gathered)]
 
 
-def _looked_at(message: MessageDescription, is_open: bool, said: _Said) -> list[str]:
-    found = []
+def _tests(message: MessageDescription, is_last_part: bool, lines_of: _Lines) -> list[str]:
+    lines = []
     for field in message.walk(Into.STRUCTS):
-        if field.is_in_last_part == is_open:
-            found += _statements(
-                field, said, elements(message.last_part) if is_open and message.last_part else f"{field.count}u"
+        if field.is_in_last_part == is_last_part:
+            lines += _statements(
+                field,
+                lines_of,
+                elements(message.last_part) if is_last_part and message.last_part else f"{field.count}u",
             )
-    return found
+    return lines
 
 
 def _named(field: FieldDescription, member: str, name: str) -> list[str]:

@@ -1,4 +1,4 @@
-"""The functions that give the messages which a composite message repeats."""
+"""Functions that return the messages contained in a composite message."""
 
 from __future__ import annotations
 
@@ -13,39 +13,43 @@ from icdgen.describe.contained import ContainedDescription, CopiedMember, contai
 
 
 def parts(message: MessageDescription) -> list[dict[str, object]]:
-    """Those of a composite message; ``copies`` are the statements of each, once for each time that it is repeated."""
-    return [_part(message, one) for one in contained_messages(message)]
+    """Return the functions of a composite message. ``copies`` are the statements for each place of the contained message."""
+    return [_part(message, contained) for contained in contained_messages(message)]
 
 
 def _part(message: MessageDescription, part: ContainedDescription) -> dict[str, object]:
-    said, positions = [part_comment(part.message.model, part.positions)], part.positions
+    paragraphs, positions = [part_comment(part.message.model, part.positions)], part.positions
     if len(positions) > 1:
-        said.append(
+        paragraphs.append(
             f"ICD_ERROR_RANGE, and `part` as it was, if there is no such part: they are 0 to {len(positions) - 1}."
         )
     copies = [[line for copied in part.copies(message, begin) for line in _statements(copied)] for begin in positions]
     name, type = part_name(part.message), f"{stem(part.message)}_t"
-    return {"name": name, "type": type, "about": comment(said), "copies": copies}
+    return {"name": name, "type": type, "about": comment(paragraphs), "copies": copies}
 
 
 def part_name(part: MessageDescription) -> str:
-    """How the name of the function ends."""
+    """Return the end of the name of the function for a contained message."""
     return f"part_{part.name}"
 
 
 def headers(message: MessageDescription) -> list[str]:
-    """The headers of the parts."""
-    found = (part.message for part in contained_messages(message))
-    return [f"{one.name}.h" if one.node is message.node else f"../{one.node.name}/{one.name}.h" for one in found]
+    """Return the headers of the contained messages."""
+    headers = []
+    for contained in contained_messages(message):
+        header = f"{contained.message.name}.h"
+        is_same_node = contained.message.node is message.node
+        headers.append(header if is_same_node else f"../{contained.message.node.name}/{header}")
+    return headers
 
 
 def _statements(copied: CopiedMember) -> Iterator[str]:
     member = copied.member
     if copied.is_whole and (member.count or member.model.is_bytes):
-        whole = f"part->{member.member}"
-        yield call("(void)memcpy", (whole, f"message->{copied.sources[0].member}", f"sizeof {whole}"))
+        target = f"part->{member.member}"
+        yield call("(void)memcpy", (target, f"message->{copied.sources[0].member}", f"sizeof {target}"))
         return
-    for one, twin in zip(member.elements, copied.sources, strict=True):
-        target, source = f"part->{one.member}", f"message->{twin.member}"
-        is_bytes = one.model.is_bytes
+    for element, twin in zip(member.elements, copied.sources, strict=True):
+        target, source = f"part->{element.member}", f"message->{twin.member}"
+        is_bytes = element.model.is_bytes
         yield call("(void)memcpy", (target, source, f"sizeof {target}")) if is_bytes else f"{target} = {source};"

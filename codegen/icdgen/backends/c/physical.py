@@ -1,4 +1,4 @@
-"""Accessors of physical values: in double precision, and in whole thousandths or millionths without floating point."""
+"""Expressions of physical values in double precision, and in whole thousandths or millionths of the unit."""
 
 from __future__ import annotations
 
@@ -15,31 +15,32 @@ from icdgen.describe.steps import Steps, wide_parts
 from icdgen.describe.storage import Storage
 from icdgen.icd.curve import Curve
 
-RAW = "{raw}"  # stands for the member in the expressions made here
+RAW = "{raw}"
+"""Placeholder of the raw value in expressions."""
 INT32, INT64 = (1 << 31) - 1, (1 << 63) - 1
 
 
 class IntegerAccessors(NamedTuple):
-    """Integer accessors: ``getter`` over ``{raw}``; ``setter``, the raw value of a ``value`` unless a test of ``refused`` holds."""
+    """Accessors in whole parts of the unit. ``setter`` is the raw value of ``value`` if no condition of ``refused`` holds."""
 
     scale: IntegerScale
     type: str  # "int32_t" | "int64_t"
-    getter: str
+    getter: str  # expression over ``{raw}``
     refused: tuple[str, ...]
     setter: str
 
 
 class Scaled(NamedTuple):
-    """How the physical value of a raw value is computed, and the other way round."""
+    """Conversion of raw values to physical values and back."""
 
-    getter: str  # a double, over ``{raw}``
-    setter: tuple[str, ...]  # a function, and its arguments after the raw value
-    declared: tuple[str, ...] = ()  # lines that declare what both use
+    getter: str  # expression of a double over ``{raw}``
+    setter: tuple[str, ...]  # function, and its arguments behind the raw value
+    declared: tuple[str, ...] = ()  # declarations for both
     integers: IntegerAccessors | None = None
 
 
 def scaled(field: FieldDescription) -> Scaled:
-    """The accessors of a field with a scale, or with a curve."""
+    """Return the conversion of a field with a scale or calibration."""
     if field.curve is not None:
         return _on_curve(field, field.curve)
     assert field.arithmetic is not None
@@ -50,8 +51,8 @@ def scaled(field: FieldDescription) -> Scaled:
 def _scaled(arithmetic: Arithmetic) -> Scaled:
     steps, integers = arithmetic.steps, arithmetic.integers
     declared = tuple(_wide_scale(steps)) if steps.is_wide else ()
-    whole = None if integers is None else _integers(integers, arithmetic.storage)
-    return Scaled(_double_getter(arithmetic), _double_setter(arithmetic), declared, whole)
+    accessors = None if integers is None else _integers(integers, arithmetic.storage)
+    return Scaled(_double_getter(arithmetic), _double_setter(arithmetic), declared, accessors)
 
 
 def _on_curve(field: FieldDescription, curve: Curve) -> Scaled:
@@ -66,19 +67,19 @@ def _on_curve(field: FieldDescription, curve: Curve) -> Scaled:
 
 
 def _kind(storage: Storage, bits: int = 0) -> str:
-    """``u16``: the end of a function's name; with ``bits``, of one for integers of so many."""
+    """Return the end of the name of a function: ``u16``; with ``bits`` for integers of this width."""
     return f"{'i' if storage.signed else 'u'}{bits or storage.bits}"
 
 
 def _declared(curve: Curve) -> Iterator[str]:
-    """Of all pieces the terms, then the pieces; each on a line of its own if there are several."""
+    """List the declarations of a calibration: the terms of all pieces, then the pieces."""
     terms = [", ".join(map(repr, piece.terms)) for piece in curve.pieces]
     begin = accumulate((len(piece.terms) for piece in curve.pieces), initial=0)
     pieces = (
-        f"{{{start!r}, {f'&terms[{at}]' if held else 'terms'}, {len(held)}u}}"
-        for (start, held), at in zip(curve.pieces, begin, strict=False)
+        f"{{{start!r}, {f'&terms[{at}]' if own_terms else 'terms'}, {len(own_terms)}u}}"
+        for (start, own_terms), at in zip(curve.pieces, begin, strict=False)
     )
-    yield from _array("static const double terms[]", [one for one in terms if one])
+    yield from _array("static const double terms[]", list(filter(None, terms)))
     yield from _array("static const icdgen_piece_t curve[]", list(pieces))
 
 
@@ -92,7 +93,7 @@ def _array(head: str, rows: list[str]) -> Iterator[str]:
 
 
 def int64(value: int) -> str:
-    """A literal of 64 bits."""
+    """Return the literal of a signed integer of 64 bits."""
     return "INT64_MIN" if value == -INT64 - 1 else f"INT64_C({value})" if abs(value) > INT32 else str(value)
 
 
@@ -126,7 +127,7 @@ def _double_setter(arithmetic: Arithmetic) -> tuple[str, ...]:
 
 
 def _wide_scale(steps: Steps) -> list[str]:
-    """The lines that declare the numbers of a wide scale."""
+    """Return the declaration of a scale whose terms have more than 64 bits."""
     rows = ((f"0x{part:X}u" if part > 9 else f"{part}u" for part in wide_parts(term, 32)) for term in steps.terms)
     return ["static const icdgen_scale_t scale = {", *(f"    {{{{{', '.join(row)}}}}}," for row in rows), "};"]
 

@@ -1,4 +1,4 @@
-"""The files of the runtime, each as one: in the runtime they are made of parts, which a user need not see."""
+"""Files of the runtime. Each is assembled from several files of the repository."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ _GUARDED = re.compile(
 )
 
 
-def whole(file: str, render: Renderer, made: Mapping[str, str] = MappingProxyType({})) -> str:
-    """The text of a file with its parts in place. ``made`` are those that come from the ICD, instead of the runtime's samples."""
+def assembled(file: str, render: Renderer, replaced: Mapping[str, str] = MappingProxyType({})) -> str:
+    """Return the text of a file with its parts. ``replaced`` are parts that depend on the ICD; the runtime has samples of them."""
 
     def part(include: re.Match[str]) -> str:
         name = include["file"]
-        text = made[name] if name in made else render.source(name)
+        text = replaced[name] if name in replaced else render.source(name)
         guarded = _GUARDED.fullmatch(text)
         return guarded["body"] if guarded else text
 

@@ -1,8 +1,7 @@
-"""Long names of C that compilers may confuse, and shorter ones in their place.
+"""Shorter names for identifiers of C that compilers may confuse.
 
-C99 guarantees that compilers tell names apart by their first 63 characters and no more (5.2.4.1). Of names that are the same
-there each becomes its beginning with a digest of the whole, in C alone: other languages keep the long ones. A name that no
-other one begins like stays as it is.
+C99 guarantees that compilers distinguish the first 63 characters of a name (5.2.4.1). Names with the same 63 characters are
+shortened and end with a digest of the long name. Other names, and other languages, keep the long names.
 """
 
 from __future__ import annotations
@@ -18,15 +17,15 @@ from icdgen.backends import Identifier
 SIGNIFICANT = 63
 _DIGITS = 8
 _LONG = re.compile(rf"\b[A-Za-z_]\w{{{SIGNIFICANT - 1},}}")
-_LONG_OR_INCLUDE = re.compile(rf"#include[^\n]*|{_LONG.pattern}")  # names of files stay as they are
+_LONG_OR_INCLUDE = re.compile(rf"#include[^\n]*|{_LONG.pattern}")  # file names are not identifiers
 
 
 def short_names(identifiers: Iterable[Identifier]) -> dict[str, str]:
-    """The shorter name of each that is not unique in its first 63 characters."""
+    """Return shorter names for all identifiers that are not unique in their first 63 characters."""
     alike: defaultdict[str, set[str]] = defaultdict(set)
-    for one in identifiers:
-        if len(one.text) >= SIGNIFICANT and _LONG.fullmatch(one.text):
-            alike[one.text[:SIGNIFICANT]].add(one.text)
+    for identifier in identifiers:
+        if len(identifier.text) >= SIGNIFICANT and _LONG.fullmatch(identifier.text):
+            alike[identifier.text[:SIGNIFICANT]].add(identifier.text)
     return {text: _short(text) for texts in alike.values() if len(texts) > 1 for text in texts}
 
 
@@ -39,7 +38,7 @@ def _short(text: str) -> str:
 def with_short_names(
     files: Iterable[tuple[PurePosixPath, str]], identifiers: Callable[[], Iterable[Identifier]]
 ) -> Iterator[tuple[PurePosixPath, str]]:
-    """C files with the shorter names. ``identifiers`` is asked once, and only if a file has long names."""
+    """List C files with shorter names. ``identifiers`` is called once, and only if a file has long names."""
     short: dict[str, str] | None = None
     for path, text in files:
         if _LONG.search(text):
@@ -49,4 +48,4 @@ def with_short_names(
 
 
 def _replaced(text: str, short: dict[str, str]) -> str:
-    return _LONG_OR_INCLUDE.sub(lambda found: short.get(found[0], found[0]), text)
+    return _LONG_OR_INCLUDE.sub(lambda match: short.get(match[0], match[0]), text)

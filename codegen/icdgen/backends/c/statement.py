@@ -1,4 +1,4 @@
-"""How operands, calls and the heads of functions are written."""
+"""Operands, calls, loops, tests and heads of functions."""
 
 from __future__ import annotations
 
@@ -15,33 +15,33 @@ _COMPOUND = re.compile(r" (?:<<|>>|&) \w+\Z")
 
 
 def grouped(term: str) -> str:
-    """The term as an operand: in parentheses if it ends with an operation."""
+    """Return a term as an operand: in parentheses if it ends with an operation."""
     return f"({term})" if _COMPOUND.search(term) else term
 
 
 def joined(terms: Sequence[str]) -> str:
-    """The terms, or-ed together."""
+    """Return the terms combined by ``|``."""
     return " | ".join(map(grouped, terms)) if len(terms) > 1 else terms[0]
 
 
 def either(tests: Sequence[str], operator: str = " || ") -> str:
-    """A test that holds if one of them does; with another ``operator``, if all do."""
+    """Return the disjunction of the tests; with ``&&`` as the operator their conjunction."""
     return operator.join(f"({test})" for test in tests) if len(tests) > 1 else tests[0]
 
 
 def call(function: str, arguments: Sequence[str], depth: int = 1) -> str:
-    """A call as a statement; ``depth`` is that of the line it begins in."""
+    """Return a call as a statement in a line with an indentation of ``depth`` steps."""
     return bracketed(f"{function}(", arguments, ");", WIDTH, STEP * depth, last="")
 
 
 def loop(index: str, count: str, by: int = 1) -> str:
-    """The head of a loop over so many elements; ``by`` of them at once."""
+    """Return the head of a loop over ``count`` elements, ``by`` of them at once."""
     step = f"{index}++" if by == 1 else f"{index} += {by}u"
     return f"for (size_t {index} = 0u; {index} < {count}; {step}) {{"
 
 
 def assigned_byte(target: str, terms: Sequence[str]) -> str:
-    """A statement that gives a byte the value of terms or-ed together."""
+    """Return the statement that assigns terms, combined by ``|``, to a byte."""
     value = joined(terms)
     if not (len(terms) == 1 and value.startswith("ICDGEN_U8(") and value.endswith(")")):
         value = f"ICDGEN_U8({value})"
@@ -53,24 +53,24 @@ def assigned_byte(target: str, terms: Sequence[str]) -> str:
 
 
 def like(candidate: MessageOfId, depth: int = 3) -> str:
-    """Whether a frame is that of a message: its length, and the bytes of its constants; 0 where zeros are cut off.
+    """Return the test whether a frame is that of a message, by its length and the bytes of its constants.
 
-    ``depth`` is that of the lines after the first.
+    Bytes behind the end of a shortened frame count as 0. ``depth`` is the indentation of the lines after the first.
     """
     message = candidate.message
     tests = length_tests_of_frame(message.model.layout.lengths)
     terms = [length_test(test, constant(message, "length")) for test in tests]
-    for sign in candidate.constant_bytes:
-        byte = f"buffer[{sign.byte}]"
-        if sign.byte >= message.model.layout.shortest:
-            byte = f"((length > {sign.byte}u) ? {byte} : 0u)"
-        masked = byte if sign.mask == 0xFF else f"({byte} & 0x{sign.mask:02X}u)"
-        terms.append(f"{masked} == 0x{sign.value:02X}u")
+    for constant_byte in candidate.constant_bytes:
+        byte = f"buffer[{constant_byte.byte}]"
+        if constant_byte.byte >= message.model.layout.shortest:
+            byte = f"((length > {constant_byte.byte}u) ? {byte} : 0u)"
+        masked = byte if constant_byte.mask == 0xFF else f"({byte} & 0x{constant_byte.mask:02X}u)"
+        terms.append(f"{masked} == 0x{constant_byte.value:02X}u")
     return either(terms, f" &&\n{STEP * depth}")
 
 
 def length_test(test: LengthTest, longest: str) -> str:
-    """What holds of a ``length`` that passes; ``longest`` is the macro of the longest."""
+    """Return the condition for a ``length`` that passes a test. ``longest`` is the macro of the longest."""
     if test.kind == "multiple":
         return f"{_remainder(test)} == 0u"
     operators = {"equal": "==", "at least": ">=", "at most": "<="}
@@ -78,7 +78,7 @@ def length_test(test: LengthTest, longest: str) -> str:
 
 
 def failed_length_test(test: LengthTest, longest: str) -> str:
-    """What holds of a ``length`` that does not pass."""
+    """Return the condition for a ``length`` that fails a test. ``longest`` is the macro of the longest."""
     if test.kind == "multiple":
         return f"{_remainder(test)} != 0u"
     operators = {"equal": "!=", "at least": "<", "at most": ">"}
@@ -95,5 +95,5 @@ def _remainder(test: LengthTest) -> str:
 
 
 def head(returned: str, name: str, *parameters: str) -> str:
-    """The head of a function."""
+    """Return the head of a function."""
     return bracketed(f"static inline {returned}{name}(", parameters, ")", WIDTH, last="")

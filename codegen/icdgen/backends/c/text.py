@@ -1,4 +1,4 @@
-"""Text -> C comments and string literals that nothing can break out of."""
+"""Comments and string literals of C that no text can end early."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _MARKUP = re.compile(
 
 
 class _Command(str):
-    """A paragraph that begins with a command of documentation tools: only we make one, no text of an ICD does."""
+    """Paragraph that starts with a command of documentation tools. Text of the ICD never becomes one."""
 
 
 FILE = _Command("@file")
@@ -33,7 +33,7 @@ FILE = _Command("@file")
 
 @lru_cache(maxsize=8192)
 def plain(text: str) -> str:
-    """One line that is safe within a block comment: no comment delimiters, trigraphs or control characters."""
+    """Return one line that is safe in a block comment: without comment delimiters, trigraphs and control characters."""
     text = lines.plain(text)
     for unsafe, safe in (("*/", "* /"), ("/*", "/ *"), ("??", "? ?")):
         while unsafe in text:
@@ -43,40 +43,41 @@ def plain(text: str) -> str:
 
 @lru_cache(maxsize=8192)
 def prose(text: str) -> str:
-    """`plain` text for a documentation comment: only backticks are markup, nothing is a command or HTML to Doxygen or clang."""
+    """Return `plain` text for a documentation comment. Only backticks are markup; commands and HTML of Doxygen are escaped."""
     return _MARKUP.sub(_escaped, plain(text))
 
 
-def _escaped(found: re.Match[str]) -> str:  # a template in the place of it is read anew for each text
-    return f"\\{found[0]}"
+def _escaped(match: re.Match[str]) -> str:
+    # A function is faster than a replacement template, which `re` parses for each text.
+    return f"\\{match[0]}"
 
 
 def _spelled(paragraph: str) -> str:
-    command, space, rest = paragraph.partition(" ") if isinstance(paragraph, _Command) else ("", "", paragraph)
-    return command + space + prose(rest)
+    command, space, text = paragraph.partition(" ") if isinstance(paragraph, _Command) else ("", "", paragraph)
+    return command + space + prose(text)
 
 
 def comment(paragraphs: Iterable[str], indent: str = "") -> str:
-    """A documentation comment: one line where it fits, else a block."""
+    """Return a documentation comment: on one line if it fits, else a block."""
     paragraphs = [_spelled(p) for p in paragraphs if p]
     if len(paragraphs) == 1 and len(indent) + len(paragraphs[0]) + 7 <= WIDTH:
         return f"{indent}/** {tamed(paragraphs[0])} */"
     return "\n".join([f"{indent}/**", *commented(paragraphs, WIDTH, f"{indent} * "), f"{indent} */"])
 
 
-def described(one: Comment, indent: str = "") -> str:
-    """The comment of a part: what it is in one paragraph, and its errata as notes."""
-    return comment([" ".join((one.head, *one.details)), *noted(one)], indent)
+def described(paragraphs: Comment, indent: str = "") -> str:
+    """Return the comment of a part of the ICD, with its errata as notes."""
+    return comment([" ".join((paragraphs.head, *paragraphs.details)), *noted(paragraphs)], indent)
 
 
-def noted(one: Comment) -> list[str]:
-    """The errata as notes of the usual documentation tools."""
-    return [_Command(f"@note {paragraph.removeprefix('Note ')}") for paragraph in one.errata]
+def noted(paragraphs: Comment) -> list[str]:
+    """Return the errata as notes of documentation tools."""
+    return [_Command(f"@note {paragraph.removeprefix('Note ')}") for paragraph in paragraphs.errata]
 
 
 @lru_cache(maxsize=4096)
 def literal(text: str) -> str:
-    """A string literal of the UTF-8 bytes of ``text``; itself pure ASCII."""
+    """Return a string literal, in ASCII, of the UTF-8 bytes of a text."""
     text = text.replace("\\", "\\\\").replace('"', '\\"')
     while "??" in text:
         text = text.replace("??", "?\\?")

@@ -1,4 +1,4 @@
-"""Which C type holds a raw value, and how masks and casts to it are written."""
+"""C types of raw values, masks and casts."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from icdgen.describe import FieldDescription
 
 
 def type_of(field: FieldDescription) -> str:
-    """The type of an integer, bool, enum or float field."""
+    """Return the type of an integer, bool, enum or float field."""
     kind = field.model.type
     if kind == "bool":
         return "bool"
@@ -21,7 +21,7 @@ def type_of(field: FieldDescription) -> str:
 
 
 def declaration(field: FieldDescription) -> str:
-    """The member of a message's struct."""
+    """Return the declaration of a member of a struct."""
     name = field.name + (f"[{field.count}]" if field.count else "")
     if field.model.is_bytes:
         return f"uint8_t {name}[{field.size}]"
@@ -30,12 +30,12 @@ def declaration(field: FieldDescription) -> str:
 
 @cache
 def mask(value: int, bits: int) -> str:
-    """``0x0Fu``: an unsigned literal of the width."""
+    """Return an unsigned literal of the width: ``0x0Fu``."""
     if bits == 64:
         return f"UINT64_C(0x{value:016X})"
     return f"0x{value:0{bits // 4}X}u"
 
 
 def cast(value: str, bits: int, signed: bool = False) -> str:
-    """The value converted to an integer of the width, by a macro that C++ accepts without complaint."""
+    """Return a value converted to an integer of the width, by a macro that compiles without a warning in C++, too."""
     return f"ICDGEN_{'I' if signed else 'U'}{bits}({value})"
