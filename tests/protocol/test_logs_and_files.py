@@ -80,7 +80,7 @@ def test_a_time_is_valid_if_the_calendar_has_it(known, value):
         there = True
     except ValueError:
         there = False
-    assert (times.wrong(parts) is None) == there
+    assert (times.invalid_part(parts) is None) == there
 
 
 @quick

@@ -1,5 +1,7 @@
-"""How messages travel: the reference implementation of framing, checksums, CAN packets, logs and file transfer.
+"""Reference implementation of the protocol: framing, checksums, CAN packets, logs and
+file transfer.
 
-Slow and obvious, without any I/O, and driven by the protocol facts of the ICD alone: the judge of the protocol layers
-that are generated. `icdgen.protocol.facts.of` gives the facts of a node.
+The code is written for clarity, not for speed, performs no I/O and depends only on the
+protocol facts of the ICD. Tests compare generated protocol layers with it.
+`icdgen.protocol.facts.of` returns the facts of a node.
 """

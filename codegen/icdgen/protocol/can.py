@@ -1,7 +1,8 @@
-"""CAN: messages <-> packets.
+"""Splitting of messages into CAN packets and joining of packets to messages.
 
-A message is split into one packet, or into several of an extended type, each of which counts the packets still to come.
-The joiner takes packets in any order and from several senders at once.
+A message fits into one packet, or it is split into several packets of an extended type.
+Each of these carries the number of packets that follow. The joiner accepts packets in
+any order and from several senders at once.
 """
 
 from __future__ import annotations
@@ -15,22 +16,25 @@ from icdgen.protocol.facts import Facts, need
 from icdgen.protocol.sections import CAN_WITH_DATA, Can
 
 MESSAGE = "message"
-DUPLICATE = "duplicate"  # a packet that was there already, dropped
-INCOMPLETE = "incomplete"  # a message that was given up for want of packets
-MALFORMED = "malformed"  # a packet that cannot be part of such a message
-BUSY = "busy"  # more senders at once than there is room for, the packet is dropped
-UNKNOWN_TYPE = "unknown_type"  # a message type that the ICD does not have
+# Events of `Joiner`.
+DUPLICATE = "duplicate"  # packet was received before; dropped
+INCOMPLETE = "incomplete"  # packets of a message did not arrive in time; dropped
+MALFORMED = "malformed"  # packet that cannot belong to such a message
+BUSY = "busy"  # too many senders at once; packet dropped
+UNKNOWN_TYPE = "unknown_type"  # message type that the ICD does not define
 
 
 class Packet(NamedTuple):
-    """A CAN frame: 29-bit identifier and data."""
+    """CAN frame: 29-bit identifier and data."""
 
     id: int
     data: bytes
 
 
 class Message(NamedTuple):
-    """A message: its kind, the id of the telecommand or telemetry, the addresses, the data."""
+    """Message of one CAN kind with the id of its telecommand or telemetry, its
+    addresses and its data.
+    """
 
     kind: str
     id: int
@@ -40,7 +44,11 @@ class Message(NamedTuple):
 
 
 class Event(NamedTuple):
-    """What the joiner found. ``id`` and ``source`` are those of the packet or message; ``missing`` of INCOMPLETE."""
+    """Event of the joiner.
+
+    ``id`` and ``source`` belong to the packet or message. ``missing`` counts the
+    packets that did not arrive (INCOMPLETE only).
+    """
 
     event: str
     id: int
@@ -50,7 +58,10 @@ class Event(NamedTuple):
 
 
 def identifier(can: Can, **parts: int) -> int:
-    """The 29-bit identifier made of its parts. Raises `ValueError` for one that does not fit."""
+    """Return the 29-bit identifier composed of its parts.
+
+    Raises `ValueError` if a part does not fit its bits.
+    """
     value = 0
     for role, part in can.parts.items():
         if not 0 <= parts[role] < 1 << part.bits:
@@ -60,12 +71,15 @@ def identifier(can: Can, **parts: int) -> int:
 
 
 def parts_of(can: Can, id: int) -> dict[str, int]:
-    """The parts of an identifier by role."""
+    """Return the parts of an identifier by role."""
     return {role: id >> part.shift & (1 << part.bits) - 1 for role, part in can.parts.items()}
 
 
 def split(facts: Facts, message: Message) -> list[Packet]:
-    """The packets of a message, in the order in which they are sent. Raises `TooLongError`."""
+    """Return the packets of a message in sending order.
+
+    Raises `TooLongError` if the message does not fit its kind.
+    """
     can = need(facts.can, "can")
 
     def packet(types: dict[str, int], data: bytes) -> Packet:
@@ -83,27 +97,29 @@ def split(facts: Facts, message: Message) -> list[Packet]:
     if size > form.bytes:
         raise TooLongError(form.bytes, size)
     pieces = [data[at : at + form.data_bytes] for at in range(0, size, form.data_bytes)]
+    # The counter byte has a fixed position, which may lie behind the data bytes of a
+    # packet.
     width, fill = max(form.data_bytes, form.left_at), bytes([form.fill])
-    lefts = range(form.left_in_last + len(pieces) - 1, form.left_in_last - 1, -1)
-    filled = [piece.ljust(width, fill) + bytes([left]) for piece, left in zip(pieces, lefts, strict=True)]
-    return [packet(can.extended_types, one) for one in filled]
+    packets_left = range(form.left_in_last + len(pieces) - 1, form.left_in_last - 1, -1)
+    filled = [piece.ljust(width, fill) + bytes([count]) for piece, count in zip(pieces, packets_left, strict=True)]
+    return [packet(can.extended_types, data) for data in filled]
 
 
 @dataclass
-class _Joining:
-    """A message of several packets. ``count`` is that of all its packets."""
+class _PartialMessage:
+    """Message of several packets that is being received."""
 
     key: tuple[int, int, int, int]  # type, id, source, destination
     kind: str
-    count: int
-    length: int | None  # of the data, where the ICD knows it
+    count: int  # packets of the whole message
+    length: int | None  # of the data in bytes; None if the ICD does not define it
     packets: dict[int, bytes]
-    last: int  # when the last packet came, ms
-    in_order: int = 0  # packets 0 to run-1 came last, one after the other
-    completed_by: int | None = None  # the packet that completed it
+    last: int  # time of the last packet in ms
+    in_order: int = 0  # length of the last uninterrupted run of packets from packet 0 on
+    completed_by: int | None = None  # number of the packet that completed the message
 
-    def came(self, number: int, now: int) -> None:
-        """Notes that a packet came, be it a repeated one."""
+    def record_packet(self, number: int, now: int) -> None:
+        """Record the arrival of a packet, repeated packets included."""
         self.last = now
         if number == self.in_order:
             self.in_order += 1
@@ -112,22 +128,28 @@ class _Joining:
 
 
 class Joiner:
-    """Puts messages together. ``address``: whose messages (None: everybody's), ``senders``: joinings at once."""
+    """Reassembly of messages from packets.
+
+    ``address``: destination whose messages are joined (None: all). ``senders``: number
+    of messages that can be under reassembly at once.
+    """
 
     def __init__(self, facts: Facts, address: int | None = None, senders: int = 4) -> None:
         self.facts, self.can = facts, need(facts.can, "can")
         self.address, self.senders = address, senders
-        self.room = ceil(facts.longest_data / self.can.extended.data_bytes) if self.can.extended else 0  # packets
-        self.open: list[_Joining] = []
+        self.room = ceil(facts.longest_data / self.can.extended.data_bytes) if self.can.extended else 0  # in packets
+        self.open: list[_PartialMessage] = []
 
     def expire(self, now: int) -> list[Event]:
-        """Gives up what has waited too long for its next packet, in the order in which the messages began."""
+        """Discard messages whose next packet is overdue, in the order in which they
+        began.
+        """
         form = self.can.extended
-        late = [t for t in self.open if form and now - t.last >= form.packet_timeout]
-        return [event for joining in late for event in self._give_up(joining)]
+        overdue = [message for message in self.open if form and now - message.last >= form.packet_timeout]
+        return [event for message in overdue for event in self._give_up(message)]
 
     def feed(self, now: int, packet: Packet) -> list[Event]:
-        """Takes one packet; ``now`` in milliseconds."""
+        """Process one packet; ``now`` in milliseconds."""
         events = self.expire(now)
         parts = parts_of(self.can, packet.id)
         type_, id, source, destination = (parts[role] for role in ("type", "channel", "source", "destination"))
@@ -146,45 +168,49 @@ class Joiner:
     def _extended(self, key: tuple[int, int, int, int], kind: str, data: bytes, now: int) -> list[Event]:
         form = need(self.can.extended, "can.extended")
         _, id, source, destination = key
-        old = next((t for t in self.open if t.key == key), None)
+        pending = next((message for message in self.open if message.key == key), None)
         if len(data) != form.left_at + 1:
-            return [*self._give_up(old), Event(MALFORMED, id, source)]
+            return [*self._give_up(pending), Event(MALFORMED, id, source)]
         left, piece = data[form.left_at] - form.left_in_last, data[: form.data_bytes]
         length = self._length(kind, id)
         if length is not None:
             count = ceil(length / form.data_bytes)
-        elif old and old.completed_by is None and left < old.count:
-            count = old.count
-        else:  # the first packet that comes tells how many there are
+        elif pending and pending.completed_by is None and left < pending.count:
+            count = pending.count
+        else:  # the first packet that arrives fixes the number of packets
             count = left + 1
         if not 0 <= left < count <= self.room:
-            return [*self._give_up(old), Event(MALFORMED, id, source)]
-        number, events, kept = count - 1 - left, [], {}
-        if old and (old.completed_by in (None, number)) and old.packets.get(number) == piece:
-            old.came(number, now)
+            return [*self._give_up(pending), Event(MALFORMED, id, source)]
+        number, events, retained = count - 1 - left, [], {}
+        # A repeated packet is a duplicate as long as it cannot begin the next message.
+        if pending and (pending.completed_by in (None, number)) and pending.packets.get(number) == piece:
+            pending.record_packet(number, now)
             return [Event(DUPLICATE, id, source)]
-        # another message has begun, perhaps with the same packets as the old one up to here
-        if old and (old.completed_by is not None or old.count != count or number in old.packets):
-            if old.completed_by is None and number == old.in_order:
-                kept = {n: old.packets[n] for n in range(number)}
-            events += self._give_up(old)
-            old = None
-        if old is None:
-            old = _Joining(key, kind, count, length, kept, now, len(kept))
-            if not self._make_room(old):
+        # Another message has begun. Its packets so far may equal those of the pending message:
+        if pending and (pending.completed_by is not None or pending.count != count or number in pending.packets):
+            # They are not sent again, so they must be retained.
+            if pending.completed_by is None and number == pending.in_order:
+                retained = {n: pending.packets[n] for n in range(number)}
+            events += self._give_up(pending)
+            pending = None
+        if pending is None:
+            pending = _PartialMessage(key, kind, count, length, retained, now, len(retained))
+            if not self._make_room(pending):
                 return [*events, Event(BUSY, id, source)]
-        old.packets[number] = piece
-        old.came(number, now)
-        if len(old.packets) == old.count:
-            old.completed_by = number
-            joined = b"".join(old.packets[n] for n in range(old.count))[: old.length]
+        pending.packets[number] = piece
+        pending.record_packet(number, now)
+        if len(pending.packets) == pending.count:
+            pending.completed_by = number
+            joined = b"".join(pending.packets[n] for n in range(pending.count))[: pending.length]
             events.append(Event(MESSAGE, id, source, Message(kind, id, source, destination, joined)))
         return events
 
-    def _make_room(self, new: _Joining) -> bool:
-        """Opens a joining, for which the oldest finished one makes room."""
+    def _make_room(self, new: _PartialMessage) -> bool:
+        """Add a message under reassembly; the oldest complete message makes room for
+        it. Return whether there is room.
+        """
         if len(self.open) == self.senders:
-            finished = next((t for t in self.open if t.completed_by is not None), None)
+            finished = next((message for message in self.open if message.completed_by is not None), None)
             if finished is None:
                 return False
             self.open.remove(finished)
@@ -192,16 +218,22 @@ class Joiner:
         return True
 
     def _length(self, kind: str, id: int) -> int | None:
-        """Bytes of the message, if the ICD knows it and it needs several packets."""
-        known = (self.facts.telecommands if kind == "telecommand" else self.facts.telemetry).get(id)
-        return known.length if known and known.length > self.can.data_bytes else None
+        """Return the data length of a message of several packets; None if the ICD does
+        not define it.
+        """
+        message = (self.facts.telecommands if kind == "telecommand" else self.facts.telemetry).get(id)
+        return message.length if message and message.length > self.can.data_bytes else None
 
-    def _give_up(self, joining: _Joining | None) -> list[Event]:
-        """Forgets a joining. One that is finished leaves no event: it was kept to know repeated packets."""
-        if joining is None:
+    def _give_up(self, message: _PartialMessage | None) -> list[Event]:
+        """Remove a message under reassembly.
+
+        A complete message is only retained to recognize repeated packets; its removal
+        is no event.
+        """
+        if message is None:
             return []
-        self.open.remove(joining)
-        if joining.completed_by is not None:
+        self.open.remove(message)
+        if message.completed_by is not None:
             return []
-        _, id, source, _ = joining.key
-        return [Event(INCOMPLETE, id, source, missing=joining.count - len(joining.packets))]
+        _, id, source, _ = message.key
+        return [Event(INCOMPLETE, id, source, missing=message.count - len(message.packets))]

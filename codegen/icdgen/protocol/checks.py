@@ -1,4 +1,7 @@
-"""The checksums of an envelope: CRCs, Fletcher's, sums and exclusive ors. Slow and obvious."""
+"""Checksums of packet formats: CRC, Fletcher, sum and exclusive or.
+
+Reference implementation: written for clarity, not for speed.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ from icdgen.protocol.envelope import CRC, Check
 
 
 def compute(check: Check, data: bytes) -> int:
-    """The checksum of all that it covers, as a number."""
+    """Return the checksum of the covered bytes as a number."""
     form = check.crc
     if check.kind == CRC:
         return crc.compute(form, data)

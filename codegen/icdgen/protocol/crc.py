@@ -1,4 +1,4 @@
-"""CRCs of the parameters that an ICD gives."""
+"""CRCs with the parameters of an ICD."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from icdgen.protocol.sections import Crc
 
 
 def compute(crc: Crc, data: bytes) -> int:
-    """The CRC of the bytes."""
+    """Return the CRC of the bytes."""
     if not data and crc.empty is not None:
         return crc.empty
     return checksum.crc(data, crc.width, crc.polynomial, crc.init, crc.reflect_in, crc.reflect_out, crc.xor_out)

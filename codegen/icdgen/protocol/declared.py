@@ -1,9 +1,11 @@
-"""How a fact of the protocol is declared: once, as a field of a frozen dataclass.
+"""Declaration of protocol facts. Each fact is declared once, as a field of a frozen
+dataclass::
 
-    reply_timeout: int = time("reply_timeout_ms", "how long a reply may take", default=1000)
+    reply_timeout: int = time("reply_timeout_ms", "time-out of a reply", default=1000)
 
-The JSON Schema of the ICD's protocol section, the reader, the types in `runtime/` and the initialisers in generated links
-are all made from that line. After a change, `python -m scripts.protocol_facts` writes the schema and `runtime/`.
+This line defines the JSON Schema of the protocol section, the reader, the types in
+`runtime/` and the initializers in generated links. After a change, run `python -m
+scripts.protocol_facts` to write the schema and `runtime/`.
 """
 
 from __future__ import annotations
@@ -17,77 +19,85 @@ from typing import Any, Final
 from icdgen.frozen import dataclass
 
 BYTE, U16, U32 = 0xFF, 0xFFFF, 0xFFFF_FFFF
-MOST_MS = 0x7FFF_FFFF  # of a time: half of what 32 bits hold, so that times can be compared where clocks run over
-REQUIRED: Final = object()  # there is no default: without the key, the ICD does not describe the part
+MOST_MS = 0x7FFF_FFFF  # upper limit of a time: half of 32 bits, so that times compare across a clock overflow
+REQUIRED: Final = object()  # no default: without this key, the ICD does not describe the part
 
 
 class Kind(Enum):
-    """What a fact is; each language has one type for it and one way to spell it."""
+    """Kind of a fact. Each language has one type and one notation for each kind."""
 
     NUMBER = auto()
-    SIZE = auto()  # a number of bytes, or where something stands
+    SIZE = auto()  # number of bytes, or byte position
     TIME = auto()  # in milliseconds
     OCTET = auto()  # a byte on the wire
     CODE = auto()  # a number that is read in hexadecimal
     FLAG = auto()
     BUSES = auto()  # some of UART, I2C and CAN
-    SPAN = auto()  # (where bytes stand, how many they are)
-    ALLOWED = auto()  # bytes that can be chosen; none: all
-    STEP = auto()  # a message and its fields by role
+    SPAN = auto()  # (byte position, number of bytes)
+    ALLOWED = auto()  # selectable bytes; empty: all
+    STEP = auto()  # message and its fields by role
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Fact:
-    """One fact. ``least`` and ``most`` are those of the ICD, ``holds`` is the most that generated code has room for."""
+    """Protocol fact.
+
+    ``least`` and ``most`` limit the value in the ICD. ``holds`` is the largest value of
+    the type in generated code.
+    """
 
     name: str
     kind: Kind
-    key: str  # of the ICD, with dots from the section on; empty: it follows from other keys
-    about: str  # what it means, beginning in lower case
+    key: str  # dotted key within the section of the ICD; empty: derived from other keys
+    about: str  # meaning, beginning in lower case
     least: int = 0
     most: int | None = None
     holds: int = U32
     default: object = REQUIRED
-    factor: int = 1  # how many of its unit one of the ICD is
-    words: tuple[object, ...] = ()  # of a flag: what the ICD says for false and for true
-    listed: str = ""  # of a flag that is set if the ICD's list has this entry
-    key_about: str = ""  # what the key means, where that is something else
-    direction: str = ""  # of a step: telecommand or telemetry
+    factor: int = 1  # ICD value to value of the fact, for example seconds to milliseconds
+    words: tuple[object, ...] = ()  # of a flag: values in the ICD for false and for true
+    listed: str = ""  # of a flag: entry of the ICD's list that sets it
+    key_about: str = ""  # meaning of the key, if it differs from `about`
+    direction: str = ""  # of a step: "telecommand" or "telemetry"
 
     @property
     def is_optional(self) -> bool:
-        """Whether it may be unknown."""
+        """Whether the value can be unknown (None)."""
         return self.default is None
 
     @property
     def meaning(self) -> str:
-        """What it means, with its unit."""
+        """Meaning with its unit."""
         return f"{self.about}, in milliseconds" if self.kind is Kind.TIME else self.about
 
     def given(self, section: Mapping[str, Any]) -> object:
-        """What the ICD says, None if it says nothing."""
-        found: Any = section
+        """Return the value in the ICD; None if the key is missing."""
+        value: Any = section
         for part in self.key.split("."):
-            found = found.get(part) if isinstance(found, Mapping) else None
-        return found
+            value = value.get(part) if isinstance(value, Mapping) else None
+        return value
 
-    def read(self, section: Mapping[str, Any], known: Mapping[str, object]) -> object:
-        """The value in a section. ``known``: the values of the facts before it, from which a default may follow."""
-        found = self.given(section) if self.key else None
-        if found is None:
-            return self.default(known) if callable(self.default) else self.default
+    def read(self, section: Mapping[str, Any], preceding: Mapping[str, object]) -> object:
+        """Return the value of the fact in a section.
+
+        ``preceding``: values of the facts before it; a default may be computed from
+        them.
+        """
+        value = self.given(section) if self.key else None
+        if value is None:
+            return self.default(preceding) if callable(self.default) else self.default
         if self.kind is Kind.FLAG:
-            return self.listed in found if self.listed else found == self.words[1]  # type: ignore[operator]
+            return self.listed in value if self.listed else value == self.words[1]  # type: ignore[operator]
         if self.kind is Kind.ALLOWED:
-            return tuple(found)  # type: ignore[arg-type]
-        return found * self.factor  # type: ignore[operator]
+            return tuple(value)  # type: ignore[arg-type]
+        return value * self.factor  # type: ignore[operator]
 
 
-Default = object  # a value, None for a fact that may be unknown, or a function of the facts before
+Default = object  # a value, None for an optional fact, or a function of the preceding facts
 
 
 def _declare(kind: Kind, key: str, about: str, default: Default = REQUIRED, **more: Any) -> Any:
-    """The field of a dataclass."""
+    """Return the field of a dataclass that carries the declaration."""
     metadata = {"fact": (kind, key, about, default, more)}
     if default is REQUIRED or callable(default):
         return field(metadata=metadata)
@@ -97,31 +107,35 @@ def _declare(kind: Kind, key: str, about: str, default: Default = REQUIRED, **mo
 def number(
     key: str, about: str, least: int = 0, most: int | None = None, default: Default = REQUIRED, holds: int | None = None
 ) -> Any:
-    """A number."""
+    """Declare a number."""
     return _declare(Kind.NUMBER, key, about, default, least=least, most=most, holds=holds or most or U32)
 
 
 def octets(
     key: str, about: str, least: int = 1, most: int | None = U16, default: Default = REQUIRED, holds: int | None = None
 ) -> Any:
-    """A number of bytes, or where something stands."""
+    """Declare a number of bytes, or a byte position."""
     return _declare(Kind.SIZE, key, about, default, least=least, most=most, holds=holds or most or U32)
 
 
 def time(key: str, about: str, default: Default = REQUIRED) -> Any:
-    """A time; the end of the key, ``_ms`` or ``_s``, is its unit."""
+    """Declare a time.
+
+    The suffix of the key, ``_ms`` or ``_s``, is its unit in the ICD; the fact is in
+    milliseconds.
+    """
     if key.endswith("_s"):
         return _declare(Kind.TIME, key, about, default, least=0, most=MOST_MS // 1000, factor=1000)
     return _declare(Kind.TIME, key, about, default, least=1, most=MOST_MS)
 
 
 def octet(key: str, about: str, default: Default = REQUIRED) -> Any:
-    """A byte on the wire."""
+    """Declare a byte of the transmission."""
     return _declare(Kind.OCTET, key, about, default, most=BYTE, holds=BYTE)
 
 
 def code(key: str, about: str, default: Default = REQUIRED) -> Any:
-    """A number of up to 32 bits whose bits matter."""
+    """Declare a number of up to 32 bits that is read in hexadecimal."""
     return _declare(Kind.CODE, key, about, default)
 
 
@@ -133,55 +147,69 @@ def flag(
     listed: str = "",
     key_about: str = "",
 ) -> Any:
-    """A truth value: ``words`` are what the ICD says for false and for true; with ``listed``, the entries of its list."""
+    """Declare a flag.
+
+    ``words``: values in the ICD for false and for true. ``listed``: entry of a list in
+    the ICD that sets the flag; then ``words`` are the entries of the list.
+    """
     return _declare(Kind.FLAG, key, about, default, words=words, listed=listed, key_about=key_about)
 
 
 def allowed(key: str, about: str, key_about: str) -> Any:
-    """Bytes of which one is chosen; none: all can be."""
+    """Declare selectable bytes; an empty tuple allows all."""
     return _declare(Kind.ALLOWED, key, about, (), key_about=key_about)
 
 
 def buses(key: str, about: str) -> Any:
-    """Some of UART, I2C and CAN, which code reads under the key."""
+    """Declare a set of buses out of UART, I2C and CAN.
+
+    `Reader.checksum` evaluates the key.
+    """
     return _declare(Kind.BUSES, key, about)
 
 
 def span(about: str) -> Any:
-    """Where bytes stand, and how many they are."""
+    """Declare a byte position and a number of bytes."""
     return _declare(Kind.SPAN, "", about)
 
 
 def telecommand(key: str, about: str) -> Any:
-    """A telecommand that plays a part in a procedure."""
+    """Declare a telecommand of a procedure."""
     return _declare(Kind.STEP, key, about, direction="telecommand")
 
 
 def telemetry(key: str, about: str) -> Any:
-    """A frame that plays a part in a procedure."""
+    """Declare a telemetry frame of a procedure."""
     return _declare(Kind.STEP, key, about, direction="telemetry")
 
 
 def facts_of(part: Any) -> tuple[Fact, ...]:
-    """The facts that a dataclass, or one of its objects, declares, in order. What it holds beside them is made by code."""
+    """Return the declared facts of a dataclass or of its instance, in order.
+
+    Fields without a declaration are computed by `icdgen.protocol.reading`.
+    """
     return _facts(part if isinstance(part, type) else type(part))
 
 
+# Cached by class: an instance need not be hashable.
 @cache
 def _facts(part: Hashable) -> tuple[Fact, ...]:
     assert isinstance(part, type)
-    found = ((one.name, *one.metadata["fact"]) for one in fields(part) if "fact" in one.metadata)
-    return tuple(Fact(name, kind, key, about, default=it, **more) for name, kind, key, about, it, more in found)
+    declarations = ((item.name, *item.metadata["fact"]) for item in fields(part) if "fact" in item.metadata)
+    return tuple(
+        Fact(name, kind, key, about, default=default, **more) for name, kind, key, about, default, more in declarations
+    )
 
 
 def read(
-    part: type[Any], section: Mapping[str, Any], step: Callable[[Fact], object] | None = None, **made: object
+    part: type[Any], section: Mapping[str, Any], step: Callable[[Fact], object] | None = None, **computed: object
 ) -> Any:
-    """A part read from its section, None if that lacks what has no default.
+    """Read a part from its section; None if a key without a default is missing.
 
-    ``step`` finds the message of a step. ``made``: what code made of other keys.
+    ``step`` resolves the message of a step. ``computed``: values that follow from other
+    keys.
     """
-    values = dict(made)
+    values = dict(computed)
     for fact in facts_of(part):
         if fact.name in values:
             continue

@@ -1,6 +1,8 @@
-"""The envelope of a link that the ICD describes as data: a header and a trailer of fields with roles, around the data.
+"""Packet format of a link as the ICD describes it: fields with roles in a header and a
+trailer around the data.
 
-Everything a decoder computes with is decided here, once for all languages: a field is some bytes in an order, a shift and a width.
+All quantities of the decoder are computed here, once for all languages: a field is a
+range of bytes in a byte order, a shift and a width.
 """
 
 from __future__ import annotations
@@ -20,13 +22,17 @@ ROLES = ("constant", "id", "length", "checksum", *GIVEN)
 
 CRC, FLETCHER, FLETCHER_255, SUM, XOR = CHECKS = checksum.KINDS
 DIRECTIONS = ("telecommand", "telemetry")
-DATA = "data"  # in `covers`: what the envelope is around
-WORD = 32  # bits of the numbers that are computed with
+DATA = "data"  # in `covers`: the data between header and trailer
+WORD = 32  # bits of the decoder's arithmetic
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class EnvelopeField:
-    """A field: ``size`` bytes at byte ``at`` of the header or trailer are a number, shifted and cut to ``bits``."""
+    """Field of the header or trailer.
+
+    The ``size`` bytes at byte ``at`` form a number, which is shifted right by ``shift``
+    and masked to ``bits``.
+    """
 
     role: str  # one of `ROLES`
     in_trailer: bool
@@ -35,85 +41,95 @@ class EnvelopeField:
     shift: int
     bits: int
     little: bool
-    values: tuple[int, int]  # of a constant, or unless another is chosen: in telecommands, in telemetry
+    values: tuple[int, int]  # value of a constant, or default: in telecommands, in telemetry
 
     @property
     def mask(self) -> int:
-        """The greatest value."""
+        """Largest value of the field."""
         return (1 << self.bits) - 1
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Check:
-    """The checksum: what it is computed over, beside the data, and how. Kinds other than a CRC use init, xor_out and width."""
+    """Checksum of a packet format: its algorithm, and the bytes that it covers in
+    addition to the data.
+
+    Kinds other than a CRC use only ``init``, ``xor_out`` and ``width`` of `crc`.
+    """
 
     kind: str  # one of `CHECKS`
     crc: Crc
-    covered_from: int  # byte of the header from which on it is computed
-    covered_trailer: int  # bytes of the trailer that it covers
-    is_seeded: bool  # whether the seed of the message is covered, as a byte after all others
+    covered_from: int  # first covered byte of the header
+    covered_trailer: int  # number of covered bytes of the trailer
+    is_seeded: bool  # whether the seed of the message is covered, as the last byte
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class StreamRow:
-    """A message under its id in one direction, and the lengths that its data can have."""
+    """Message of one direction: its id and the range of its data length in bytes."""
 
     id: int
     least: int
     most: int
-    cuts_zeros: bool  # whether zeros at the end of the data are not sent, but for one byte
+    cuts_zeros: bool  # whether trailing zeros of the data are not sent (at least one byte is)
     seed: int
-    reply: int | None  # id of the telemetry that a telecommand is answered with
+    reply: int | None  # id of the telemetry that responds to a telecommand
     name: str
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class Stream:
-    """How messages are put into a stream of bytes, or into packets."""
+    """Packet format of messages in a byte stream or in packets."""
 
     delimited_by: str  # one of `DELIMITERS`
     header_bytes: int
     trailer_bytes: int
-    length_plus: int  # what the field of the length has more than the data have bytes
-    per_id: bool  # whether each id counts its own sequence
+    length_plus: int  # value of the length field minus bytes of data
+    per_id: bool  # whether each id has its own sequence counter
     fields: tuple[EnvelopeField, ...]
     check: Check | None
-    telecommands: tuple[StreamRow, ...]  # by rising id
+    telecommands: tuple[StreamRow, ...]  # in ascending order of ids
     telemetry: tuple[StreamRow, ...]
 
     def rows(self, direction: str) -> tuple[StreamRow, ...]:
-        """The messages of a direction."""
+        """Return the messages of a direction."""
         return self.telemetry if direction == "telemetry" else self.telecommands
 
     def of(self, role: str) -> EnvelopeField | None:
-        """The field of a role that there is at most once."""
+        """Return the field of a role that occurs at most once; None without such a field."""
         return next((field for field in self.fields if field.role == role), None)
 
     @property
     def longest_data(self) -> int:
-        """Most bytes of data."""
+        """Largest number of data bytes of a message."""
         return max((row.most for row in (*self.telecommands, *self.telemetry)), default=0)
 
     @property
     def longest_request(self) -> int:
-        """Most bytes of data of a telecommand."""
+        """Largest number of data bytes of a telecommand."""
         return max((row.most for row in self.telecommands), default=0)
 
     @property
     def longest(self) -> int:
-        """Bytes of the longest message, with its envelope but without what delimits it."""
+        """Bytes of the longest message with header and trailer, without delimiters and
+        byte stuffing.
+        """
         return self.header_bytes + self.longest_data + self.trailer_bytes
 
     @property
     def sequences(self) -> int:
-        """Numbers that a decoder remembers to notice gaps."""
+        """Number of sequence counters that a decoder stores to detect gaps."""
         if self.of("sequence") is None:
             return 0
         return max(1, len(self.telecommands), len(self.telemetry)) if self.per_id else 1
 
     @property
     def longest_line(self) -> int:
-        """Most bytes of a message with what delimits it."""
+        """Largest number of transmitted bytes of a message, with delimiters and byte
+        stuffing.
+        """
+        # Worst case: each byte is escaped (SLIP, HDLC), or a code byte for each 254
+        # bytes (COBS).
         if self.delimited_by in (SLIP, HDLC):
             return 2 * self.longest + 2
         return self.longest + (self.longest // 254 + 2 if self.delimited_by == COBS else 0)

@@ -1,4 +1,6 @@
-"""The `stream` section of a checked ICD -> the parts of `icdgen.protocol.envelope`."""
+"""Reader of the `stream` section of a checked ICD, into the classes of
+`icdgen.protocol.envelope`.
+"""
 
 from __future__ import annotations
 
@@ -14,14 +16,19 @@ Section = Mapping[str, Any]
 
 
 def bytes_of(bits: Iterable[tuple[int, int]]) -> int:
-    """Whole bytes up to the last of the fields, given as place and width."""
+    """Return the number of bytes up to the end of the last field.
+
+    ``bits``: position and width of each field in bits.
+    """
     return -(-max((at + width for at, width in bits), default=0) // 8)
 
 
 def field_of(node: Node, row: Section, in_trailer: bool) -> EnvelopeField:
-    """A row of the header or trailer."""
+    """Return the field of a row of the header or trailer."""
     at, bits = row["at"], row["bits"]
     first, last = at // 8, (at + bits - 1) // 8
+    # Bits count from the first byte on. For msb0, bit 0 is the most significant bit of
+    # that byte.
     shift = at % 8 if node.bit_order != "msb0" else (last + 1) * 8 - at - bits
     little = row.get("byte_order", node.byte_order) == "little"
     role = "constant" if row["role"] == "sync" else row["role"]
@@ -30,10 +37,13 @@ def field_of(node: Node, row: Section, in_trailer: bool) -> EnvelopeField:
 
 
 def values_of(row: Section, little: bool) -> tuple[int, int]:
-    """The values that a row holds in each direction; bytes stand in the order in which they are sent."""
+    """Return the values of a row in both directions.
+
+    A list of bytes is in sending order.
+    """
     value = row.get("value", 0)
-    sent, came = (value.get(direction, 0) if isinstance(value, Mapping) else value for direction in DIRECTIONS)
-    return _number(sent, little), _number(came, little)
+    sent, received = (value.get(direction, 0) if isinstance(value, Mapping) else value for direction in DIRECTIONS)
+    return _number(sent, little), _number(received, little)
 
 
 def _number(value: Any, little: bool) -> int:
@@ -43,55 +53,60 @@ def _number(value: Any, little: bool) -> int:
 def rows_of(
     ids: Mapping[int, tuple[Variant, ...]], seeds: Mapping[str, int], replies: Mapping[str, int]
 ) -> tuple[StreamRow, ...]:
-    """The messages of a direction, those that share an id as one: in the envelope they are alike (ICD174)."""
+    """Return the messages of a direction.
+
+    Messages that share an id form one row; rule ICD174 ensures that they agree in the
+    packet format.
+    """
     rows = []
-    for id, those in sorted(ids.items()):
-        messages = [one.message for one in those]
-        least, most = min(one.layout.shortest for one in messages), max(one.length for one in messages)
-        first, name = messages[0], " or ".join(one.name for one in messages)
-        reply = next((replies[one.name] for one in messages if one.name in replies), None)
+    for id, variants in sorted(ids.items()):
+        messages = [variant.message for variant in variants]
+        least, most = min(message.layout.shortest for message in messages), max(message.length for message in messages)
+        first, name = messages[0], " or ".join(message.name for message in messages)
+        reply = next((replies[message.name] for message in messages if message.name in replies), None)
         rows.append(StreamRow(id, least, most, bool(first.may_end_early), seeds.get(first.name, 0), reply, name))
     return tuple(rows)
 
 
 def place_of(rows: Iterable[Section], name: str, last: bool) -> Section | None:
-    """The first or last row of that role."""
-    found = [row for row in rows if row.get("role") == name]
-    return found[-1 if last else 0] if found else None
+    """Return the first or last row of a role; None without such a row."""
+    matches = [row for row in rows if row.get("role") == name]
+    return matches[-1 if last else 0] if matches else None
 
 
 def check_of(section: Section, checksums: Section) -> Check | None:
-    """The checksum that a row asks for."""
+    """Return the checksum that a checksum row refers to."""
     header, trailer = section.get("header", ()), section.get("trailer", ())
     row = place_of((*header, *trailer), "checksum", False)
-    given = checksums.get(row.get("checksum", "")) if row else None
-    if not given:
+    declaration = checksums.get(row.get("checksum", "")) if row else None
+    if not declaration:
         return None
-    kind = given["kind"]
-    width, polynomial, init, xor_out = (given.get(key, 0) for key in ("width", "polynomial", "init", "xor_out"))
-    reflected = given.get("reflect_in", False), given.get("reflect_out", False)
-    crc = Crc(width, polynomial, init, *reflected, xor_out, given.get("empty"))
-    first = place_of(header, given["covers"]["from"], False)
-    last = place_of(trailer, given["covers"]["to"], True)
+    kind = declaration["kind"]
+    width, polynomial, init, xor_out = (declaration.get(key, 0) for key in ("width", "polynomial", "init", "xor_out"))
+    reflected = declaration.get("reflect_in", False), declaration.get("reflect_out", False)
+    crc = Crc(width, polynomial, init, *reflected, xor_out, declaration.get("empty"))
+    first = place_of(header, declaration["covers"]["from"], False)
+    last = place_of(trailer, declaration["covers"]["to"], True)
     return Check(
         kind,
         crc,
-        first["at"] // 8 if first else bytes_of((one["at"], one["bits"]) for one in header),
+        first["at"] // 8 if first else bytes_of((row["at"], row["bits"]) for row in header),
         bytes_of([(last["at"], last["bits"])]) if last else 0,
-        bool(given.get("seeds")),
+        bool(declaration.get("seeds")),
     )
 
 
 def stream_of(node: Node, section: Section, checksums: Section, ids: Ids) -> Stream:
-    """What code makes of the section."""
+    """Return the packet format of a `stream` section."""
     header, trailer = section.get("header", ()), section.get("trailer", ())
     fields = [field_of(node, row, row_in is trailer) for row_in in (header, trailer) for row in row_in]
     sizes = [bytes_of((row["at"], row["bits"]) for row in rows) for rows in (header, trailer)]
     length, sequence = (place_of((*header, *trailer), role, False) or {} for role in ("length", "sequence"))
     check = place_of((*header, *trailer), "checksum", False) or {}
     seeds = checksums.get(check.get("checksum", ""), {}).get("seeds", {})
-    named = {one.message.name: id for id, those in ids.telemetry.items() for one in those}
-    replies = {sent: named[came] for sent, came in section.get("replies", {}).items() if came in named}
+    named = {variant.message.name: id for id, variants in ids.telemetry.items() for variant in variants}
+    replies = {sent: named[reply] for sent, reply in section.get("replies", {}).items() if reply in named}
+    # `counts: message` includes header and trailer in the length field.
     counts_all = length.get("counts", DATA) == "message"
     assert all(field.role in ROLES for field in fields)
     return Stream(

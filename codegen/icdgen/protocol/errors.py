@@ -1,4 +1,4 @@
-"""What the reference refuses; the runtimes call it the same."""
+"""Errors of the reference implementation; the runtimes use the same names."""
 
 from __future__ import annotations
 
@@ -6,18 +6,22 @@ from typing import ClassVar
 
 
 class Refused(Exception):
-    """A "no". ``error`` is what answers call it, ``told`` all that they say of it, ``answer`` a whole one."""
+    """Refusal of a request.
+
+    ``error`` is the code in JSON responses, ``details`` all members that describe the
+    error, ``answer`` the complete response.
+    """
 
     error: str
 
     def __init__(self, text: object = "", **more: object) -> None:
         super().__init__(text)
-        self.told = {"error": self.error, **more}
-        self.answer = {"ok": False, **self.told}
+        self.details = {"error": self.error, **more}
+        self.answer = {"ok": False, **self.details}
 
 
 class Mismatch(Refused, ValueError):
-    """Something is not as it must be."""
+    """Expected and actual value differ."""
 
     text: ClassVar[str]
 
@@ -27,28 +31,30 @@ class Mismatch(Refused, ValueError):
 
 
 class LengthError(Mismatch):
-    """A message does not have the length that it must have."""
+    """Message has the wrong length."""
 
     error = "length"
     text = "{expected} bytes are expected, {actual} given"
 
 
 class TooLongError(Mismatch):
-    """``actual`` bytes are more than the ``expected`` ones for which there is room."""
+    """Message has ``actual`` bytes; at most ``expected`` bytes fit."""
 
     error = "too-long"
     text = "{actual} bytes, at most {expected} fit"
 
 
 class ChecksumError(Mismatch):
-    """The checksum of a reply is wrong."""
+    """Checksum of a reply is wrong."""
 
     error = "checksum"
     text = "the checksum is {actual:#04x}, of the data it is {expected:#04x}"
 
 
 class RangeError(ValueError):
-    """Something does not exist, does not fit, or is none of what can be chosen: a packet, a part of a date, a destination."""
+    """Value that does not exist, does not fit or cannot be selected: a packet, a part
+    of a date, a destination.
+    """
 
     def __init__(self, field: str) -> None:
         super().__init__(f"the {field} does not exist or does not fit")
@@ -56,12 +62,15 @@ class RangeError(ValueError):
 
 
 class BusyError(Refused, RuntimeError):
-    """A request is going on: another one would overrun the node's buffer."""
+    """Another request is still running.
+
+    A second one would overrun the buffer of the node.
+    """
 
     error = "busy"
 
 
 class UnknownIdError(Refused, LookupError):
-    """The node has no such message."""
+    """Node has no message of this id."""
 
     error = "unknown-id"

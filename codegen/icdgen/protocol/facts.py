@@ -1,6 +1,8 @@
-"""The protocol facts of a node, read from its ICD and what it includes, in a form that code can be made from.
+"""Protocol facts of a node, read from its ICD and from included ICDs, in a form for
+generators.
 
-A part that the ICD does not describe is None. Times are milliseconds, sizes bytes.
+None stands for a part that the ICD does not describe. Times are in milliseconds, sizes in
+bytes.
 """
 
 from __future__ import annotations
@@ -38,14 +40,14 @@ T = TypeVar("T")
 
 
 class Unsupported(Refused, LookupError):
-    """The ICD does not describe this part of the protocol."""
+    """ICD does not describe this part of the protocol."""
 
     error = "unsupported"
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Facts:
-    """Everything that the protocol layer of a node is made from."""
+    """All facts of the protocol layer of a node."""
 
     node: Node
     little: bool  # byte order of numbers
@@ -57,7 +59,7 @@ class Facts:
     acknowledge: Acknowledge | None
     polled: Polled | None
     i2c_address: int | None
-    i2c_repeated_start: bool  # else a read is a transaction of its own
+    i2c_repeated_start: bool  # otherwise a read is a separate transaction
     can: Can | None
     errors: dict[str, int]  # none, unknown_id, length, parameter, checksum
     checksum: Checksum | None
@@ -74,14 +76,16 @@ class Facts:
     identification: Step | None
     statistics: Step | None
     boot_ms: int | None
-    stream: Stream | None  # then ids have up to 32 bits, and nothing else of the link is described
+    stream: Stream | None  # if present, ids have up to 32 bits and the other parts of the link are None
     assumptions: tuple[Assumption, ...]
 
     @property
     def owners(self) -> list[str]:
-        """The nodes whose messages the node has: itself first, then those that it includes."""
-        others = {message.node for message in (*self.telecommands.values(), *self.telemetry.values())}
-        return [self.node.name, *sorted(others - {self.node.name})]
+        """Names of the nodes that define the messages: the node itself, then included
+        nodes.
+        """
+        nodes = {message.node for message in (*self.telecommands.values(), *self.telemetry.values())}
+        return [self.node.name, *sorted(nodes - {self.node.name})]
 
     @property
     def longest_telecommand(self) -> int:
@@ -91,7 +95,7 @@ class Facts:
 
     @property
     def longest_reply(self) -> int:
-        """Bytes of the longest message that the node sends, with its id and checksum."""
+        """Bytes of the longest message of the node with its id and checksum."""
         extra = self.checksum.bytes if self.checksum else 0
         sizes = [1 + extra + m.length for m in self.telemetry.values()]
         if self.acknowledge:
@@ -104,31 +108,39 @@ class Facts:
 
     @property
     def longest_data(self) -> int:
-        """Bytes of the longest message of either direction without id and checksum."""
+        """Largest number of data bytes of a message in either direction, without id and
+        checksum.
+        """
         return max((m.length for m in (*self.telecommands.values(), *self.telemetry.values())), default=0)
 
     @property
     def longest(self) -> int:
-        """Bytes of the longest message of either direction."""
+        """Bytes of the longest message in either direction."""
         if self.stream:
             return self.stream.longest
         return max(self.longest_telecommand, self.longest_reply)
 
     def number(self, data: bytes) -> int:
-        """A number of several bytes in the node's byte order."""
+        """Return the number that the bytes represent in the byte order of the node."""
         return int.from_bytes(data, "little" if self.little else "big")
 
     def bytes_of(self, number: int, size: int) -> bytes:
-        """The reverse of `number`. Raises `OverflowError`."""
+        """Return a number as bytes, the inverse of `number`.
+
+        Raises `OverflowError` if it does not fit.
+        """
         return number.to_bytes(size, "little" if self.little else "big")
 
     def packets_of(self, size: int) -> int:
-        """Packets of a file block of that many bytes."""
+        """Return the number of packets of a file block of ``size`` bytes."""
         return ceil(size / need(self.files, "file_transfer").packet_bytes)
 
 
 def need(part: T | None, name: str) -> T:
-    """The part of the facts, or `Unsupported` if the ICD does not have it."""
+    """Return the part.
+
+    Raises `Unsupported` if the ICD does not describe it.
+    """
     if part is None or part == {}:
         raise Unsupported(f"the ICD says nothing about `{name}`")
     return part
@@ -136,7 +148,7 @@ def need(part: T | None, name: str) -> T:
 
 @cached_by_node
 def of(icd: Icd, node: Node) -> Facts:
-    """The protocol facts that hold for a node."""
+    """Return the protocol facts of a node."""
     reader = Reader(icd, node)
     boot = reader.section("boot").get("bootloader_s")
     return Facts(

@@ -1,4 +1,4 @@
-"""Hole maps, and the entries of the index file."""
+"""Hole maps of file transfer and entries of the index file."""
 
 from __future__ import annotations
 
@@ -10,40 +10,48 @@ from icdgen.protocol.facts import Facts, need
 
 
 def hole_map(facts: Facts, packets: int, received: Iterable[int]) -> bytes:
-    """The map of a block of so many packets. Raises `RangeError`."""
+    """Return the hole map of a block of ``packets`` packets.
+
+    Raises `RangeError` if a received packet is not in the block or the map is too
+    short.
+    """
     form, first = need(facts.hole_map, "file_transfer.hole_map"), need(facts.files, "file_transfer").first_packet
-    there = {number - first for number in received}
-    if packets > form.bytes * 8 or not there <= set(range(packets)):
+    positions = {number - first for number in received}
+    if packets > form.bytes * 8 or not positions <= set(range(packets)):
         raise RangeError("packet")
     out = bytearray(form.bytes)
     for bit in range(form.bytes * 8):
-        state = form.beyond_end if bit >= packets else form.received if bit in there else 1 - form.received
+        state = form.beyond_end if bit >= packets else form.received if bit in positions else 1 - form.received
         out[bit // 8] |= state << (7 - bit % 8 if form.msb0 else bit % 8)
     return bytes(out)
 
 
 def missing(facts: Facts, packets: int, map_: bytes) -> list[int]:
-    """Numbers of the packets that the map says were not received, rising. Raises `RangeError`, `LengthError`."""
+    """Return the numbers of the packets that the map marks as missing, in ascending
+    order.
+
+    Raises `RangeError` and `LengthError`.
+    """
     form, first = need(facts.hole_map, "file_transfer.hole_map"), need(facts.files, "file_transfer").first_packet
     if len(map_) != form.bytes:
         raise LengthError(form.bytes, len(map_))
     if packets > form.bytes * 8:
         raise RangeError("packet")
-    found = []
+    numbers = []
     for bit in range(packets):
         if map_[bit // 8] >> (7 - bit % 8 if form.msb0 else bit % 8) & 1 != form.received:
-            found.append(first + bit)
-    return found
+            numbers.append(first + bit)
+    return numbers
 
 
 def in_messages(facts: Facts, map_: bytes) -> list[bytes]:
-    """The map in the pieces that the messages carry."""
+    """Return the map in pieces, one for each message."""
     size = need(facts.hole_map, "file_transfer.hole_map").message_bytes
     return [map_[at : at + size] for at in range(0, len(map_), size)]
 
 
 class IndexEntry(NamedTuple):
-    """An entry of the index file; ``time`` is packed."""
+    """Entry of the index file; ``time`` is packed."""
 
     type: int
     counter: int
@@ -54,24 +62,27 @@ class IndexEntry(NamedTuple):
 
 
 def read_index(facts: Facts, data: bytes) -> tuple[list[IndexEntry], int]:
-    """The entries, and the bytes of a truncated last one."""
+    """Return the entries and the number of bytes of a truncated last entry."""
     form = need(facts.index, "index_file")
-    whole = len(data) // form.entry_bytes * form.entry_bytes
+    complete_bytes = len(data) // form.entry_bytes * form.entry_bytes
     entries = []
-    for at in range(0, whole, form.entry_bytes):
+    for at in range(0, complete_bytes, form.entry_bytes):
         parts: dict[str, object] = {}
         for role, place in form.fields.items():
-            found = data[at + place.at : at + place.at + place.bytes]
-            parts[role] = found if role == "meta" else facts.number(found)
+            content = data[at + place.at : at + place.at + place.bytes]
+            parts[role] = content if role == "meta" else facts.number(content)
         entries.append(IndexEntry(**parts))  # type: ignore[arg-type]
-    return entries, len(data) - whole
+    return entries, len(data) - complete_bytes
 
 
 def write_index(facts: Facts, entries: Iterable[IndexEntry]) -> bytes:
-    """The index file. Raises `OverflowError`, and `LengthError` for meta-data of another size."""
+    """Return the bytes of the index file.
+
+    Raises `OverflowError`, and `LengthError` if metadata have the wrong size.
+    """
     form, out = need(facts.index, "index_file"), b""
     for entry in entries:
-        one = bytearray(form.entry_bytes)
+        row = bytearray(form.entry_bytes)
         for role, place in form.fields.items():
             value = getattr(entry, role)
             if role == "meta":
@@ -79,6 +90,6 @@ def write_index(facts: Facts, entries: Iterable[IndexEntry]) -> bytes:
                     raise LengthError(place.bytes, len(value))
             else:
                 value = facts.bytes_of(value, place.bytes)
-            one[place.at : place.at + place.bytes] = value
-        out += one
+            row[place.at : place.at + place.bytes] = value
+        out += row
     return out

@@ -1,4 +1,4 @@
-"""I2C: the bytes that the master writes and reads, and polling for an acknowledge."""
+"""I2C transactions: bytes that the master writes and reads."""
 
 from __future__ import annotations
 
@@ -9,25 +9,31 @@ from icdgen.protocol.facts import Facts, need
 
 
 def checksum(facts: Facts, id: int, data: bytes) -> int:
-    """The checksum of a message's data."""
+    """Return the checksum of the data of a message."""
     form = need(facts.checksum, "crc8")
     return crc.compute(form.crc, bytes([id]) + data if form.covers_id else data)
 
 
 def telecommand(facts: Facts, id: int, data: bytes, with_crc: bool) -> bytes:
-    """Id, parameters and, if asked for, the checksum: the same on the UART and on I2C."""
+    """Return id, parameters and, if ``with_crc``, the checksum.
+
+    UART and I2C share this format.
+    """
     form = need(facts.checksum, "crc8") if with_crc else None
     extra = facts.bytes_of(checksum(facts, id, data), form.bytes) if form else b""
     return bytes([id]) + data + extra
 
 
 def read_length(facts: Facts, message: Message, with_crc: bool) -> int:
-    """Bytes to read for a frame."""
+    """Return the number of bytes to read for a frame."""
     return message.length + (need(facts.checksum, "crc8").bytes if with_crc else 0)
 
 
 def reply(facts: Facts, id: int, data: bytes, with_crc: bool) -> bytes:
-    """The frame in what was read. Raises `LengthError` and `ChecksumError`."""
+    """Return the frame in the bytes read.
+
+    Raises `LengthError` and `ChecksumError`.
+    """
     message = facts.telemetry[id]
     if len(data) != read_length(facts, message, with_crc):
         raise LengthError(read_length(facts, message, with_crc), len(data))

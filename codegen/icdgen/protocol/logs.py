@@ -1,4 +1,4 @@
-"""Telemetry logs: the file form and the unsolicited form."""
+"""Telemetry logs: files, and unsolicited log messages."""
 
 from __future__ import annotations
 
@@ -11,7 +11,11 @@ from icdgen.protocol.sections import LogBit
 
 
 class Frame(NamedTuple):
-    """One frame of an entry. ``id`` is None where the ICD assigns no frame to the bit; ``data`` is the slot then."""
+    """Frame of a log entry.
+
+    If the ICD assigns no frame to the mask bit; then ``data`` is the
+    slot as it is read.
+    """
 
     bit: int
     id: int | None
@@ -19,7 +23,9 @@ class Frame(NamedTuple):
 
 
 class Entry(NamedTuple):
-    """An entry of a log file: Unix time and milliseconds, and the frames in the order of the mask bits."""
+    """Entry of a log file: Unix time in seconds, milliseconds, and the frames in the
+    order of the mask bits.
+    """
 
     seconds: int
     milliseconds: int
@@ -27,7 +33,11 @@ class Entry(NamedTuple):
 
 
 class Log(NamedTuple):
-    """A log file. ``mask`` is None if the header is incomplete; ``truncated``: bytes of an incomplete last part."""
+    """Content of a log file.
+
+    ``mask``: None for an incomplete header. ``truncated``: bytes of an incomplete
+    last entry.
+    """
 
     mask: bytes | None
     entries: list[Entry]
@@ -35,16 +45,16 @@ class Log(NamedTuple):
 
 
 def decode(facts: Facts, data: bytes) -> Log:
-    """What a log file holds."""
+    """Return the content of a log file."""
     form, layout = need(facts.log_file, "telemetry_log"), need(facts.mask, "log_mask")
-    head, rest = data[: form.header_bytes], data[form.header_bytes :]
+    head, body = data[: form.header_bytes], data[form.header_bytes :]
     if len(head) < form.header_bytes:
         return Log(None, [], len(data))
     mask = head[form.mask_at : form.mask_at + layout.size]
     slots = layout.selected(mask)
     size = form.frames_at + len(slots) * layout.slot_bytes
-    starts = range(0, len(rest) - size + 1, size)
-    return Log(mask, [_entry(facts, slots, rest[at : at + size]) for at in starts], len(rest) % size)
+    starts = range(0, len(body) - size + 1, size)
+    return Log(mask, [_entry(facts, slots, body[at : at + size]) for at in starts], len(body) % size)
 
 
 def _entry(facts: Facts, slots: Iterable[LogBit], data: bytes) -> Entry:
@@ -54,13 +64,17 @@ def _entry(facts: Facts, slots: Iterable[LogBit], data: bytes) -> Entry:
 
 
 def frames(facts: Facts, slots: Iterable[LogBit], data: bytes) -> tuple[Frame, ...]:
-    """The frames in the slots, which fill ``data``."""
+    """Return the frames of the slots in ``data``."""
     size = need(facts.mask, "log_mask").slot_bytes
     return tuple(Frame(s.bit, s.id, data[n * size : n * size + s.length]) for n, s in enumerate(slots))
 
 
 def encode(facts: Facts, mask: bytes, entries: Iterable[tuple[int, int, Iterable[bytes]]]) -> bytes:
-    """A log file. An entry is seconds, milliseconds and the data of each frame. Raises `LengthError`, `OverflowError`."""
+    """Return the bytes of a log file.
+
+    ``entries``: seconds, milliseconds and the data of each frame. Raises `LengthError`
+    and `OverflowError`.
+    """
     form = need(facts.log_file, "telemetry_log")
     out = _head(facts, form.header_bytes, form.mask_at, mask)
     for seconds, milliseconds, data in entries:
@@ -72,20 +86,26 @@ def encode(facts: Facts, mask: bytes, entries: Iterable[tuple[int, int, Iterable
 
 
 def decode_message(facts: Facts, message: bytes) -> tuple[bytes, tuple[Frame, ...]]:
-    """Mask and frames of an unsolicited log message, which begins with its id. Raises `LengthError`."""
+    """Return mask and frames of an unsolicited log message, which begins with its id.
+
+    Raises `LengthError`.
+    """
     form, layout = need(facts.log_message, "unsolicited_log"), need(facts.mask, "log_mask")
     if len(message) < form.frames_at:
         raise LengthError(form.frames_at, len(message))
     mask = message[form.mask_at : form.mask_at + layout.size]
     slots = layout.selected(mask)
-    whole = form.frames_at + len(slots) * layout.slot_bytes
-    if len(message) != whole:
-        raise LengthError(whole, len(message))
+    expected = form.frames_at + len(slots) * layout.slot_bytes
+    if len(message) != expected:
+        raise LengthError(expected, len(message))
     return mask, frames(facts, slots, message[form.frames_at :])
 
 
 def encode_message(facts: Facts, mask: bytes, data: Iterable[bytes]) -> bytes:
-    """An unsolicited log message with its id. Raises `LengthError`."""
+    """Return an unsolicited log message with its id.
+
+    Raises `LengthError`.
+    """
     form = need(facts.log_message, "unsolicited_log")
     out = _head(facts, form.frames_at, form.mask_at, mask)
     out[0] = form.id
@@ -93,7 +113,7 @@ def encode_message(facts: Facts, mask: bytes, data: Iterable[bytes]) -> bytes:
 
 
 def _head(facts: Facts, size: int, at: int, mask: bytes) -> bytearray:
-    """So many bytes, with the mask at its place."""
+    """Return ``size`` zero bytes with the mask at position ``at``."""
     expected = need(facts.mask, "log_mask").size
     if len(mask) != expected:
         raise LengthError(expected, len(mask))
@@ -104,11 +124,12 @@ def _head(facts: Facts, size: int, at: int, mask: bytes) -> bytearray:
 
 def _slots(facts: Facts, mask: bytes, data: Iterable[bytes]) -> bytes:
     layout = need(facts.mask, "log_mask")
-    slots, given, out = layout.selected(mask), list(data), b""
-    if len(slots) != len(given):
-        raise LengthError(len(slots), len(given))
-    for slot, one in zip(slots, given, strict=True):
-        if len(one) != slot.length:
-            raise LengthError(slot.length, len(one))
-        out += one.ljust(layout.slot_bytes, bytes([layout.fill]))
+    slots, frames_data, out = layout.selected(mask), list(data), b""
+    if len(slots) != len(frames_data):
+        raise LengthError(len(slots), len(frames_data))
+    for slot, frame_data in zip(slots, frames_data, strict=True):
+        if len(frame_data) != slot.length:
+            # A short frame leaves the end of its slot unused.
+            raise LengthError(slot.length, len(frame_data))
+        out += frame_data.ljust(layout.slot_bytes, bytes([layout.fill]))
     return out

@@ -1,6 +1,8 @@
-"""The protocol as questions and answers in JSON: what the golden vectors hold and what the testees are asked.
+"""JSON requests and responses of the protocol, as used by golden vectors and
+conformance tests.
 
-Described in ``tests/conformance/README.md``. `answer` is the reference.
+``tests/conformance/README.md`` describes them. `answer` is the reference
+implementation.
 """
 
 from __future__ import annotations
@@ -9,9 +11,9 @@ from collections.abc import Callable
 from typing import Any
 
 from icdgen.icd.model import Icd
-from icdgen.protocol import can, crc, errors, facts, files, i2c, logs, scripts, stream, stream_client, times, uart
+from icdgen.protocol import can, crc, errors, files, i2c, logs, scripts, stream, stream_client, times, uart
 from icdgen.protocol.envelope import DIRECTIONS, GIVEN, Stream
-from icdgen.protocol.facts import Facts
+from icdgen.protocol.facts import Facts, Unsupported, need, of
 from icdgen.protocol.request_keys import Refusal, Request, flag, mappings, number, octets, rows, text
 from icdgen.protocol.request_keys import hex_bytes as _hex
 from icdgen.protocol.sections import CAN_KINDS
@@ -20,74 +22,81 @@ CAN_BYTES = 8  # of a classic CAN frame
 
 
 def answer(icd: Icd, request: Request) -> dict[str, Any]:
-    """The answer to one request. ``op`` must be one of `OPS`."""
+    """Return the response to a request.
+
+    ``op`` must be one of `OPS`.
+    """
     try:
         return {"ok": True, **OPS[request["op"]](_facts(icd, request), request)}
     except errors.Refused as refusal:
         return refusal.answer
     except errors.RangeError as error:
-        told = error.field in (GIVEN if request["op"] == stream_encode.__name__ else times.PARTS)
-        return {"ok": False, "error": "range"} | ({"field": error.field} if told else {})
+        names_field = error.field in (GIVEN if request["op"] == stream_encode.__name__ else times.PARTS)
+        # Only these two operations define which field a range error names; elsewhere it
+        # would be an implementation detail.
+        return {"ok": False, "error": "range"} | ({"field": error.field} if names_field else {})
     except OverflowError:
         return {"ok": False, "error": "range"}
 
 
 def _facts(icd: Icd, request: Request) -> Facts:
-    """Those of the node that is named; without a name, of the last node that has a protocol."""
+    """Return the facts of the node in the request, by default of the last node with a
+    protocol section.
+    """
     if "node" in request:
         name = text(request, "node")
         if name not in {node.name for node in icd.nodes}:
             raise Refusal("unknown-node")
-        return facts.of(icd, icd.node(name))
+        return of(icd, icd.node(name))
     for node in reversed(icd.nodes):
         if icd.protocol_of(node):
-            return facts.of(icd, node)
-    raise facts.Unsupported("no node has a protocol")
+            return of(icd, node)
+    raise Unsupported("no node has a protocol")
 
 
-def crc8(known: Facts, request: Request) -> dict[str, Any]:
+def crc8(facts: Facts, request: Request) -> dict[str, Any]:
     data = octets(request)
-    return {"crc": crc.compute(facts.need(known.checksum, "crc8").crc, data)}
+    return {"crc": crc.compute(need(facts.checksum, "crc8").crc, data)}
 
 
-def crc16(known: Facts, request: Request) -> dict[str, Any]:
+def crc16(facts: Facts, request: Request) -> dict[str, Any]:
     data = octets(request)
-    return {"crc": crc.compute(facts.need(known.crc16, "crc16"), data)}
+    return {"crc": crc.compute(need(facts.crc16, "crc16"), data)}
 
 
-def uart_encode(known: Facts, request: Request) -> dict[str, Any]:
-    message, framing = octets(request), facts.need(known.framing, "uart")
+def uart_encode(facts: Facts, request: Request) -> dict[str, Any]:
+    message, framing = octets(request), need(facts.framing, "uart")
     if not message:
         raise errors.LengthError(1, 0)
     return {"bytes": uart.encode(framing, message).hex()}
 
 
-def uart_decode(known: Facts, request: Request) -> dict[str, Any]:
+def uart_decode(facts: Facts, request: Request) -> dict[str, Any]:
     stream = octets(request)
-    found = uart.Decoder(facts.need(known.framing, "uart"), known.longest).feed(stream)
-    return {"frames": [event.message.hex() for event in found if event.event == uart.MESSAGE]}
+    events = uart.Decoder(need(facts.framing, "uart"), facts.longest).feed(stream)
+    return {"frames": [event.message.hex() for event in events if event.event == uart.MESSAGE]}
 
 
-def uart_events(known: Facts, request: Request) -> dict[str, Any]:
-    limit = number(request, "limit", 1, known.longest, known.longest)
+def uart_events(facts: Facts, request: Request) -> dict[str, Any]:
+    limit = number(request, "limit", 1, facts.longest, facts.longest)
     chunks = [_hex(chunk) for chunk in rows(request, "chunks")]
-    decoder = uart.Decoder(facts.need(known.framing, "uart"), limit)
+    decoder = uart.Decoder(need(facts.framing, "uart"), limit)
     events = []
     for chunk in chunks:
         for event in decoder.feed(chunk):
             row: dict[str, Any] = {"event": event.event}
             if event.event == uart.MESSAGE:
-                row.update(kind=uart.kind(known, event.message), bytes=event.message.hex())
+                row.update(kind=uart.kind(facts, event.message), bytes=event.message.hex())
             events.append(row)
     return {"events": events, "discarded": decoder.discarded, "pending": decoder.pending}
 
 
-def can_split(known: Facts, request: Request) -> dict[str, Any]:
-    packets = can.split(known, _message(known, request))
+def can_split(facts: Facts, request: Request) -> dict[str, Any]:
+    packets = can.split(facts, _message(facts, request))
     return {"packets": [{"id": packet.id, "bytes": packet.data.hex()} for packet in packets]}
 
 
-def _message(known: Facts, request: Request) -> can.Message:
+def _message(facts: Facts, request: Request) -> can.Message:
     kind, data = text(request, "kind"), octets(request)
     if kind not in CAN_KINDS:
         raise Refusal("request", detail="there is no such kind")
@@ -95,7 +104,7 @@ def _message(known: Facts, request: Request) -> can.Message:
     return can.Message(kind, id, source, destination, data)
 
 
-def can_join(known: Facts, request: Request) -> dict[str, Any]:
+def can_join(facts: Facts, request: Request) -> dict[str, Any]:
     address = number(request, "address", 0, 255) if "address" in request else None
     senders, packets = number(request, "senders", 1, 16, 4), []
     for row in mappings(request, "packets"):
@@ -103,7 +112,7 @@ def can_join(known: Facts, request: Request) -> dict[str, Any]:
         if len(packet.data) > CAN_BYTES:
             raise Refusal("request", detail="a packet has too many bytes")
         packets.append((number(row, "at", default=0), packet))
-    joiner = can.Joiner(known, address, senders)
+    joiner = can.Joiner(facts, address, senders)
     events = [event for at, packet in packets for event in joiner.feed(at, packet)]
     if "end" in request:
         events += joiner.expire(number(request, "end"))
@@ -119,26 +128,26 @@ def _can_event(event: can.Event) -> dict[str, Any]:
     return row
 
 
-def i2c_request(known: Facts, request: Request) -> dict[str, Any]:
+def i2c_request(facts: Facts, request: Request) -> dict[str, Any]:
     kind, id, checked = text(request, "kind"), number(request, "id", 0, 255), flag(request, "crc")
     if kind == "telemetry":
-        if id not in known.telemetry:
+        if id not in facts.telemetry:
             raise errors.UnknownIdError
-        return {"write": bytes([id]).hex(), "read": i2c.read_length(known, known.telemetry[id], checked)}
+        return {"write": bytes([id]).hex(), "read": i2c.read_length(facts, facts.telemetry[id], checked)}
     if kind != "telecommand":
         raise Refusal("request", detail="there is no such kind")
-    return {"write": i2c.telecommand(known, id, octets(request), checked).hex(), "read": 0}
+    return {"write": i2c.telecommand(facts, id, octets(request), checked).hex(), "read": 0}
 
 
-def i2c_reply(known: Facts, request: Request) -> dict[str, Any]:
+def i2c_reply(facts: Facts, request: Request) -> dict[str, Any]:
     id, data, checked = number(request, "id", 0, 255), octets(request), flag(request, "crc")
-    if id not in known.telemetry:
+    if id not in facts.telemetry:
         raise errors.UnknownIdError
-    return {"bytes": i2c.reply(known, id, data, checked).hex()}
+    return {"bytes": i2c.reply(facts, id, data, checked).hex()}
 
 
-def log_decode(known: Facts, request: Request) -> dict[str, Any]:
-    log = logs.decode(known, octets(request))
+def log_decode(facts: Facts, request: Request) -> dict[str, Any]:
+    log = logs.decode(facts, octets(request))
     entries = [{**e._asdict(), "frames": [_frame(f) for f in e.frames]} for e in log.entries]
     return {"mask": None if log.mask is None else log.mask.hex(), "entries": entries, "truncated": log.truncated}
 
@@ -147,88 +156,88 @@ def _frame(frame: logs.Frame) -> dict[str, Any]:
     return {"bit": frame.bit, "id": frame.id, "bytes": frame.data.hex()}
 
 
-def log_encode(known: Facts, request: Request) -> dict[str, Any]:
+def log_encode(facts: Facts, request: Request) -> dict[str, Any]:
     entries = [
         (number(e, "seconds"), number(e, "milliseconds", 0, 65535), [_hex(f) for f in rows(e, "frames")])
         for e in mappings(request, "entries")
     ]
-    return {"bytes": logs.encode(known, octets(request, "mask"), entries).hex()}
+    return {"bytes": logs.encode(facts, octets(request, "mask"), entries).hex()}
 
 
-def log_message_decode(known: Facts, request: Request) -> dict[str, Any]:
-    mask, found = logs.decode_message(known, octets(request))
-    return {"mask": mask.hex(), "frames": [_frame(frame) for frame in found]}
+def log_message_decode(facts: Facts, request: Request) -> dict[str, Any]:
+    mask, log_frames = logs.decode_message(facts, octets(request))
+    return {"mask": mask.hex(), "frames": [_frame(frame) for frame in log_frames]}
 
 
-def log_message_encode(known: Facts, request: Request) -> dict[str, Any]:
+def log_message_encode(facts: Facts, request: Request) -> dict[str, Any]:
     data = [_hex(frame) for frame in rows(request, "frames")]
-    return {"bytes": logs.encode_message(known, octets(request, "mask"), data).hex()}
+    return {"bytes": logs.encode_message(facts, octets(request, "mask"), data).hex()}
 
 
-def dos_time(known: Facts, request: Request) -> dict[str, Any]:
+def dos_time(facts: Facts, request: Request) -> dict[str, Any]:
     if "value" in request:
-        parts = times.unpack(known, number(request, "value"))
-        return {**{name: parts[name] for name in times.PARTS}, "valid": times.wrong(parts) is None}
-    return {"value": times.pack(known, {name: number(request, name, 0, 9999) for name in times.PARTS})}
+        parts = times.unpack(facts, number(request, "value"))
+        return {**{name: parts[name] for name in times.PARTS}, "valid": times.invalid_part(parts) is None}
+    return {"value": times.pack(facts, {name: number(request, name, 0, 9999) for name in times.PARTS})}
 
 
-def hole_map(known: Facts, request: Request) -> dict[str, Any]:
+def hole_map(facts: Facts, request: Request) -> dict[str, Any]:
     packets = number(request, "packets")
     if "bytes" in request:
         map_ = octets(request)
-        return {"missing": files.missing(known, packets, map_)}
+        return {"missing": files.missing(facts, packets, map_)}
     received = rows(request, "received")
-    if any(type(one) is not int for one in received):
+    if any(type(item) is not int for item in received):
         raise Refusal("request", detail="`received` holds numbers")
-    map_ = files.hole_map(known, packets, received)
+    map_ = files.hole_map(facts, packets, received)
     return {
         "bytes": map_.hex(),
-        "messages": [piece.hex() for piece in files.in_messages(known, map_)],
-        "missing": files.missing(known, packets, map_),
+        "messages": [piece.hex() for piece in files.in_messages(facts, map_)],
+        "missing": files.missing(facts, packets, map_),
     }
 
 
-def index_decode(known: Facts, request: Request) -> dict[str, Any]:
-    entries, truncated = files.read_index(known, octets(request))
+def index_decode(facts: Facts, request: Request) -> dict[str, Any]:
+    entries, truncated = files.read_index(facts, octets(request))
     return {"entries": [{**e._asdict(), "meta": e.meta.hex()} for e in entries], "truncated": truncated}
 
 
-def index_encode(known: Facts, request: Request) -> dict[str, Any]:
+def index_encode(facts: Facts, request: Request) -> dict[str, Any]:
     entries = []
     for row in mappings(request, "entries"):
         numbers = {key: number(row, key) for key in files.IndexEntry._fields[:-1]}
         entries.append(files.IndexEntry(**numbers, meta=octets(row, "meta")))
-    return {"bytes": files.write_index(known, entries).hex()}
+    return {"bytes": files.write_index(facts, entries).hex()}
 
 
-def identify(known: Facts, request: Request) -> dict[str, Any]:
+def identify(facts: Facts, request: Request) -> dict[str, Any]:
     from icdgen import codec
 
     data = octets(request)
-    step = facts.need(known.identification, "identification")
+    step = need(facts.identification, "identification")
     try:
-        raw = codec.decode(known.node, step.message, data)
+        raw = codec.decode(facts.node, step.message, data)
     except codec.LengthError as error:
         raise errors.LengthError(error.expected, error.actual) from None
-    found = {role: raw[name] for role, name in step.fields.items()}
-    expected = {"node_type": known.node.node_type, "interface_version": known.node.interface_version}
-    matches = all(expected[role] in (None, found[role]) for role in expected)
-    return {**found, "matches": matches}
+    identified = {role: raw[name] for role, name in step.fields.items()}
+    expected = {"node_type": facts.node.node_type, "interface_version": facts.node.interface_version}
+    matches = all(expected[role] in (None, identified[role]) for role in expected)
+    return {**identified, "matches": matches}
 
 
-def link_data(known: Facts, request: Request) -> dict[str, Any]:
-    """Facts that nothing but a user's own code reads."""
-    download = known.files.download if known.files else None
+def link_data(facts: Facts, request: Request) -> dict[str, Any]:
+    """Return the facts that only user-defined code reads."""
+    download = facts.files.download if facts.files else None
     return {
-        "boot_ms": known.boot_ms,
-        "log_file_type": known.log_file.file_type if known.log_file else None,
-        "index_file_type": known.index.file_type if known.index else None,
+        "boot_ms": facts.boot_ms,
+        "log_file_type": facts.log_file.file_type if facts.log_file else None,
+        "index_file_type": facts.index.file_type if facts.index else None,
         "index_counter": download.index_counter if download else None,
     }
 
 
-def stream_encode(known: Facts, request: Request) -> dict[str, Any]:
-    form, direction = _envelope(known, request)
+def stream_encode(facts: Facts, request: Request) -> dict[str, Any]:
+    form, direction = _envelope(facts, request)
     id, data, values = number(request, "id"), octets(request), request.get("values", {})
     if not isinstance(values, dict) or not set(values) <= set(GIVEN):
         raise Refusal("request", detail="`values` has the fields that the sender chooses, by role")
@@ -236,20 +245,20 @@ def stream_encode(known: Facts, request: Request) -> dict[str, Any]:
     return {"bytes": stream.encode(form, direction, id, data, chosen).hex()}
 
 
-def stream_events(known: Facts, request: Request) -> dict[str, Any]:
-    form, direction = _envelope(known, request)
+def stream_events(facts: Facts, request: Request) -> dict[str, Any]:
+    form, direction = _envelope(facts, request)
     limit = number(request, "limit", form.header_bytes + form.trailer_bytes, form.longest, form.longest)
     chunks = [_hex(chunk) for chunk in rows(request, "chunks")]
     decoder = stream.Decoder(form, direction, limit)
-    events = [stream_client.told(event) for chunk in chunks for event in decoder.feed(chunk)]
+    events = [stream_client.event_row(event) for chunk in chunks for event in decoder.feed(chunk)]
     return {"events": events, "discarded": decoder.discarded, "pending": decoder.pending}
 
 
-def _envelope(known: Facts, request: Request) -> tuple[Stream, str]:
+def _envelope(facts: Facts, request: Request) -> tuple[Stream, str]:
     direction = text(request, "direction")
     if direction not in DIRECTIONS:
         raise Refusal("request", detail="there is no such direction")
-    return facts.need(known.stream, "stream"), direction
+    return need(facts.stream, "stream"), direction
 
 
 OPS: dict[str, Callable[[Facts, Request], dict[str, Any]]] = {

@@ -1,4 +1,4 @@
-"""Where the parts of a node's protocol stand in its ICD."""
+"""Sections of an ICD that define the parts of a node's protocol."""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Operations on the programs that a node stores: one is copied to where it can run, its size and checksum are read."""
+"""Operations on stored programs: copying to executable memory, and reading of size and
+checksum.
+"""
 
 from __future__ import annotations
 
@@ -11,16 +13,16 @@ from icdgen.protocol.transfer import Ended, Procedure, Steps
 
 
 class ProgramOperation(Procedure):
-    """What a telecommand starts for a program, and a frame tells the end of.
+    """Operation that a telecommand starts and whose end a telemetry frame reports.
 
     Raises `icdgen.protocol.facts.Unsupported` and `RangeError`.
     """
 
-    name: ClassVar[str]  # of the section
+    name: ClassVar[str]  # of the section of the ICD
 
-    def __init__(self, known: Facts, program: int) -> None:
-        super().__init__(known)
-        self.form: Operation = need(getattr(known, self.name), self.name)
+    def __init__(self, facts: Facts, program: int) -> None:
+        super().__init__(facts)
+        self.form: Operation = need(getattr(facts, self.name), self.name)
         self.program = program
         self.values: dict[str, int] = {}  # of the last frame, by role
         if self.form.programs and program not in self.form.programs:
@@ -37,13 +39,16 @@ class ProgramOperation(Procedure):
 
 
 class ProgramCopy(ProgramOperation):
-    """Copies a stored program to where it can run."""
+    """Copy of a stored program to executable memory."""
 
     name = "program_copy"
 
 
 class ProgramInformation(ProgramOperation):
-    """Reads ``size`` and ``checksum`` of a stored program; None until then, or if the frame does not have them."""
+    """Reading of ``size`` and ``checksum`` of a stored program.
+
+    Both have the value None until the operation is done, or if the frame lacks them.
+    """
 
     name = "program_information"
 

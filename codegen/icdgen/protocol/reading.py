@@ -1,6 +1,8 @@
-"""The protocol section of a checked ICD -> the parts of `icdgen.protocol.facts`.
+"""Reader of the protocol section of a checked ICD, into the classes of
+`icdgen.protocol.facts`.
 
-Facts are read as they are declared; here is what takes more: lists by role, messages by name, what follows from another section.
+Simple facts are read by their declarations (`icdgen.protocol.declared`). This module
+reads lists by role, messages by name, and values that depend on other sections.
 """
 
 from __future__ import annotations
@@ -41,7 +43,9 @@ T = TypeVar("T")
 
 
 class Assumption(NamedTuple):
-    """Something that the manual leaves open: where it stands, what we hold, and why."""
+    """Interpretation of an open point of the manual: its place in the ICD, the assumed
+    value and the reason.
+    """
 
     section: str  # "can.extended", or "message Reset"
     key: str
@@ -50,7 +54,7 @@ class Assumption(NamedTuple):
 
 
 class Reader:
-    """Reads the parts for one node."""
+    """Reader of the protocol parts of one node."""
 
     def __init__(self, icd: Icd, node: Node) -> None:
         self.icd, self.node = icd, node
@@ -61,29 +65,32 @@ class Reader:
         self.telemetry = {m.telemetry_id: m for m in messages if m.telemetry_id is not None}
 
     def section(self, *path: str) -> dict[str, Any]:
-        """A section, empty if there is none."""
-        found: object = self.protocol
+        """Return a section, empty if it does not exist."""
+        section: object = self.protocol
         for key in path:
-            found = found.get(key) if isinstance(found, dict) else None
-        return found if isinstance(found, dict) else {}
+            section = section.get(key) if isinstance(section, dict) else None
+        return section if isinstance(section, dict) else {}
 
-    def part(self, path: str, part: type[T], **made: object) -> T | None:
-        """A part as it is declared, with what code made of other keys; None if the ICD does not describe it."""
+    def part(self, path: str, part: type[T], **computed: object) -> T | None:
+        """Return a part as declared; None if the ICD does not describe it.
+
+        ``computed``: values that follow from other keys.
+        """
         section = self.section(*path.split("."))
 
         def step(fact: Fact) -> Step | None:
-            found = self.step(section.get(fact.key, {}))
-            sent = found and (found.message.telecommand_id, found.message.telemetry_id)
-            return found if sent and sent[fact.direction == "telemetry"] is not None else None
+            resolved = self.step(section.get(fact.key, {}))
+            ids = resolved and (resolved.message.telecommand_id, resolved.message.telemetry_id)
+            return resolved if ids and ids[fact.direction == "telemetry"] is not None else None
 
-        found: T | None = read(part, section, step, **made) if section else None
-        return found
+        result: T | None = read(part, section, step, **computed) if section else None
+        return result
 
     def telemetry_ids(self) -> Direction:
         ids = self.section("message_id", "telemetry")
         if self.section("stream"):
             return Direction(1, 0)
-        # Without telemetry there is none of them, first above last, and what comes is no reply.
+        # Without telemetry the range is empty (first above last), and no received message is a reply.
         return Direction(
             ids.get("first", min(self.telemetry, default=1)), ids.get("last", max(self.telemetry, default=0))
         )
@@ -102,19 +109,23 @@ class Reader:
         return Polled(message, *names) if message and all(names) else None  # type: ignore[arg-type]
 
     def i2c_address(self) -> int | None:
-        """Of 7 bits; the 8-bit form has the direction behind it."""
+        """Return the 7-bit address.
+
+        The 8-bit form of the ICD has the direction bit appended.
+        """
         given = self.section("i2c", "write")
         eight = given.get("address_8bit")
         return given.get("address_7bit", None if eight is None else eight >> 1)
 
     def i2c_repeated_start(self) -> bool:
-        """Whether a read may follow its write without a stop."""
+        """Return whether a read can follow its write without a stop condition."""
         return "repeated start" in self.section("i2c").get("telemetry_request", ("repeated start",))
 
     def can(self) -> Can | None:
         given = self.section("can")
         if not {"identifier", "message_types", "telecommand", "telemetry"} <= set(given):
             return None
+        # The identifier is listed from its most significant part on.
         parts, shift = {}, sum(part["bits"] for part in given["identifier"])
         for part in given["identifier"]:
             shift -= part["bits"]
@@ -170,6 +181,7 @@ class Reader:
         for node in (*self.icd.included(self.node), self.node):
             for row in node.loggable:
                 frame = self.telemetry.get(row.id)
+                # A frame longer than its slot is cut to the slot.
                 length = min(frame.length, slot) if frame else slot
                 bits[row.bit] = LogBit(row.bit, row.id, length, frame.name if frame else row.name or None)
         return self.part("log_mask", LogMask, bits=bits)
@@ -227,32 +239,35 @@ class Reader:
         return Step(message, dict(given.get("fields", {}))) if message else None
 
     def assumptions(self) -> Iterator[Assumption]:
-        yield from assumed(self.protocol, ())
+        yield from assumptions_of(self.protocol, ())
         for message in self.messages.values():
             for key, why in message.assumptions:
-                yield Assumption(f"message {message.name}", key, held(message, key), why)
+                yield Assumption(f"message {message.name}", key, declared_value(message, key), why)
 
 
-def _buses(use: Mapping[str, Any], always: bool) -> tuple[str, ...]:
-    """Where a direction has the checksum, or always has it; without `optional`, that is the client's choice."""
-    has = bool(use) and (not always or use.get("optional", True) is False)
-    return tuple(use.get("buses", BUSES)) if has else ()
+def _buses(use: Mapping[str, Any], is_mandatory: bool) -> tuple[str, ...]:
+    """Return the buses on which a direction has the checksum, or always has it.
+
+    Unless the ICD says `optional: false`, the client chooses.
+    """
+    is_used = bool(use) and (not is_mandatory or use.get("optional", True) is False)
+    return tuple(use.get("buses", BUSES)) if is_used else ()
 
 
-def held(message: Message, key: str) -> object:
-    """What the ICD holds under a key of a message."""
+def declared_value(message: Message, key: str) -> object:
+    """Return the value of a key of a message in the ICD."""
     if key == "acknowledge":
         return "reset" if message.expects_reset else message.acknowledge
     return getattr(message, key, None)
 
 
-def assumed(section: dict[str, Any], path: tuple[str, ...]) -> Iterator[Assumption]:
-    """The assumptions of a section and of those in it."""
+def assumptions_of(section: dict[str, Any], path: tuple[str, ...]) -> Iterator[Assumption]:
+    """Return the assumptions of a section and of its subsections."""
     for key, why in section.get("assumptions", {}).items():
         yield Assumption(".".join(path), key, section.get(key), why)
     for key, value in section.items():
         if isinstance(value, dict) and key != "assumptions":
-            yield from assumed(value, (*path, key))
+            yield from assumptions_of(value, (*path, key))
 
 
 def by_role(rows: Iterable[dict[str, Any]]) -> dict[str, dict[str, Any]]:
@@ -260,5 +275,5 @@ def by_role(rows: Iterable[dict[str, Any]]) -> dict[str, dict[str, Any]]:
 
 
 def end(rows: Iterable[dict[str, Any]]) -> int:
-    """Where a layout ends."""
+    """Return the byte position after the last row."""
     return max(int(row["byte"] + row["bytes"]) for row in rows)

@@ -1,4 +1,4 @@
-"""Reading the keys of a request in JSON, and refusing it."""
+"""Reading of the keys of a JSON request; invalid keys raise `Refusal`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Request = dict[str, Any]
 
 
 class Refusal(Refused):
-    """Any refusal, by what answers call it."""
+    """Refusal of a request with an error code."""
 
     def __init__(self, error: str, **more: object) -> None:
         self.error = error
@@ -19,8 +19,12 @@ class Refusal(Refused):
 
 
 def number(request: Request, key: str, least: int = 0, most: int = (1 << 32) - 1, default: int | None = None) -> int:
-    """An integer; refused if it is missing, unless there is a default, or out of range."""
+    """Return an integer.
+
+    Raises `Refusal` if it is out of range, or missing without a default.
+    """
     value = request.get(key, default)
+    # bool is a subclass of int, but JSON distinguishes true from 1.
     if type(value) is not int or not least <= value <= most:
         raise Refusal("request", detail=f"`{key}` is missing or is no number from {least} to {most}")
     return value
@@ -44,7 +48,7 @@ def hex_bytes(value: object) -> bytes:
 
 
 def flag(request: Request, key: str) -> bool:
-    """A truth value, false if it is missing."""
+    """Return a boolean, false if it is missing."""
     value = request.get(key, False)
     if type(value) is not bool:
         raise Refusal("request", detail=f"`{key}` is neither true nor false")
@@ -59,7 +63,7 @@ def rows(request: Request, key: str) -> list[Any]:
 
 
 def mappings(request: Request, key: str) -> list[dict[str, Any]]:
-    found = rows(request, key)
-    if not all(isinstance(row, dict) for row in found):
+    items = rows(request, key)
+    if not all(isinstance(row, dict) for row in items):
         raise Refusal("request", detail=f"`{key}` has an entry that is no object")
-    return found
+    return items

@@ -1,4 +1,4 @@
-"""The parts of a node's protocol: what the ICD says of each, declared once. See `icdgen.protocol.declared`.
+"""Parts of a node's protocol, with the facts of each declared once (`icdgen.protocol.declared`).
 
 A part stands for a section of the ICD (`icdgen.protocol.places`). Times are milliseconds, sizes bytes.
 """
@@ -35,14 +35,14 @@ UART, I2C, CAN = BUSES = ("uart", "i2c", "can")
 
 _BITS = ("lsb0", "msb0")
 _MSB0 = "whether bit 0 is the most significant one of a byte"
-CAN_WITH_DATA = ("telecommand", "reply")  # the other kinds have no data
+CAN_WITH_DATA = ("telecommand", "reply")  # other kinds have no data
 CAN_KINDS = ("telecommand", "acknowledge", "refusal", "request", "reply", "request_refusal")
 _POLL = "time between two polls of "
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Direction:
-    """Ids of one direction."""
+    """Range of the ids of one direction."""
 
     first: int
     last: int
@@ -50,7 +50,10 @@ class Direction:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Framing:
-    """How messages are delimited on the UART. The escape byte comes before each of the other three."""
+    """Framing of messages on the UART.
+
+    The escape byte precedes each of the other three bytes.
+    """
 
     escape: int = octet("escape", "the escape byte")
     start: int = octet("start_of_message", "follows the escape byte at the beginning of a message")
@@ -68,7 +71,7 @@ class Framing:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Acknowledge:
-    """The acknowledge as a message on the UART, which counts from its first byte."""
+    """Acknowledge message on the UART. Positions count from its first byte."""
 
     length: int = octets("", "bytes of the message")
     id_at: int = octets("", "where the id of the telecommand stands")
@@ -77,7 +80,9 @@ class Acknowledge:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Polled:
-    """The frame that tells what became of a telecommand, with the names of its fields."""
+    """Telemetry frame that reports the outcome of a telecommand, with the names of its
+    fields.
+    """
 
     message: Message
     id: str
@@ -88,7 +93,7 @@ class Polled:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Crc:
-    """Parameters of a CRC in the notation of the usual catalogues."""
+    """Parameters of a CRC in the notation of common catalogues."""
 
     width: int = number("width", "bits of the checksum", 1, 32, holds=U32)
     polynomial: int = code("polynomial", "generator polynomial, most significant bit first, without the leading term")
@@ -101,14 +106,17 @@ class Crc:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CheckValue:
-    """The example by which catalogues of checksums verify the parameters. Rule ICD091 computes it; no link needs it."""
+    """Check value of a CRC, by which catalogues verify the parameters.
+
+    Rule ICD091 compares it with the computed CRC. Generated links do not use it.
+    """
 
     check: int | None = code("check", 'checksum of the nine ASCII bytes "123456789"', None)
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Checksum:
-    """The checksum of telecommands and frames."""
+    """Checksum of telecommands and telemetry frames."""
 
     crc: Crc
     covers_id: bool = flag("covers_id", "whether the id byte is part of what the checksum covers", False)
@@ -121,7 +129,7 @@ class Checksum:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CanPart:
-    """A part of the CAN identifier."""
+    """Part of the CAN identifier."""
 
     bits: int
     shift: int
@@ -129,7 +137,7 @@ class CanPart:
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Extended:
-    """CAN messages of several packets."""
+    """Extended CAN messages, which consist of several packets."""
 
     data_bytes: int = octets("data_bytes", "data bytes of a packet", 1, 8)
     left_at: int = octets("packets_left_byte", "index of the byte that counts the packets that follow", 0, 7)
@@ -138,7 +146,7 @@ class Extended:
     )
     packets: int = number("max_packets", "most packets of a message", 1, default=CAN_PACKETS)
     bytes: int = octets(
-        "max_bytes", "most bytes of a message", 1, U32, lambda known: known["data_bytes"] * known["packets"]
+        "max_bytes", "most bytes of a message", 1, U32, lambda preceding: preceding["data_bytes"] * preceding["packets"]
     )
     fill: int = octet("fill", "value of unused bytes of the last packet", 0)
     packet_timeout: int = time("packet_timeout_ms", "longest time between two packets of a message", 1000)
@@ -146,7 +154,9 @@ class Extended:
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Can:
-    """CAN: parts of the identifier by role (type, channel, source, destination), and types by kind of message."""
+    """CAN messages: parts of the identifier by role (type, channel, source,
+    destination), and types by kind of message.
+    """
 
     node_address: int = octet("node_address", "address of the node")
     data_bytes: int = octets(
@@ -164,7 +174,10 @@ class Can:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LogBit:
-    """A bit of the log mask and the frame that it selects; ``id`` and ``name`` are None for an unassigned bit."""
+    """Bit of the log mask and the frame that it selects.
+
+    An unassigned bit has neither ``id`` nor ``name`` (None).
+    """
 
     bit: int
     id: int | None
@@ -174,27 +187,30 @@ class LogBit:
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class LogMask:
-    """The mask of a log. Frames stand in slots, in the order of rising bits."""
+    """Mask of a log.
+
+    Frames are stored in slots, in ascending order of their mask bits.
+    """
 
     size: int = octets("bytes", "length of the mask", 1, BYTE)
     msb0: bool = flag("bit_order", _MSB0, False, _BITS, key_about="which bit of byte 0 is bit 0")
     slot_bytes: int = octets("frame_bytes", "length of each frame in a log")
     fill: int = octet("fill", "value of the bytes after a short frame", 0)
-    bits: dict[int, LogBit]  # the assigned ones
+    bits: dict[int, LogBit]  # assigned bits only
 
     def selected(self, mask: bytes) -> list[LogBit]:
-        """The slots of an entry, in order."""
-        found = []
+        """Return the slots of an entry, in order."""
+        slots = []
         for bit in range(self.size * 8):
             weight = 7 - bit % 8 if self.msb0 else bit % 8
             if mask[bit // 8] >> weight & 1:
-                found.append(self.bits.get(bit) or LogBit(bit, None, self.slot_bytes, None))
-        return found
+                slots.append(self.bits.get(bit) or LogBit(bit, None, self.slot_bytes, None))
+        return slots
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LogFile:
-    """The file form of a log."""
+    """Log as a file."""
 
     mask_at: int = octets("", "where the mask stands in the header")
     header_bytes: int = octets("", "bytes of the header")
@@ -206,7 +222,7 @@ class LogFile:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LogMessage:
-    """The unsolicited form of a log. Places count from the id."""
+    """Log as an unsolicited message. Positions count from the id."""
 
     id: int = number("id", "id of such messages", most=BYTE)
     mask_at: int = octets("", "where the mask stands")
@@ -229,7 +245,9 @@ class IndexField:
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Index:
-    """Entries of the index file: fields by role (type, counter, checksum, size, time, meta)."""
+    """Entries of the index file: fields by role (type, counter, checksum, size, time,
+    meta).
+    """
 
     entry_bytes: int = octets("entry_bytes", "length of an entry")
     file_type: int | None = number("file_type.value", "type of such a file", 0, BYTE, None)
@@ -238,20 +256,20 @@ class Index:
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class HoleMap:
-    """A bit for each packet of a block."""
+    """Hole map: a bit for each packet of a block."""
 
     bytes: int = octets("bytes", "length of the map")
     message_bytes: int = octets(
         "message_bytes",
         "bytes of the map in each message",
-        default=lambda known: known["bytes"] // len(known["messages"]),
+        default=lambda preceding: preceding["bytes"] // len(preceding["messages"]),
     )
     msb0: bool = flag("bit_order", _MSB0, False, _BITS, key_about="bit of byte 0 that represents packet 0")
     received: bool = flag("received", "value of the bit of a received packet", True, (0, 1))
     beyond_end: bool = flag(
         "beyond_end",
         "value of the bits of packets beyond the end of the block",
-        lambda known: known["received"],
+        lambda preceding: preceding["received"],
         (0, 1),
     )
     messages: tuple[Message, ...]
@@ -260,20 +278,23 @@ class HoleMap:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Step:
-    """A message that plays a part in a procedure, and its fields by role."""
+    """Message that is a step of a procedure, and its fields by role."""
 
     message: Message
     fields: dict[str, str] = field(default_factory=dict)
 
     def frame(self, node: Node, values: Mapping[str, int | bytes] | None = None) -> bytes:
-        """Return its bytes with these values by role; the others are those of a new message."""
+        """Return the bytes of the message.
+
+        ``values``: values by role; other fields have their initial values.
+        """
         given = {self.fields[role]: value for role, value in (values or {}).items()}
         return codec.encode(node, self.message, codec.initial_values(node, self.message) | given)
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Listing:
-    """How the list of files is read one by one."""
+    """Procedure that reads the list of files."""
 
     reset: Step = telecommand("reset", "returns to the first file")
     advance: Step = telecommand("advance", "goes on to the next file")
@@ -287,7 +308,7 @@ _COVERS_FILL = "whether the checksum of a block covers the padding of its last p
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Download:
-    """How a file is downloaded."""
+    """Procedure that downloads a file."""
 
     load: Step = telecommand("load", "loads a block")
     ready: Step = telemetry("ready", "tells whether the block is loaded")
@@ -303,7 +324,7 @@ class Download:
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Upload:
-    """How a file is uploaded."""
+    """Procedure that uploads a file."""
 
     initiate: Step = telecommand("initiate", "erases the destination")
     initiated: Step = telemetry("initiated", "tells whether the destination is erased")
@@ -328,7 +349,7 @@ class Upload:
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Erasure:
-    """How files are deleted, or their medium is formatted."""
+    """Procedure that deletes files or formats their medium."""
 
     request: Step = telecommand("request", "begins it")
     progress: Step = telemetry("progress", "tells whether it is done")
@@ -343,7 +364,7 @@ PROCEDURES: dict[str, type[Any]] = {
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Files:
-    """File transfer. A procedure that the ICD does not describe completely is None."""
+    """File transfer. None stands for a procedure that the ICD describes incompletely."""
 
     packet_bytes: int = octets("packet_bytes", "bytes of the file in a packet")
     counter_bytes: int = octets("packet_counter_bytes", "bytes of the packet counter before them", 0, 4)
@@ -360,23 +381,29 @@ class Files:
 
     @property
     def procedures(self) -> dict[str, Any]:
-        """Those that there are, by name."""
+        """Described procedures by name."""
         return {name: getattr(self, name) for name in PROCEDURES if getattr(self, name)}
 
     @property
     def steps(self) -> dict[str, Step]:
-        """Their messages by path: ``list.reset``, ``download.load``, ``upload.packet``, ``erase.request`` ..."""
+        """Messages of the procedures by path: ``list.reset``, ``download.load``,
+        ``upload.packet``, ``erase.request`` ...
+        """
         return {
-            f"{name}.{fact.name}": getattr(one, fact.name)
-            for name, one in self.procedures.items()
-            for fact in facts_of(one)
+            f"{name}.{fact.name}": getattr(procedure, fact.name)
+            for name, procedure in self.procedures.items()
+            for fact in facts_of(procedure)
             if fact.kind is Kind.STEP
         }
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Operation:
-    """What a telecommand starts; its frame says when it is done: ``busy`` is clear, or ``ready`` is set."""
+    """Operation on a program.
+
+    A telecommand starts it. Its frame reports the end: ``busy`` is clear, or ``ready``
+    is set.
+    """
 
     request: Step = telecommand("request", "starts it")
     progress: Step = telemetry("progress", "tells when it is done")
@@ -391,7 +418,7 @@ class Operation:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Settings:
-    """How a client waits and tries again, unless it is told otherwise."""
+    """Time limits and retries of a client; the defaults of generated clients."""
 
     reply_timeout: int = time("reply_timeout_ms", "time-out of a reply", 1000)
     retries: int = number("retries", "number of retries of a request", 0, BYTE, 3)

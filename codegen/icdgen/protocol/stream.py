@@ -1,4 +1,8 @@
-"""Messages in the envelope that the ICD describes, in a stream of bytes or in packets: the reference."""
+"""Encoder and decoder of the packet format that the ICD describes, for byte streams and
+packets.
+
+Reference implementation of the generated encoders and decoders.
+"""
 
 from __future__ import annotations
 
@@ -9,27 +13,32 @@ from icdgen.protocol import checks, stuffing
 from icdgen.protocol.envelope import GIVEN, PACKET, EnvelopeField, Stream, StreamRow
 from icdgen.protocol.errors import LengthError, RangeError, UnknownIdError
 
+# Events of `Decoder`.
 MESSAGE = "message"
-GAP = "gap"  # sequence numbers that did not come; none: the same came again
-CHECKSUM = "checksum"  # the checksum is not that of the message
-BAD_LENGTH = "length"  # a length that no message, or not this one, has
+GAP = "gap"  # sequence numbers were skipped; `missing` 0: the same number was repeated
+CHECKSUM = "checksum"  # wrong checksum
+BAD_LENGTH = "length"  # length that no message has, or not the message of this id
 UNKNOWN_ID = "unknown_id"
-OVERRUN = "overrun"  # a message longer than the buffer
-FRAMING = "framing"  # a constant or a delimiter is not what it must be
+OVERRUN = "overrun"  # message longer than the buffer
+FRAMING = "framing"  # wrong constant or delimiter
 
 
 class Event(NamedTuple):
-    """What the decoder found: a message, or what it dropped and why."""
+    """Event of the decoder: a message, or the reason why bytes were discarded."""
 
     event: str
     id: int | None = None
     data: bytes = b""
-    values: tuple[tuple[str, int], ...] = ()  # of the fields that the sender chooses
+    values: tuple[tuple[str, int], ...] = ()  # fields whose values the sender chooses
     missing: int = 0
 
 
 class Verdict(NamedTuple):
-    """What a frame is. If ``proven``, it is one beyond doubt, though not always one of use."""
+    """Result of the check of a frame.
+
+    ``proven``: whether the bytes are certainly a frame, although its id or length may
+    be unusable.
+    """
 
     event: Event
     proven: bool
@@ -37,7 +46,11 @@ class Verdict(NamedTuple):
 
 
 def encode(form: Stream, direction: str, id: int, data: bytes, values: Mapping[str, int] | None = None) -> bytes:
-    """A message as it is sent. ``values``: of the fields that the sender chooses, those of the ICD unless given."""
+    """Return the transmitted bytes of a message.
+
+    ``values``: values of the fields that the sender chooses; the defaults are those of
+    the ICD. Raises `UnknownIdError`, `LengthError` and `RangeError`.
+    """
     row = next((row for row in form.rows(direction) if row.id == id), None)
     if row is None:
         raise UnknownIdError(f"there is no {direction} of id {id}")
@@ -46,13 +59,14 @@ def encode(form: Stream, direction: str, id: int, data: bytes, values: Mapping[s
     if row.cuts_zeros:
         data = data[:1] + data[1:].rstrip(b"\0")
     head, tail = bytearray(form.header_bytes), bytearray(form.trailer_bytes)
-    known = {"id": id, "length": len(data) + form.length_plus}
+    computed = {"id": id, "length": len(data) + form.length_plus}
     for field in form.fields:
         if field.role != "checksum":
-            value = known.get(field.role, field.values[direction == "telemetry"])
+            value = computed.get(field.role, field.values[direction == "telemetry"])
             if field.role in GIVEN and values:
                 value = values.get(field.role, value)
             _put(field, tail if field.in_trailer else head, value)
+    # The checksum is written last: it can cover all other fields.
     place = form.of("checksum")
     if place and form.check:
         _put(place, tail if place.in_trailer else head, _checksum(form, row, bytes(head) + data + bytes(tail)))
@@ -75,13 +89,17 @@ def _get(form: Stream, field: EnvelopeField, frame: bytes) -> int:
 
 def _checksum(form: Stream, row: StreamRow | None, frame: bytes) -> int:
     assert form.check
+    # Without a checksum in the trailer, the covered part ends with the data.
     end = len(frame) - form.trailer_bytes + form.check.covered_trailer
     seed = bytes([row.seed]) if form.check.is_seeded and row else b""
     return checks.compute(form.check, frame[form.check.covered_from : end] + seed)
 
 
 class Decoder:
-    """Finds the messages of a direction. ``limit``: bytes of the longest message, and of the buffer."""
+    """Decoder of the messages of one direction.
+
+    ``limit``: bytes of the longest message, and size of the buffer.
+    """
 
     def __init__(self, form: Stream, direction: str, limit: int | None = None) -> None:
         self.form, self.direction = form, direction
@@ -89,42 +107,49 @@ class Decoder:
         self.rows = form.rows(direction)
         self.buffer = bytearray()
         self.line = stuffing.unstuffer(form.delimited_by, self.limit)
-        self.last: dict[int, int] = {}  # sequence numbers
-        self.discarded = 0  # bytes of the stream that became part of no message
+        self.last: dict[int, int] = {}  # last sequence number, by row if `per_id`
+        self.discarded = 0  # number of bytes outside of messages
 
     @property
     def pending(self) -> int:
-        """Bytes of the stream about which nothing is decided yet."""
+        """Number of received bytes that are not yet assigned to a message or discarded."""
         return self.line.run if self.line else len(self.buffer)
 
     def feed(self, data: bytes) -> list[Event]:
-        """Takes the next bytes of the stream, or a packet."""
+        """Process the next bytes of the stream, or a packet."""
         if self.form.delimited_by == PACKET:
             return list(self._frame(data, len(data), [OVERRUN] if len(data) > self.limit else []))
         return [event for byte in data for event in self._byte(byte)]
 
     def _byte(self, byte: int) -> Iterator[Event]:
         if self.line:
-            for found in self.line.feed(byte):
-                yield from self._frame(found.frame, found.size, found.faults)
+            for delimited in self.line.feed(byte):
+                yield from self._frame(delimited.frame, delimited.size, delimited.faults)
             return
         self.buffer.append(byte)
         while (count := (yield from self._front())) is not None:
             del self.buffer[:count]
 
     def _frame(self, frame: bytes, size: int, faults: list[str]) -> Iterator[Event]:
-        """Something that is delimited from both sides; ``size``: its bytes on the line."""
+        """Process a frame between two delimiters, or a packet.
+
+        ``size``: its transmitted bytes.
+        """
         if faults:
             yield from (Event(fault) for fault in faults)
             self.discarded += size
-        elif not (yield from self._told(self._judged(frame))):
+        elif not (yield from self._events_of_verdict(self._verdict_of(frame))):
             self.discarded += size
 
     def _front(self) -> Generator[Event, None, int | None]:
-        """What the buffer begins with: bytes to take away, None while that is not decided."""
+        """Process the start of the buffer.
+
+        Return the number of bytes to remove; None if more bytes are needed.
+        """
         form, buffer = self.form, bytes(self.buffer)
         if not buffer:
             return None
+        # Check constants as soon as they are complete, to find the next message early.
         for field in form.fields:
             is_there = not field.in_trailer and field.at + field.size <= len(buffer)
             if is_there and self._is_wrong(field, buffer):
@@ -136,20 +161,24 @@ class Decoder:
         assert place
         data = _get(form, place, buffer) - form.length_plus
         size = form.header_bytes + data + form.trailer_bytes
+        # After a bad length the next message may begin within this one, so only one
+        # byte is discarded.
         if data < 0 or size > form.longest or size > self.limit:
             yield Event(BAD_LENGTH if data < 0 or size > form.longest else OVERRUN)
             self.discarded += 1
             return 1
         if len(buffer) < size:
             return None
-        verdict = self._judged(buffer[:size])
-        if not (yield from self._told(verdict)):
+        verdict = self._verdict_of(buffer[:size])
+        if not (yield from self._events_of_verdict(verdict)):
+            # A proven frame is skipped as a whole; otherwise the search continues one
+            # byte further.
             size = size if verdict.proven else 1
             self.discarded += size
         return size
 
-    def _told(self, verdict: Verdict) -> Generator[Event, None, bool]:
-        """Tells of a frame; whether it is a message."""
+    def _events_of_verdict(self, verdict: Verdict) -> Generator[Event, None, bool]:
+        """Yield the events of a checked frame. Return whether it is a message."""
         event = verdict.event
         place = self.form.of("sequence")
         if event.event == MESSAGE and place:
@@ -162,11 +191,11 @@ class Decoder:
         return event.event == MESSAGE
 
     def _is_wrong(self, field: EnvelopeField, frame: bytes) -> bool:
-        """Whether it is a constant that has another value."""
+        """Return whether the field is a constant with a wrong value."""
         expected = field.values[self.direction == "telemetry"]
         return field.role == "constant" and _get(self.form, field, frame) != expected
 
-    def _judged(self, frame: bytes) -> Verdict:
+    def _verdict_of(self, frame: bytes) -> Verdict:
         form = self.form
         size = len(frame) - form.header_bytes - form.trailer_bytes
         if size < 0:
@@ -179,6 +208,7 @@ class Decoder:
         place = form.of("id")
         id = _get(form, place, frame) if place else self.rows[0].id if self.rows else 0
         number, row = next(((number, row) for number, row in enumerate(self.rows) if row.id == id), (0, None))
+        # The checksum decides whether the id and the length can be trusted.
         place = form.of("checksum")
         if place and form.check:
             if form.check.is_seeded and row is None:

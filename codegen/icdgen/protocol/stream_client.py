@@ -1,7 +1,10 @@
-"""The client over envelopes: requests that different telemetry answers are under way together. The reference.
+"""Client over a packet format of the ICD. Requests with different telemetry responses
+run at the same time.
 
-A step machine without clock and without I/O, as `client.Client`: every call is given the time in milliseconds. Events
-are those of the decoder, as mappings, ``done`` and ``timeout``; a ``message`` is what nobody waits for.
+Reference implementation. Like `client.Client`, it is a state machine without clock and
+I/O, and each call receives the time in milliseconds. Events are mappings: those of the
+decoder, ``done`` and ``timeout``. A ``message`` event is a message that no request
+waits for.
 """
 
 from __future__ import annotations
@@ -21,42 +24,47 @@ from icdgen.protocol.sections import Settings
 
 @dataclass(slots=True, eq=False)
 class Slot:
-    """Room for a request, and the memory of the one before that may still be answered."""
+    """State of one request, and the previous request of the slot whose response may
+    still arrive.
+    """
 
     request: Request = field(default_factory=lambda: Request(TELECOMMAND, 0))
     state: str = IDLE
     sent: int = 0  # id of the telecommand
     reply: int | None = None
     attempts: int = 0
-    until: int = 0  # when the state ends by itself
-    was_taken: bool = False  # by whoever sends
-    late: int | None = None  # id of telemetry that may still come
+    until: int = 0  # end of the state in ms, unless an event ends it earlier
+    was_taken: bool = False  # whether the caller took the message from `output`
+    late: int | None = None  # id of telemetry that may still arrive
     late_until: int = 0
 
 
 class Client:
-    """As many requests together as ``requests`` says, each from sending to its outcome."""
+    """Client with up to ``requests`` simultaneous requests."""
 
-    def __init__(self, known: Facts, requests: int, settings: Settings | None = None) -> None:
-        self.form: Stream = need(known.stream, "stream")
-        self.settings = settings or known.client
+    def __init__(self, facts: Facts, requests: int, settings: Settings | None = None) -> None:
+        self.form: Stream = need(facts.stream, "stream")
+        self.settings = settings or facts.client
         self._decoder = stream.Decoder(self.form, TELEMETRY)
         self._slots = [Slot() for _ in range(requests)]
         self._untaken: list[Slot] = []
-        self._next: dict[int | None, int] = {}  # sequence numbers
+        self._next: dict[int | None, int] = {}  # next sequence number, by id if `per_id`
 
     @property
     def deadline(self) -> int | None:
-        """When `tick` wants to be called at the latest; None: not at all."""
+        """Latest time of the next call of `tick`; None if no call is needed."""
         return min((slot.until for slot in self._slots if slot.state != IDLE), default=None)
 
     def start(self, now: int, request: Request) -> list[Event]:
-        """Begins a request. Raises `UnknownIdError`, `Unsupported`, `BusyError`, `LengthError`."""
+        """Start a request.
+
+        Raises `UnknownIdError`, `Unsupported`, `BusyError` and `LengthError`.
+        """
         row = self._row(request)
         reply = request.id if request.kind == TELEMETRY else row.reply
         if request.reply is not None:
             reply = request.reply
-            if all(one.id != reply for one in self.form.telemetry):
+            if all(row.id != reply for row in self.form.telemetry):
                 raise UnknownIdError(f"no telemetry has the id {reply}")
         slot = self._free(reply)
         if not row.least <= len(request.data) <= row.most:
@@ -64,21 +72,27 @@ class Client:
         slot.request = replace(request, repeat=request.repeat or request.kind == TELEMETRY)
         slot.sent, slot.reply = row.id, reply
         slot.attempts, slot.was_taken = 0, False
-        late = [one.late_until for one in self._slots if one.late is not None and one.late == reply]
+        # A late response to a previous request could be taken for the response to this
+        # one.
+        late = [slot.late_until for slot in self._slots if slot.late is not None and slot.late == reply]
         if now < max(late, default=now):
             slot.state, slot.until = HOLD, max(late)
             return []
         return list(self._transmit(now, slot))
 
     def output(self) -> list[bytes]:
-        """The messages to be sent, once."""
+        """Return the messages to send, each once."""
         taken, self._untaken = self._untaken, []
         for slot in taken:
             slot.was_taken = True
         return [self._line(slot) for slot in taken]
 
     def cancel(self, kind: str | None = None, id: int | None = None) -> None:
-        """Gives up a request, or all, without an event, and what of it was not taken."""
+        """Cancel matching requests without an event, and their output that was not
+        taken.
+
+        Without arguments, cancel all requests.
+        """
         for slot in self._slots:
             if kind in (None, slot.request.kind) and id in (None, slot.request.id):
                 self._drop(slot)
@@ -87,7 +101,7 @@ class Client:
                 slot.state = IDLE
 
     def tick(self, now: int) -> list[Event]:
-        """Lets time pass."""
+        """Process the passage of time."""
         events: list[Event] = []
         for slot in self._slots:
             if slot.state == IDLE or now < slot.until:
@@ -99,20 +113,21 @@ class Client:
         return events
 
     def received(self, now: int, data: bytes) -> list[Event]:
-        """The next bytes of the stream, or a packet."""
-        return self.tick(now) + [self._found(now, event) for event in self._decoder.feed(data)]
+        """Process the next bytes of the stream, or a packet."""
+        return self.tick(now) + [self._event_of(now, event) for event in self._decoder.feed(data)]
 
-    def _found(self, now: int, event: stream.Event) -> Event:
+    def _event_of(self, now: int, event: stream.Event) -> Event:
         if event.event == stream.MESSAGE:
             for slot in self._slots:
                 if slot.state == WAIT and slot.was_taken and slot.reply == event.id:
                     return self._end(now, slot, "done") | {"reply": event.id, "bytes": event.data.hex()}
-        return told(event)
+        return event_row(event)
 
     def _row(self, request: Request) -> StreamRow:
-        """The telecommand that is sent."""
+        """Return the telecommand to send for a request."""
         id, rows = request.id, self.form.telecommands
         if request.kind == TELEMETRY:
+            # Telemetry is requested by the telecommand without data whose reply it is.
             rows = tuple(row for row in rows if row.reply == id and row.least == 0)
             if not rows and any(row.id == id for row in self.form.telemetry):
                 raise Unsupported(f"telemetry {id} is sent unasked")
@@ -123,7 +138,10 @@ class Client:
         return rows[0]
 
     def _free(self, reply: int | None) -> Slot:
-        """Room for a request with that reply, which no other one waits for."""
+        """Return a free slot.
+
+        Raises `BusyError` if all are in use or another request waits for the same reply.
+        """
         if reply is not None and any(slot.state != IDLE and slot.reply == reply for slot in self._slots):
             raise BusyError
         for slot in self._slots:
@@ -132,7 +150,7 @@ class Client:
         raise BusyError
 
     def _transmit(self, now: int, slot: Slot) -> Iterator[Event]:
-        """Sends the request, for the first time or again."""
+        """Send the request or repeat it."""
         slot.attempts += 1
         if slot not in self._untaken:
             self._untaken.append(slot)
@@ -162,8 +180,8 @@ class Client:
         return stream.encode(self.form, TELECOMMAND, slot.sent, slot.request.data, values)
 
 
-def told(event: stream.Event) -> Event:
-    """What a decoder found, as a mapping."""
+def event_row(event: stream.Event) -> Event:
+    """Return an event of the decoder as a mapping."""
     row: dict[str, Any] = {"event": event.event}
     if event.id is not None:
         row["id"] = event.id

@@ -1,4 +1,6 @@
-"""Frames between delimiters: SLIP (RFC 1055), HDLC as asynchronous lines have it (RFC 1662), and COBS."""
+"""Byte stuffing of delimited frames: SLIP (RFC 1055), asynchronous HDLC (RFC 1662) and
+COBS (Cheshire and Baker, 1999).
+"""
 
 from __future__ import annotations
 
@@ -10,11 +12,14 @@ from icdgen.protocol.envelope import COBS, HDLC, SLIP
 _SLIP_END, _SLIP_ESCAPE = 0xC0, 0xDB
 _SLIP_ESCAPED = {0xDC: _SLIP_END, 0xDD: _SLIP_ESCAPE}
 _HDLC_FLAG, _HDLC_ESCAPE, _HDLC_FLIP = 0x7E, 0x7D, 0x20
-_COBS_END, _COBS_WHOLE = 0, 0xFF  # a block of 254 bytes has no zero behind it
+_COBS_END, _COBS_FULL = 0, 0xFF  # code 0xFF: block of 254 bytes without a following zero
 
 
-class Found(NamedTuple):
-    """What stood between two delimiters: a frame, or what is wrong with it; ``size``: its bytes on the line."""
+class Delimited(NamedTuple):
+    """Bytes between two delimiters: a frame, or its faults.
+
+    ``size``: number of transmitted bytes, delimiter included.
+    """
 
     frame: bytes
     size: int
@@ -22,7 +27,9 @@ class Found(NamedTuple):
 
 
 def stuffed(delimited_by: str, frame: bytes) -> bytes:
-    """The frame between delimiters; as it is where there are none."""
+    """Return the frame with byte stuffing and delimiters; unchanged if the format has
+    none.
+    """
     if delimited_by == SLIP:
         out = frame.replace(b"\xdb", b"\xdb\xdd").replace(b"\xc0", b"\xdb\xdc")
         return b"\xc0" + out + b"\xc0"
@@ -33,22 +40,27 @@ def stuffed(delimited_by: str, frame: bytes) -> bytes:
 
 
 def _cobs(frame: bytes) -> bytes:
-    out, block, is_whole = bytearray(), bytearray(), False
+    out, block, is_full = bytearray(), bytearray(), False
     for byte in frame:
-        is_whole = False
+        is_full = False
         if byte:
             block.append(byte)
-            is_whole = len(block) == _COBS_WHOLE - 1
-        if is_whole or not byte:
+            # A full block of 254 bytes implies no zero; it must not be closed a second
+            # time.
+            is_full = len(block) == _COBS_FULL - 1
+        if is_full or not byte:
             out += bytes([len(block) + 1]) + block
             block.clear()
-    if not is_whole:
+    if not is_full:
         out += bytes([len(block) + 1]) + block
     return bytes(out) + b"\0"
 
 
 class Unstuffer:
-    """Finds what stands between delimiters. ``run``: bytes of the stream since the last one."""
+    """Decoder of byte stuffing, fed byte by byte.
+
+    ``run``: number of bytes since the last delimiter.
+    """
 
     def __init__(self, limit: int) -> None:
         self.limit, self.run = limit, 0
@@ -58,13 +70,13 @@ class Unstuffer:
         self.frame = bytearray()
         self.faults: list[str] = []
 
-    def feed(self, byte: int) -> Iterator[Found]:
-        """Takes the next byte."""
+    def feed(self, byte: int) -> Iterator[Delimited]:
+        """Process the next byte."""
         self.run += 1
         if byte == self.end:
             self.ended()
             if self.frame or self.faults:
-                yield Found(bytes(self.frame), self.run, self.faults)
+                yield Delimited(bytes(self.frame), self.run, self.faults)
             self.run = 0
             self.clear()
         elif not self.faults:
@@ -73,13 +85,13 @@ class Unstuffer:
     end = 0
 
     def ended(self) -> None:
-        """The delimiter came."""
+        """Process the delimiter."""
 
     def inside(self, byte: int) -> None:
-        """A byte that is no delimiter."""
+        """Process a byte other than the delimiter."""
 
     def put(self, byte: int) -> None:
-        """A byte of the frame."""
+        """Append a byte to the frame."""
         if len(self.frame) == self.limit:
             self.faults = ["overrun"]
         else:
@@ -87,7 +99,7 @@ class Unstuffer:
 
 
 class Escaped(Unstuffer):
-    """SLIP and HDLC."""
+    """Decoder of SLIP and HDLC."""
 
     def __init__(self, limit: int, is_slip: bool) -> None:
         self.is_slip = is_slip
@@ -105,11 +117,11 @@ class Escaped(Unstuffer):
     def inside(self, byte: int) -> None:
         if self.is_escaped:
             self.is_escaped = False
-            meant = _SLIP_ESCAPED.get(byte) if self.is_slip else byte ^ _HDLC_FLIP
-            if meant is None:
+            original = _SLIP_ESCAPED.get(byte) if self.is_slip else byte ^ _HDLC_FLIP
+            if original is None:
                 self.faults = ["framing"]
             else:
-                self.put(meant)
+                self.put(original)
         elif byte == self.escape:
             self.is_escaped = True
         else:
@@ -117,7 +129,11 @@ class Escaped(Unstuffer):
 
 
 class Cobs(Unstuffer):
-    """COBS. ``left``: bytes that the block still has; ``is_zero``: whether a zero follows it."""
+    """Decoder of COBS.
+
+    ``left``: remaining bytes of the block. ``is_zero``: whether a zero follows the
+    block.
+    """
 
     def clear(self) -> None:
         super().clear()
@@ -134,11 +150,11 @@ class Cobs(Unstuffer):
             return
         if self.is_zero:
             self.put(0)
-        self.left, self.is_zero = byte - 1, byte != _COBS_WHOLE
+        self.left, self.is_zero = byte - 1, byte != _COBS_FULL
 
 
 def unstuffer(delimited_by: str, limit: int) -> Unstuffer | None:
-    """What takes frames out of a stream; None where nothing delimits them."""
+    """Return the decoder of the byte stuffing; None if the format has no delimiters."""
     if delimited_by == COBS:
         return Cobs(limit)
     return Escaped(limit, delimited_by == SLIP) if delimited_by in (SLIP, HDLC) else None

@@ -1,4 +1,4 @@
-"""Date and time packed into bits."""
+"""Date and time packed into bit fields, such as MS-DOS time."""
 
 from __future__ import annotations
 
@@ -12,20 +12,21 @@ PARTS = ("year", "month", "day", "hour", "minute", "second")
 
 
 def unpack(facts: Facts, value: int) -> dict[str, int]:
-    """The parts of a packed time, whatever they are."""
+    """Return the parts of a packed time, without a check of their ranges."""
     form = need(facts.time, "msdos_time")
     return {name: (value >> p.at & (1 << p.bits) - 1) * p.factor + p.offset for name, p in form.items()}
 
 
 def pack(facts: Facts, parts: Mapping[str, int]) -> int:
-    """The packed time; what is finer than its resolution is cut off.
+    """Return the packed time, rounded down to its resolution.
 
-    Raises `RangeError` for the first part, in the order of `PARTS`, that does not exist, or else that does not fit.
+    Raises `RangeError` for the first part, in the order of `PARTS`, that does not exist
+    or does not fit.
     """
     form, value = need(facts.time, "msdos_time"), 0
-    bad = wrong(parts)
-    if bad:
-        raise RangeError(bad)
+    invalid = invalid_part(parts)
+    if invalid:
+        raise RangeError(invalid)
     for name in PARTS:
         part = form[name]
         raw = (parts[name] - part.offset) // part.factor
@@ -35,11 +36,14 @@ def pack(facts: Facts, parts: Mapping[str, int]) -> int:
     return value
 
 
-def wrong(parts: Mapping[str, int]) -> str | None:
-    """The first part of a date and time that does not exist."""
+def invalid_part(parts: Mapping[str, int]) -> str | None:
+    """Return the name of the first part of a date and time that does not exist; None if
+    all are valid.
+    """
     limits = {"month": (1, 12), "hour": (0, 23), "minute": (0, 59), "second": (0, 59)}
     for name in PARTS:
         if name == "day":
+            # Month is checked before day, so `monthrange` receives a valid month.
             limits["day"] = 1, monthrange(parts["year"], parts["month"])[1]
         low, high = limits.get(name, (parts[name], parts[name]))
         if not low <= parts[name] <= high:

@@ -1,7 +1,7 @@
-"""UART: messages <-> a stream of bytes.
+"""Framing of messages on the UART: encoder, decoder and classification.
 
-A message is the id and the data. The decoder is fed any pieces of a stream and gives events; what it gives does not
-depend on how the stream was cut.
+A message consists of id and data. The decoder accepts pieces of a stream of any size;
+its events do not depend on the sizes.
 """
 
 from __future__ import annotations
@@ -12,9 +12,10 @@ from typing import NamedTuple
 from icdgen.protocol.facts import Facts, need
 from icdgen.protocol.sections import Framing
 
+# Events of `Decoder`.
 MESSAGE = "message"
-UNEXPECTED_START = "unexpected_start"  # a message began within another one, which is dropped
-PROTOCOL_ERROR = "protocol_error"  # the escape byte before a byte that has no meaning there
+UNEXPECTED_START = "unexpected_start"  # message began within another one, which is discarded
+PROTOCOL_ERROR = "protocol_error"  # escape byte before an undefined byte
 OVERRUN = "overrun"  # a message longer than the buffer
 EMPTY = "empty"  # a message without an id
 
@@ -22,14 +23,14 @@ REPLY, ACKNOWLEDGE, PACKET, LOG, OTHER = "reply", "acknowledge", "packet", "log"
 
 
 class Event(NamedTuple):
-    """What the decoder found: a message, or what went wrong."""
+    """Event of the decoder: a message or an error."""
 
     event: str
     message: bytes = b""
 
 
 def encode(framing: Framing, message: bytes) -> bytes:
-    """The bytes of a message, id first, on the line."""
+    """Return the transmitted bytes of a message, which begins with its id."""
     out = bytearray((framing.escape, framing.start))
     for position, byte in enumerate(message):
         if byte == framing.escape and (position or framing.escapes_id):
@@ -40,18 +41,21 @@ def encode(framing: Framing, message: bytes) -> bytes:
 
 
 class Decoder:
-    """Finds the messages in a stream. ``limit``: bytes of the longest message, and of the buffer."""
+    """Decoder of a stream.
+
+    ``limit``: bytes of the longest message, and size of the buffer.
+    """
 
     def __init__(self, framing: Framing, limit: int) -> None:
         self.framing, self.limit = framing, limit
         self.buffer = bytearray()
         self.inside = False
         self.escaped = False
-        self.pending = 0  # bytes of the stream about which nothing is decided yet
-        self.discarded = 0  # bytes of the stream that became part of no message
+        self.pending = 0  # number of bytes not yet assigned to a message or discarded
+        self.discarded = 0  # number of bytes outside of messages
 
     def feed(self, data: bytes) -> list[Event]:
-        """Takes the next bytes of the stream."""
+        """Process the next bytes of the stream."""
         return [event for byte in data for event in self._byte(byte)]
 
     def _byte(self, byte: int) -> Iterator[Event]:
@@ -85,7 +89,10 @@ class Decoder:
         self.buffer.clear()
 
     def _outside(self, escaped: bool) -> None:
-        """Drops what was decided to be no message; an escape byte may still begin one."""
+        """Discard pending bytes that are no message.
+
+        An escape byte may still begin one.
+        """
         self.discarded += self.pending - escaped
         self.pending, self.inside, self.escaped = int(escaped), False, escaped
         self.buffer.clear()
@@ -107,7 +114,7 @@ class Decoder:
 
 
 def kind(facts: Facts, message: bytes) -> str:
-    """What a message from the node is, as far as its id and its length tell."""
+    """Classify a message of the node by its id and length."""
     id = message[0]
     log, mask = facts.log_message, facts.mask
     if log and mask and id == log.id:
@@ -124,6 +131,6 @@ def kind(facts: Facts, message: bytes) -> str:
 
 
 def acknowledged(facts: Facts, message: bytes) -> tuple[int, int]:
-    """Id of the telecommand and error code of an acknowledge."""
+    """Return the id of the telecommand and the error code of an acknowledge."""
     form = need(facts.acknowledge, "uart.acknowledge")
     return message[form.id_at], message[form.error_at]
