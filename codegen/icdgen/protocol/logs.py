@@ -13,8 +13,8 @@ from icdgen.protocol.sections import LogBit
 class Frame(NamedTuple):
     """Frame of a log entry.
 
-    If the ICD assigns no frame to the mask bit; then ``data`` is the
-    slot as it is read.
+    If the ICD assigns no frame to the mask bit, ``id`` has the value None and ``data`` is
+    the content of the slot.
     """
 
     bit: int

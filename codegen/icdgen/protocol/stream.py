@@ -48,8 +48,8 @@ class Verdict(NamedTuple):
 def encode(form: Stream, direction: str, id: int, data: bytes, values: Mapping[str, int] | None = None) -> bytes:
     """Return the transmitted bytes of a message.
 
-    ``values``: values of the fields that the sender chooses; the defaults are those of
-    the ICD. Raises `UnknownIdError`, `LengthError` and `RangeError`.
+    ``values``: values of the fields that the sender chooses; the ICD defines their
+    defaults. Raises `UnknownIdError`, `LengthError` and `RangeError`.
     """
     row = next((row for row in form.rows(direction) if row.id == id), None)
     if row is None:

@@ -2,7 +2,7 @@
 run at the same time.
 
 Reference implementation. Like `client.Client`, it is a state machine without clock and
-I/O, and each call receives the time in milliseconds. Events are mappings: those of the
+I/O, and each call receives the time in milliseconds. Events are mappings: the events of the
 decoder, ``done`` and ``timeout``. A ``message`` event is a message that no request
 waits for.
 """

@@ -43,7 +43,7 @@ Steps = Asking[None]
 class Procedure:
     """Base class of procedures.
 
-    ``result`` is None while the procedure runs, then "done" or the reason of its
+    ``result``: None while the procedure runs, then "done" or the reason of its
     failure.
     """
 
