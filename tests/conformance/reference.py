@@ -16,7 +16,7 @@ from icdgen import codec
 from icdgen.icd.frames import FrameField, frame_fields
 from icdgen.icd.model import Enum, Icd, Message, Node
 from icdgen.protocol import ops
-from icdgen.vectors.make import known_text
+from icdgen.vectors.make import ascii_text
 from icdgen.vectors.settings import bits_of
 from tests.conformance.icds import icd_of
 
@@ -257,7 +257,7 @@ def physical_value(field: FrameField, raw: int | bytes | None) -> str | None:
         return None
     if not isinstance(raw, bytes):
         return bits_of(codec.physical_double(field, raw))
-    text = known_text(raw)
+    text = ascii_text(raw)
     return None if text is None else text.encode().hex()
 
 

@@ -1,4 +1,6 @@
-"""Golden vectors, made by the reference codec alone: what every language's code is held to.
+"""Golden vectors, produced by the reference codec and tested against the code of each
+language.
 
-`make` builds them, `write` lays them out; their form is described by ``vectors.schema.json`` beside this package.
+`make` builds them and `write` formats them. ``vectors.schema.json`` in the parent
+package defines the format.
 """

@@ -1,4 +1,4 @@
-"""Which ids a dispatcher is asked for."""
+"""Ids that test the dispatchers of generated code."""
 
 from __future__ import annotations
 
@@ -7,9 +7,12 @@ from collections.abc import Iterable
 BYTE = 256
 
 
-def worth_asking(known: Iterable[int], bits: int = 32) -> list[int]:
-    """Every byte, every known id, its neighbours, and what is left of it where a part is lost; none wider than ``bits``."""
-    found = set(range(BYTE))
-    for id in known:
-        found |= {id - 1, id, id + 1, id & 0xFF, id >> 8, id & 0xFFFF, id | 1 << 8, id | 1 << 16}
-    return sorted(id for id in found if 0 <= id < 1 << bits)
+def test_ids(ids: Iterable[int], bits: int = 32) -> list[int]:
+    """Return test ids of at most ``bits`` bits: all bytes, the ids of the ICD, their
+    neighbors and their truncated and extended forms.
+    """
+    candidates = set(range(BYTE))
+    for id in ids:
+        # Truncated to 8 or 16 bits, shifted down, or with an additional high bit.
+        candidates |= {id - 1, id, id + 1, id & 0xFF, id >> 8, id & 0xFFFF, id | 1 << 8, id | 1 << 16}
+    return sorted(id for id in candidates if 0 <= id < 1 << bits)

@@ -1,4 +1,7 @@
-"""In which line of a file of vectors each of them stands: one a line, so a line is their name."""
+"""Line numbers of vectors in a vector file.
+
+Each vector occupies one line, so the line number identifies it.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,9 @@ from icdgen.vectors.make import MessageVectors, NodeVectors
 
 @dataclass(slots=True)
 class MessageLines:
-    """Those of one message: its head (ids and length), each field, the lengths that are refused, each row."""
+    """Line numbers of one message: head (ids and length), fields, refused lengths and
+    rows.
+    """
 
     head: int
     fields: dict[str, int] = field(default_factory=dict)
@@ -19,7 +24,11 @@ class MessageLines:
 
 @dataclass(slots=True)
 class NodeLines:
-    """``head``: key of the file's head -> line; ``ids``: direction -> line; ``shared``: in order; the others by name."""
+    """Line numbers of a vector file.
+
+    ``head``: by key; ``ids``: by direction; ``shared``: in order; ``enums`` and
+    ``messages``: by name.
+    """
 
     head: dict[str, int] = field(default_factory=dict)
     ids: dict[str, int] = field(default_factory=dict)
@@ -29,35 +38,37 @@ class NodeLines:
 
 
 def lines(vectors: NodeVectors, text: str) -> NodeLines:
-    """The lines of ``text``, which `icdgen.vectors.write.text` made of these vectors."""
-    found = NodeLines()
-    rest = enumerate(text.split("\n"), 1)
-    for number, line in rest:
+    """Return the line numbers of ``text``, which `icdgen.vectors.write.text` wrote for
+    these vectors.
+    """
+    numbers = NodeLines()
+    remaining_lines = enumerate(text.split("\n"), 1)
+    for number, line in remaining_lines:
         if line.startswith('"ids": {'):
             break
-        found.head[line.partition(":")[0].strip('"')] = number
+        numbers.head[line.partition(":")[0].strip('"')] = number
     for direction in vectors.ids:
-        found.ids[direction] = next(rest)[0]
-    for _, line in rest:
+        numbers.ids[direction] = next(remaining_lines)[0]
+    for _, line in remaining_lines:
         if line == '"shared_ids": [':
-            found.shared = [next(rest)[0] for _ in vectors.shared]
+            numbers.shared = [next(remaining_lines)[0] for _ in vectors.shared]
         elif line == '"enums": [':
-            found.enums = {enum.name: next(rest)[0] for enum, _ in vectors.enums}
+            numbers.enums = {enum.name: next(remaining_lines)[0] for enum, _ in vectors.enums}
         elif line == '"messages": [':
             break
-    for one in vectors.messages:
-        found.messages[one.message.name] = _message(one, rest)
-    return found
+    for message_vectors in vectors.messages:
+        numbers.messages[message_vectors.message.name] = _message(message_vectors, remaining_lines)
+    return numbers
 
 
-def _message(vectors: MessageVectors, rest: enumerate[str]) -> MessageLines:
-    found = MessageLines(next(number for number, line in rest if line.startswith('{"name":')))
-    for number, line in rest:
+def _message(vectors: MessageVectors, remaining_lines: enumerate[str]) -> MessageLines:
+    numbers = MessageLines(next(number for number, line in remaining_lines if line.startswith('{"name":')))
+    for number, line in remaining_lines:
         if line == '"fields": [':
-            found.fields = {one.name: next(rest)[0] for one in vectors.fields}
+            numbers.fields = {field.name: next(remaining_lines)[0] for field in vectors.fields}
         elif line.startswith('"refused_lengths": '):
-            found.lengths = number
+            numbers.lengths = number
         elif line == '"vectors": [':
-            found.rows = [next(rest)[0] for _ in vectors.rows]
+            numbers.rows = [next(remaining_lines)[0] for _ in vectors.rows]
             break
-    return found
+    return numbers

@@ -1,4 +1,4 @@
-"""A node's vectors as data."""
+"""Golden vectors of a node as data."""
 
 from __future__ import annotations
 
@@ -22,45 +22,50 @@ Raw = dict[str, "int | bytes"]
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One frame: ``frame`` is decoded to ``raw``, which is encoded to ``encoded`` (reserved bits 0)."""
+    """Vector of one frame: ``frame`` decodes to ``raw``, which encodes to ``encoded``
+    (reserved bits 0).
+    """
 
     why: str
     frame: bytes
     raw: Raw
     encoded: bytes
-    physical: dict[str, Fraction]  # exact, of the scaled fields
-    texts: dict[str, str | None]  # of the text fields; None where the bytes are not ASCII
-    doubles: dict[str, str]  # the physical values as doubles, those of curves, too; as 16 hex digits
+    physical: dict[str, Fraction]  # exact physical values of scaled fields
+    texts: dict[str, str | None]  # of text fields; None if the bytes are not ASCII
+    doubles: dict[str, str]  # physical values as doubles (scales and lookup tables), 16 hex digits each
 
 
 @dataclass(frozen=True, slots=True)
 class MessageVectors:
-    """All that is demanded of the code of one message."""
+    """Vectors of one message."""
 
     message: Message
-    fields: tuple[FrameField, ...]  # of the longest frame
-    # of a fresh message: 0, empty, or what ``const`` says; of views, what they read; without what is not there
+    fields: tuple[FrameField, ...]  # fields of the longest frame
+    # Initial values: 0, empty or ``const``; overlays have the value that they read. Absent optional fields are missing.
     default: Raw
     rows: tuple[Row, ...]
-    lengths: tuple[int, ...]  # frames of these lengths are refused
-    miscounted: tuple[bytes, ...]  # and these, which do not have as many elements as they say
-    unfit: dict[str, list[int]]  # raw values that encoding refuses, by field
-    settings: dict[str, Settings]  # doubles and texts set as physical values, by field
+    lengths: tuple[int, ...]  # lengths of refused frames
+    miscounted: tuple[bytes, ...]  # refused frames whose counters contradict their length
+    unfit: dict[str, list[int]]  # refused raw values by field
+    settings: dict[str, Settings]  # assignments of physical values and texts, by field
 
 
 @dataclass(frozen=True, slots=True)
 class NodeVectors:
-    """The vectors of what a node declares; those of included nodes are in files of their own."""
+    """Vectors of the declarations of one node.
+
+    Included nodes have their own vector files.
+    """
 
     node: Node
-    ids: dict[str, dict[int, list[str]]]  # direction -> id -> the messages of it; every other id is unknown
-    shared: tuple[shared.SharedRow, ...]  # frames of ids that several messages have
-    enums: tuple[tuple[Enum, int | None], ...]  # with a value that has no member, where 64 bits leave one
+    ids: dict[str, dict[int, list[str]]]  # direction -> id -> messages; all other ids are unknown
+    shared: tuple[shared.SharedRow, ...]  # frames of ids that several messages share
+    enums: tuple[tuple[Enum, int | None], ...]  # with a value that has no member; None if members cover all values
     messages: tuple[MessageVectors, ...]
 
 
 def make(icd: Icd, node: Node) -> NodeVectors:
-    """All vectors of a node. Deterministic."""
+    """Return all vectors of a node. The result is deterministic."""
     return NodeVectors(
         node=node,
         ids=_ids(icd, node),
@@ -71,7 +76,8 @@ def make(icd: Icd, node: Node) -> NodeVectors:
 
 
 def message_vectors(node: Node, message: Message) -> MessageVectors:
-    """The vectors of one message that ``node`` declares."""
+    """Return the vectors of one message that ``node`` declares."""
+    # A frame can result from several patterns; the first one names it.
     frames = dict.fromkeys(frame for _, frame in patterns.frames(message, node))
     whys = {frame: why for why, frame in reversed(list(patterns.frames(message, node)))}
     rows = [frame_row(node, message, whys[frame], frame) for frame in frames]
@@ -88,16 +94,18 @@ def message_vectors(node: Node, message: Message) -> MessageVectors:
         fields=fields,
         default=codec.new(node, message),
         rows=tuple(rows),
-        lengths=_refused(message),
+        lengths=_refused_lengths(message),
         miscounted=tuple(_miscounted(node, message)),
         unfit={field.name: unfit for field in raw_fields if (unfit := patterns.unfit(message, field))},
         settings={field.name: settings(field) for field in settable},
     )
 
 
-def _refused(message: Message) -> tuple[int, ...]:
-    """Lengths that no frame has: none at all, and one byte less or more than one that frames have."""
+def _refused_lengths(message: Message) -> tuple[int, ...]:
+    """Return refused lengths: 0, and the neighbors of the permitted lengths."""
     layout = message.layout
+    # With several variable parts, any length from the shortest to the longest may be
+    # permitted.
     least = layout.shortest if len(layout.parts) > 1 else layout.length
     ends = {end + step for end in (least, layout.shortest, layout.shortest + 1, layout.longest) for step in (-1, 1)}
     if not layout.parts:
@@ -106,7 +114,9 @@ def _refused(message: Message) -> tuple[int, ...]:
 
 
 def _miscounted(node: Node, message: Message) -> Iterator[bytes]:
-    """Frames that say one element more or less than they have, or more than there can be."""
+    """Yield frames with one element more or less than their counter, or with a counter
+    beyond its maximum.
+    """
     if not message.layout.parts:
         return
     last = message.layout.parts[-1]
@@ -119,20 +129,22 @@ def _miscounted(node: Node, message: Message) -> Iterator[bytes]:
     frame = patterns.random_frame(message, "miscounted")
     counter = _counter(message, node, last)
     few, most, low, high = last.fewest, last.most, counter.raw_min + last.plus, counter.raw_max + last.plus
-    top = 1 << counter.bits - 1  # which a narrower field does not see
+    top = 1 << counter.bits - 1  # highest bit of the counter, which a narrower implementation would ignore
     pairs = [(few, few + 1), (most, most - 1), (most - 1, most), (most, high), (few, few + top), (most, most + top)]
     for count, stated in (*pairs, *([(few, few - 1), (most, low)] if last.plus else ())):
         if stated != count >= few and low <= stated <= high:
-            wrong = patterns.with_counts(message, node, frame, {last.name: stated})
-            yield wrong[: last.begin + count * last.step]
+            invalid = patterns.with_counts(message, node, frame, {last.name: stated})
+            yield invalid[: last.begin + count * last.step]
 
 
 def _miscounted_inside(node: Node, message: Message, count: int) -> Iterator[bytes]:
-    """Frames of so many elements at the end that count others wrongly, and such as are cut."""
+    """Yield invalid frames for ``count`` elements of the last variable part: wrong
+    counters of other parts, or missing bytes.
+    """
     longest = patterns.random_frame(message, "miscounted inside")
     frame = patterns.cut(message, node, longest, count)
     sizes = codec.sizes_of_frame(node, message, frame)
-    wrong = [frame[:-1], frame[: message.layout.length]]
+    invalid = [frame[:-1], frame[: message.layout.length]]
     highest: dict[FrameField, int] = {}
     for part in message.layout.parts:
         if part.is_rest:
@@ -142,15 +154,15 @@ def _miscounted_inside(node: Node, message: Message, count: int) -> Iterator[byt
         for step in (-1, 1, part.most, 1 << counter.bits - 1):
             stated = sizes[part.name] - part.plus + step
             if counter.raw_min <= stated <= counter.raw_max:
-                wrong.append(codec.frame_of(frame, {counter: stated}))
+                invalid.append(codec.frame_of(frame, {counter: stated}))
     for counter, high in highest.items():
-        if high < counter.raw_max:  # more than there can be, in a frame that is as long as any
-            wrong.append(codec.frame_of(longest, highest | {counter: high + 1}))
-    yield from (one for one in dict.fromkeys(wrong) if not _is_frame(node, message, one))
+        if high < counter.raw_max:  # above the maximum, in a frame of the maximum length
+            invalid.append(codec.frame_of(longest, highest | {counter: high + 1}))
+    yield from (candidate for candidate in dict.fromkeys(invalid) if not _is_frame(node, message, candidate))
 
 
 def _counter(message: Message, node: Node, part: VariablePart) -> FrameField:
-    """Return the field that counts the elements of a variable-length node."""
+    """Return the field that counts the elements of a variable part."""
     return next(field for field in frame_fields(message.layout, node.orders) if field.name == part.counter)
 
 
@@ -161,34 +173,34 @@ def _is_frame(node: Node, message: Message, frame: bytes) -> bool:
 
 
 def frame_row(node: Node, message: Message, why: str, frame: bytes) -> Row:
-    """What the reference codec makes of a frame."""
+    """Return the vector of a frame, decoded and encoded by the reference codec."""
     raw: dict[str, Any] = codec.decode(node, message, frame)
     present = [field for field in frame_fields(message.layout, node.orders) if field.name in raw]
     exact = ((field.name, codec.physical(field, raw[field.name])) for field in present)
     physical = {name: value for name, value in exact if value is not None}
     scaled = (field for field in present if field.has_formula)
     doubles = {field.name: bits_of(codec.physical_double(field, raw[field.name]) or 0.0) for field in scaled}
-    texts = {field.name: known_text(raw[field.name]) for field in present if field.type == "text"}
+    texts = {field.name: ascii_text(raw[field.name]) for field in present if field.type == "text"}
     return Row(why, frame, raw, codec.encode(node, message, raw), physical, texts, doubles)
 
 
-def known_text(raw: bytes) -> str | None:
-    """What a text field says, if that is ASCII."""
-    said = codec.text(raw)
-    return None if "\ufffd" in said else said
+def ascii_text(raw: bytes) -> str | None:
+    """Return the content of a text field; None if it is not ASCII."""
+    content = codec.text(raw)
+    return None if "\ufffd" in content else content
 
 
 def _ids(icd: Icd, node: Node) -> dict[str, dict[int, list[str]]]:
-    found = {direction: shared.ids(icd, node, direction) for direction in (TELECOMMAND, TELEMETRY)}
+    ids_by_direction = {direction: shared.ids(icd, node, direction) for direction in (TELECOMMAND, TELEMETRY)}
     settings: dict[int, list[Message]] = {}
-    for pick in ("set_id", "get_id"):  # a set_id wins over an equal get_id
-        known = set(settings)
+    for pick in ("set_id", "get_id"):  # a set_id has precedence over an equal get_id
+        taken = set(settings)
         for message in icd.messages_of(node):
             id = getattr(message, pick)
-            if id is not None and id not in known:
+            if id is not None and id not in taken:
                 settings.setdefault(id, []).append(message)
-    found[CONFIGURATION] = dict(sorted(settings.items()))
+    ids_by_direction[CONFIGURATION] = dict(sorted(settings.items()))
     return {
         direction: {id: [message.name for message in messages] for id, messages in ids.items()}
-        for direction, ids in found.items()
+        for direction, ids in ids_by_direction.items()
     }

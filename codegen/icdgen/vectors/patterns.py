@@ -1,4 +1,4 @@
-"""Which frames and which values are worth a vector."""
+"""Test patterns: frames and raw values that become vectors."""
 
 from __future__ import annotations
 
@@ -20,6 +20,8 @@ RANDOM_FRAMES = 4
 # Every byte and every nibble differs from its neighbours; the first has the top bit clear, the second set.
 _DISTINCT = (0x123456789ABCDEF0, 0xFEDCBA9876543210)
 
+# Zeros, ones, common values, infinities, quiet and signaling NaNs with payloads,
+# subnormal and extreme values.
 _FLOATS = {
     32: (
         0x00000000, 0x80000000, 0x3F800000, 0xC2F6E979, 0x7F800000, 0xFF800000, 0x7FC00000, 0x7F800001, 0xFFA55A3C,
@@ -34,9 +36,10 @@ _FLOATS = {
 
 
 def frames(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
-    """Frames given as bytes, reserved bits and all: what they are for, and the bytes.
+    """Yield frames as bytes, reserved bits included, each with its purpose.
 
-    Where frames differ in length, the longest is cut to different numbers of elements, and says so.
+    For messages of variable length, the longest frame is shortened to several numbers
+    of elements.
     """
     yield from _alternatives(message, node)
     if message.may_end_early:
@@ -54,7 +57,9 @@ def frames(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
 
 
 def _alternatives(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
-    """Frames for every value on which it depends whether a field is there, and for those beside it."""
+    """Yield frames for each value that decides on the presence of an optional field,
+    and for the neighbors of that value.
+    """
     fields = {field.name: field for field in frame_fields(message.layout, node.orders)}
     yielded = set()
     for field in fields.values():
@@ -72,7 +77,9 @@ def _alternatives(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
 
 
 def _ended_early(message: Message) -> Iterator[tuple[str, bytes]]:
-    """Frames without the zeros of their end: of every number of bytes up to some, of the most, and of a few between."""
+    """Yield frames with omitted trailing zeros: several short lengths, eighths of the
+    maximum, and all but one byte.
+    """
     longest = message.length
     sizes = {*range(1, min(longest, 10)), *(longest * part // 8 for part in range(1, 8)), longest - 1}
     for size in sorted(sizes - {0}):
@@ -81,29 +88,33 @@ def _ended_early(message: Message) -> Iterator[tuple[str, bytes]]:
 
 
 def _counts(part: VariablePart) -> list[int]:
-    """Numbers of elements that are worth a frame."""
+    """Return numbers of elements to test: around both limits and in the middle."""
     few, most = part.fewest, part.most
     counts = (few + 1, most - 1, few, (few + most + 1) // 2, few + 2, most)
     return list(dict.fromkeys(max(few, min(count, most)) for count in counts))
 
 
 def cut(message: Message, node: Node, frame: bytes, count: int) -> bytes:
-    """Shorten the longest frame to one with `count` elements of the last variable-length node.
+    """Return the longest frame shortened to ``count`` elements of the last variable
+    part.
 
-    Of each other variable-length node it has all elements if it has all of the last one, else any number.
+    If ``count`` is the maximum, other variable parts are complete; otherwise their
+    number of elements varies.
     """
     *inner, last = message.layout.parts
     counts: dict[str, int] = {}
     for place, part in enumerate(inner):
         choices = _counts(part)
         is_longest = count == last.most
+        # Derived from the frame, so that the choice is deterministic but differs
+        # between frames.
         counts[part.name] = part.most if is_longest else choices[(sum(frame) + place) % len(choices)]
     counts[last.name] = count
     return shortened(message, with_counts(message, node, frame, counts), counts)
 
 
 def with_counts(message: Message, node: Node, frame: bytes, counts: Mapping[str, int]) -> bytes:
-    """Return the longest frame with these numbers of elements in the fields that count them."""
+    """Return the longest frame with these numbers of elements in the counters."""
     fields = {field.name: field for field in frame_fields(message.layout, node.orders)}
     values = {}
     for part in message.layout.parts:
@@ -113,7 +124,7 @@ def with_counts(message: Message, node: Node, frame: bytes, counts: Mapping[str,
 
 
 def shortened(message: Message, frame: bytes, sizes: Mapping[str, int]) -> bytes:
-    """Return the longest frame without the bytes that one of these sizes lacks."""
+    """Return the longest frame without the elements beyond these sizes."""
     parts = (frame[part.begin : part.begin + sizes[part.name] * part.step] for part in message.layout.parts)
     return frame[: message.layout.length] + b"".join(parts)
 
@@ -134,17 +145,24 @@ def _longest(message: Message) -> Iterator[tuple[str, bytes]]:
 
 @lru_cache(maxsize=1 << 12)
 def _position_code(length: int, number: int) -> bytes:
-    """Bit p is bit ``number`` of p: over all numbers, no two bits of the frame hold the same code."""
+    """Return a frame in which bit p has the value of bit ``number`` of p.
+
+    Over all numbers, each bit of the frame has a different code, so that any mix-up of
+    bits is detected.
+    """
     return bytes(sum(((byte * 8 + bit) >> number & 1) << bit for bit in range(8)) for byte in range(length))
 
 
 def random_frame(message: Message, seed: str) -> bytes:
-    """Bytes that look random and are the same on every run; ``seed`` tells frames of one message apart."""
+    """Return pseudo-random bytes, the same on every run.
+
+    ``seed`` distinguishes frames of one message.
+    """
     return hashlib.shake_128(f"{message.node}/{message.name}/{seed}".encode()).digest(message.length)
 
 
 def values(field: AnyScalar) -> list[int | bytes]:
-    """The raw values of a field that are worth a frame each, without repetition."""
+    """Return the raw values of a field to test, without duplicates."""
     if field.is_bytes:
         size = field.bits // 8
         ascending = bytes(number & 0xFF for number in range(1, size + 1))
@@ -170,8 +188,13 @@ def _numbers(field: AnyScalar) -> Iterator[int]:
         yield value - (1 << field.bits) if value > high else value
     yield high - 1
     if field.type == "enum" and field.enum is not None:
-        yield from (value for one in field.enum.members for value in dict.fromkeys((one.value, one.last)))
-        yield from (value for one in field.enum.members if one.to is not None for value in (one.value + 1, one.to + 1))
+        yield from (value for member in field.enum.members for value in dict.fromkeys((member.value, member.last)))
+        yield from (
+            value
+            for member in field.enum.members
+            if member.to is not None
+            for value in (member.value + 1, member.to + 1)
+        )
         if field.enum.unnamed is not None:
             yield field.enum.unnamed
     if field.const is not None:
@@ -188,19 +211,25 @@ def _near_bits(field: AnyScalar) -> Iterator[int]:
 
 
 def _near(field: AnyScalar) -> Iterator[float]:
-    """The points of a table, and what lies between them and beyond."""
+    """Yield the points of a lookup table, their midpoints, and values beyond both ends."""
     points = [raw for raw, _ in field.curve.points] if field.curve is not None else []
     if points:
         yield from (*points, points[0] - 1, points[-1] + 1)
-        yield from ((one + other) / 2 for one, other in pairwise(points))
+        yield from ((left + right) / 2 for left, right in pairwise(points))
 
 
 def raw_columns(message: Message, node: Node) -> Iterator[dict[str, int | bytes]]:
-    """Raw values of the longest frame, so that each field takes each of its values; neighbours are out of step."""
+    """Yield raw values of the longest frame, so that each field takes each of its
+    values.
+
+    Neighboring fields advance out of step.
+    """
     fields = [field for field in frame_fields(message.layout, node.orders) if field.is_raw]
     counters = {part.counter: _counter_values(part) for part in message.layout.parts}
     columns = [counters.get(field.name) or values(field) for field in fields]
-    alternatives = dict.fromkeys(tuple((one.field, one.values[0]) for one in field.conditions) for field in fields)
+    alternatives = dict.fromkeys(
+        tuple((condition.field, condition.values[0]) for condition in field.conditions) for field in fields
+    )
     for row in range(max(map(len, columns), default=0)):
         raw = {
             field.name: column[(row + index) % len(column)]
@@ -212,12 +241,15 @@ def raw_columns(message: Message, node: Node) -> Iterator[dict[str, int | bytes]
 
 
 def _counter_values(part: VariablePart) -> list[int | bytes]:
-    """Values of a field that counts: every second time all elements are there."""
+    """Return values of a counter.
+
+    Every second value is the maximum, so that all elements are tested.
+    """
     return [number - part.plus for count in _counts(part) for number in (part.most, count)]
 
 
 def unfit(message: Message, field: FrameField) -> list[int]:
-    """Raw values that encoding must refuse."""
+    """Return raw values that encoding must refuse."""
     for part in message.layout.parts:
         if field.name == part.counter:
             return list(dict.fromkeys((part.high + 1, part.low - 1, field.raw_max + 1, field.raw_min - 1)))

@@ -1,4 +1,6 @@
-"""The golden vectors of the protocol layer: questions in the form of the testee protocol, with their answers."""
+"""Golden vectors of the protocol layer: requests and expected responses in the format
+of the conformance tests.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,7 @@ FORMAT = 1
 
 
 class Case(NamedTuple):
-    """One question, and the answer that is demanded."""
+    """Request with its expected response."""
 
     why: str
     request: dict[str, Any]
@@ -37,23 +39,25 @@ class Case(NamedTuple):
 
 
 def nodes(icd: Icd) -> list[Node]:
-    """The nodes that have vectors: those with a protocol, except what is only there to be included."""
+    """Return the nodes that have vectors: nodes with a protocol that no other node
+    includes.
+    """
     included = {name for node in icd.nodes for name in node.includes}
     return [node for node in icd.nodes if icd.protocol_of(node) and node.name not in included]
 
 
 def cases(icd: Icd, node: Node) -> list[Case]:
-    """All cases of a node. Deterministic."""
-    known = facts.of(icd, node)
-    found = []
-    for why, request in _requests(known):
-        asked = {"op": request["op"], "node": node.name, **request}
-        found.append(Case(why, asked, ops.answer(icd, asked)))
-    return found
+    """Return all cases of a node. The result is deterministic."""
+    node_facts = facts.of(icd, node)
+    cases = []
+    for why, request in _requests(node_facts):
+        complete_request = {"op": request["op"], "node": node.name, **request}
+        cases.append(Case(why, complete_request, ops.answer(icd, complete_request)))
+    return cases
 
 
 def text(icd: Icd) -> str | None:
-    """The file, one case a line; None where no node has a protocol."""
+    """Return the vector file, one case per line; None if no node has a protocol."""
     parts = []
     for node in nodes(icd):
         lines = [json.dumps(case._asdict(), separators=(",", ":")) for case in cases(icd, node)]
@@ -65,23 +69,23 @@ def text(icd: Icd) -> str | None:
     return "{\n" + head + ",\n".join(parts) + "\n]\n}\n"
 
 
-def _requests(known: Facts) -> Iterator[tuple[str, dict[str, Any]]]:
-    source = random.Random(known.node.name)
+def _requests(node_facts: Facts) -> Iterator[tuple[str, dict[str, Any]]]:
+    source = random.Random(node_facts.node.name)
     yield "facts that nothing but a user's own code reads", {"op": "link_data"}
-    if known.stream:
-        yield from envelopes.requests(known, source)
-        yield from asking.scripts(known)
+    if node_facts.stream:
+        yield from envelopes.requests(node_facts, source)
+        yield from asking.scripts(node_facts)
         return
-    yield from streams.checksums(known, source)
-    if known.framing:
-        yield from streams.encoded(known, source)
-        yield from streams.streams(known, source)
-    if known.can:
-        yield from packets.requests(known, source)
-    yield from i2c.requests(known, source)
-    yield from logs.requests(known, source)
-    yield from files.requests(known, source)
-    yield from clients.scripts(known)
-    yield from procedures.scripts(known)
-    yield from operations.scripts(known)
-    yield from waits.scripts(known)
+    yield from streams.checksums(node_facts, source)
+    if node_facts.framing:
+        yield from streams.encoded(node_facts, source)
+        yield from streams.streams(node_facts, source)
+    if node_facts.can:
+        yield from packets.requests(node_facts, source)
+    yield from i2c.requests(node_facts, source)
+    yield from logs.requests(node_facts, source)
+    yield from files.requests(node_facts, source)
+    yield from clients.scripts(node_facts)
+    yield from procedures.scripts(node_facts)
+    yield from operations.scripts(node_facts)
+    yield from waits.scripts(node_facts)

@@ -1,4 +1,4 @@
-"""Which doubles are worth setting as the physical value of a scaled field."""
+"""Physical values and texts that test the setters of fields."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from icdgen.icd.formula import Scale
 from icdgen.icd.layout import Scalar
 from icdgen.icd.places import AnyScalar
 
-# Refused by every field but floats: NaN (quiet, signalling, negative), the infinities, and numbers beyond any raw value.
+# Refused by all fields except floats: NaNs (quiet, signaling, negative), infinities, and numbers beyond any raw value.
 NEVER = (
     "7ff8000000000000", "7ff0000000000001", "fff8000000000123", "7ff0000000000000", "fff0000000000000",
     "7fefffffffffffff", "ffefffffffffffff",
@@ -22,12 +22,12 @@ NEVER = (
 
 
 def bits_of(value: float) -> str:
-    """The 16 hex digits of a double's bits, most significant first."""
+    """Return the 16 hex digits of the bits of a double, most significant first."""
     return struct.pack(">d", value).hex()
 
 
 def float_of(bits: str) -> float:
-    """The double that 16 hex digits stand for."""
+    """Return the double of 16 hex digits."""
     value: float = struct.unpack(">d", bytes.fromhex(bits))[0]
     return value
 
@@ -36,7 +36,9 @@ Settings = list[tuple[str, "int | bytes | None"]]
 
 
 def settings(field: AnyScalar) -> Settings:
-    """Doubles (as their bits) or texts, and the raw value that setting each must give; None where it must be refused."""
+    """Return assignments of a field: the bits of a double, or a text, and the resulting
+    raw value (None: refused).
+    """
     if field.type == "text":
         return [(text, _raw(field, text)) for text in _texts(field.bits // 8)]
     return list(_settings(field.type, field.bits, field.scale, field.curve).items())
@@ -44,34 +46,44 @@ def settings(field: AnyScalar) -> Settings:
 
 @lru_cache(maxsize=1 << 12)
 def _settings(type: str, bits: int, scale: Scale | None, curve: Curve | None) -> dict[str, int | bytes | None]:
-    """Those of all fields of this type, width and formula: many have the same."""
+    """Return the assignments for a type, width and calibration.
+
+    Cached, because many fields have the same ones.
+    """
     field = Scalar(name="", type=type, bits=bits, scale=scale, curve=curve)
-    found: dict[str, int | bytes | None] = {}
+    assignments: dict[str, int | bytes | None] = {}
     for value in _doubles(field) if curve is None else _on_curve(field, curve):
         if math.isfinite(value):
-            found[bits_of(value)] = _raw(field, value)
+            assignments[bits_of(value)] = _raw(field, value)
     if type == "float":
-        found |= {bits: _raw(field, float_of(bits)) for bits in NEVER}
-    return found
+        assignments |= {bits: _raw(field, float_of(bits)) for bits in NEVER}
+    return assignments
 
 
 def _texts(size: int) -> Iterator[str]:
-    """Texts of every length that matters, the extreme characters, and what no text field takes."""
+    """Yield texts of relevant lengths, the extreme ASCII characters, and non-ASCII
+    characters, which are refused.
+    """
     every = "".join(map(chr, range(1, 0x80)))
     long = (every * (size // len(every) + 2))[32 : 32 + size + 1]
     yield from ("", long[:1], long[: size - 1], long[:size], long, "\x01", "\x7f")
     yield from ("\x80", "\u00e9", "\u4f4d", "\U0001f6f0")
 
 
-def _raw(field: AnyScalar, given: str | float) -> int | bytes | None:
+def _raw(field: AnyScalar, assigned: str | float) -> int | bytes | None:
     try:
-        return codec.raw_from_text(field, given) if isinstance(given, str) else codec.raw_from_physical(field, given)
+        return (
+            codec.raw_from_text(field, assigned)
+            if isinstance(assigned, str)
+            else codec.raw_from_physical(field, assigned)
+        )
     except codec.CodecError:
         return None
 
 
 def _doubles(field: Scalar) -> Iterator[float]:
     low, high = field.raw_min, field.raw_max
+    # Negative zero and the smallest subnormal double.
     yield from (-0.0, 5e-324)
     for raw in (low - 1, high, (low + high) // 2, low + (high - low) // 3):
         near = float(_above(field, raw))
@@ -80,32 +92,42 @@ def _doubles(field: Scalar) -> Iterator[float]:
 
 
 def _on_curve(field: Scalar, curve: Curve) -> Iterator[float]:
-    """Beside the physical values of some raw values, half way between those of neighbours, and beyond the ends."""
+    """Yield physical values of some raw values, midpoints between neighbors, their
+    adjacent doubles, and values beyond both ends.
+    """
     yield from (-0.0, 5e-324, 1e300, -1e300)
     if field.type == "float":
         numbers = (0.0, 1.0, -1.5, 0.1, 1e-3, -123456.789, 3.4028234663852886e38, 1e-45)
-        yield from (curve.double(one) for one in numbers)
+        yield from (curve.double(raw) for raw in numbers)
         return
     low, high = field.settable_raws
     for raw in sorted({low, (low + high) // 2, low + (high - low) // 3, high - 1}):
-        here, there = curve.double(raw), curve.double(raw + 1)
-        middle = here + (there - here) / 2
-        yield from (here, there, middle)
-        yield from (math.nextafter(one, way) for one in (here, middle, there) for way in (-math.inf, math.inf))
+        value, next_value = curve.double(raw), curve.double(raw + 1)
+        middle = value + (next_value - value) / 2
+        yield from (value, next_value, middle)
+        yield from (
+            math.nextafter(near, direction)
+            for near in (value, middle, next_value)
+            for direction in (-math.inf, math.inf)
+        )
 
 
 def _above(field: Scalar, raw: int) -> Fraction:
-    """The exact physical value half way between ``raw`` and the next raw value."""
+    """Return the exact physical value halfway between ``raw`` and the next raw value."""
     assert field.scale is not None
     return field.scale.physical(raw + Fraction(1, 2))
 
 
 def _ties(field: Scalar) -> Iterator[float]:
-    """Doubles that lie exactly half way between two raw values, an even and an odd one below, at both ends of the range."""
+    """Yield doubles exactly halfway between two raw values, even and odd, at both ends
+    of the range.
+
+    They test the rounding of ties.
+    """
     assert field.scale is not None
     half, offset = field.scale.factor / 2, field.scale.offset
     common = math.lcm(half.denominator, offset.denominator)
-    # half way above raw r is ((2 r + 1) a + b) / common; a double needs the odd part of the denominator to cancel
+    # The midpoint above raw r is ((2 r + 1) a + b) / common. It is a double if the odd part of the denominator cancels.
     a, b = int(half * common), int(offset * common)
     odd = common // (common & -common)
     divisor = math.gcd(2 * a, odd)

@@ -1,4 +1,6 @@
-"""Frames of ids that several messages have, and which message each is of."""
+"""Frames of ids that several messages share, with the message that each frame belongs
+to.
+"""
 
 from __future__ import annotations
 
@@ -12,8 +14,11 @@ from icdgen.vectors import patterns
 
 
 class SharedRow(NamedTuple):
-    """A frame that came under an id. ``message`` is None where it is of none of that id; ``expected`` is the length that
-    all of them have, if it is for another one."""
+    """Frame received with a shared id.
+
+    ``message``: None if the frame belongs to none of the messages. ``expected``: their
+    common length, if the frame has another one.
+    """
 
     direction: str
     id: int
@@ -23,17 +28,21 @@ class SharedRow(NamedTuple):
 
 
 def ids(icd: Icd, node: Node, direction: str) -> dict[int, list[Message]]:
-    """The messages of a direction that the node speaks, by their ids, in the order of the ICD."""
-    found: dict[int, list[Message]] = {}
+    """Return the messages of a direction that the node sends or receives, by id, in the
+    order of the ICD.
+    """
+    messages_by_id: dict[int, list[Message]] = {}
     for message in icd.messages_of(node):
         id = message.telecommand_id if direction == TELECOMMAND else message.telemetry_id
         if id is not None:
-            found.setdefault(id, []).append(message)
-    return dict(sorted(found.items()))
+            messages_by_id.setdefault(id, []).append(message)
+    return dict(sorted(messages_by_id.items()))
 
 
 def rows(icd: Icd, node: Node) -> Iterator[SharedRow]:
-    """Those of a node: what the reference codec makes of frames of each message and of frames beside them."""
+    """Yield the frames of shared ids of a node: frames of each message, and frames that
+    differ from them, as the reference codec assigns them.
+    """
     for direction in (TELECOMMAND, TELEMETRY):
         for id, messages in ids(icd, node, direction).items():
             if len(messages) > 1:
@@ -42,45 +51,59 @@ def rows(icd: Icd, node: Node) -> Iterator[SharedRow]:
 
 
 def _row(icd: Icd, direction: str, id: int, messages: list[Message], frame: bytes) -> SharedRow | None:
-    """None if the frame does not have as many elements as it says: the vectors of the message have such frames."""
+    """Return the row of a frame.
+
+    None for a frame whose counter contradicts its length; the vectors of the message
+    contain such frames.
+    """
     try:
-        found = codec.message_of_frame(icd, messages, frame)
+        match = codec.message_of_frame(icd, messages, frame)
     except codec.LengthError as error:
         return SharedRow(direction, id, frame, None, error.expected)
-    if found is not None:
+    if match is not None:
         try:
-            codec.decode(icd.node(found.node), found, frame)
+            codec.decode(icd.node(match.node), match, frame)
         except codec.LengthError:
             return None
-    return SharedRow(direction, id, frame, found.name if found else None)
+    return SharedRow(direction, id, frame, match.name if match else None)
 
 
 def _frames(icd: Icd, messages: list[Message]) -> Iterator[bytes]:
-    """Of each message its constants among zeros, ones and random bytes, and each bit of them changed; other lengths."""
+    """Yield frames of each message: its constants among zeros, ones and random bytes,
+    each bit of a constant inverted, and wrong lengths.
+    """
     lengths = sorted({length for message in messages for length in (message.layout.shortest, message.length)})
     yield from (bytes(size) for size in sorted({near for n in lengths for near in (0, max(n - 1, 0), n, n + 1)}))
     yield from (b"\xff" * size for size in lengths)
     for message in messages:
         node = icd.node(message.node)
-        known = constants(message, node)
-        for around in (bytes(message.length), b"\xff" * message.length, patterns.random_frame(message, "shared id")):
+        constant_fields = constants(message, node)
+        for background in (
+            bytes(message.length),
+            b"\xff" * message.length,
+            patterns.random_frame(message, "shared id"),
+        ):
             if message.may_end_early:
-                yield from (around[:1], around[: (message.length + 1) // 2])
-            for frame in _cut(message, node, around):
-                whole = codec.decode(node, message, frame) | {field.name: field.const or 0 for field in known}
-                made = codec.frame_with(node, message, whole)
-                yield made
+                yield from (background[:1], background[: (message.length + 1) // 2])
+            for frame in _cut(message, node, background):
+                values = codec.decode(node, message, frame) | {
+                    field.name: field.const or 0 for field in constant_fields
+                }
+                frame_with_constants = codec.frame_with(node, message, values)
+                yield frame_with_constants
                 if message.may_end_early:
-                    yield made.rstrip(b"\0") or made[:1]
-        for field in known:
+                    yield frame_with_constants.rstrip(b"\0") or frame_with_constants[:1]
+        for field in constant_fields:
             for bit in range(field.bits):
-                mine = int(whole[field.name]) & (1 << field.bits) - 1 ^ 1 << bit
-                signed = mine - (mine >> field.bits - 1 << field.bits if field.is_signed else 0)
-                yield codec.frame_with(node, message, whole | {field.name: signed})
+                inverted = int(values[field.name]) & (1 << field.bits) - 1 ^ 1 << bit
+                signed = inverted - (inverted >> field.bits - 1 << field.bits if field.is_signed else 0)
+                yield codec.frame_with(node, message, values | {field.name: signed})
 
 
 def _cut(message: Message, node: Node, frame: bytes) -> list[bytes]:
-    """The longest frame; where frames differ in length, also without an element, with one and with half of them."""
+    """Return the longest frame and, for variable length, frames with the fewest, one
+    more and half of the elements.
+    """
     if not message.layout.parts:
         return [frame]
     few, most = message.layout.parts[-1].fewest, message.layout.parts[-1].most

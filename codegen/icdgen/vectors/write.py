@@ -1,4 +1,6 @@
-"""Vectors -> JSON text: one vector a line, so that a change of the ICD shows as a change of few lines."""
+"""Writer of vector files: JSON with one vector per line, so that a change of the ICD
+changes few lines.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,7 @@ from icdgen.vectors.shared import SharedRow
 
 
 def text(vectors: NodeVectors) -> str:
-    """The file of one node."""
+    """Return the vector file of one node."""
     node = vectors.node
     head = {
         "icdgen_vectors": FORMAT,
@@ -26,8 +28,8 @@ def text(vectors: NodeVectors) -> str:
         "digest": node.digest[:16],
         "includes": list(node.includes),
     }
-    told = {"node_type": node.node_type, "interface_version": node.interface_version}
-    head |= {key: value for key, value in told.items() if value is not None}
+    identification = {"node_type": node.node_type, "interface_version": node.interface_version}
+    head |= {key: value for key, value in identification.items() if value is not None}
     parts = [f"{_json(key)}: {_json(value)}" for key, value in head.items()]
     parts.append(f'"never_set": {_json(list(NEVER))}')
     parts.append('"ids": {\n' + ",\n".join(_ids(vectors)) + "\n}")
@@ -39,19 +41,25 @@ def text(vectors: NodeVectors) -> str:
 
 
 def decimal(value: Fraction) -> str:
-    """The number as an exact decimal, ``-12.34``; as ``1/3`` where it has none."""
+    """Return the number as an exact decimal such as ``-12.34``; ``1/3`` for an infinite
+    decimal.
+    """
     top, bottom = value.numerator, value.denominator
     digits = _digits(bottom)
     if digits is None:
         return f"{top}/{bottom}"
-    whole, part = divmod(abs(top) * 10**digits // bottom, 10**digits)
+    integer, part = divmod(abs(top) * 10**digits // bottom, 10**digits)
     sign = "-" if top < 0 else ""
-    return f"{sign}{whole}.{part:0{digits}}" if digits else f"{sign}{whole}"
+    return f"{sign}{integer}.{part:0{digits}}" if digits else f"{sign}{integer}"
 
 
 @lru_cache(maxsize=1 << 12)
 def _digits(denominator: int) -> int | None:
-    """How many decimal digits a fraction of that denominator has; None if they never end."""
+    """Return the number of decimal digits of a fraction with this denominator; None if
+    it is infinite.
+    """
+    # A finite decimal has at most as many digits as the denominator has factors of 2
+    # and 5.
     for digits in range(denominator.bit_length() + 1):
         if not 10**digits % denominator:
             return digits
@@ -59,7 +67,10 @@ def _digits(denominator: int) -> int | None:
 
 
 def raw_json(field: AnyScalar, value: int | bytes | None) -> int | str | None:
-    """A raw value as it stands in the vectors and in the testee protocol (there, of a bool, true or false)."""
+    """Return a raw value in the format of vectors and conformance tests.
+
+    Conformance tests use true and false for booleans.
+    """
     if isinstance(value, bytes):
         return value.hex()
     if value is not None and field.type == "float":
@@ -68,8 +79,8 @@ def raw_json(field: AnyScalar, value: int | bytes | None) -> int | str | None:
 
 
 def _ids(vectors: NodeVectors) -> Iterator[str]:
-    for direction, known in vectors.ids.items():
-        named = {str(id): names[0] if len(names) == 1 else names for id, names in known.items()}
+    for direction, messages in vectors.ids.items():
+        named = {str(id): names[0] if len(names) == 1 else names for id, names in messages.items()}
         yield f"{_json(direction)}: {_json(named)}"
 
 
@@ -93,6 +104,8 @@ def _message(vectors: MessageVectors) -> str:
     head["length"] = message.length
     if message.may_end_early:
         head["may_end_early"] = message.may_end_early
+    # Keys of the vector format keep their names: `tail` is the last variable part,
+    # `view` an overlay.
     if message.layout.parts:
         *inner, last = message.layout.parts
         head["tail"] = _variable_part(last, {"least": last.begin})

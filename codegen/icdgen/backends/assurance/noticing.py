@@ -19,7 +19,7 @@ from icdgen.icd.layout_copies import with_enum
 from icdgen.icd.model import Enum, Message, Node
 from icdgen.icd.places import NodePlace, scalars_in
 from icdgen.vectors.lines import MessageLines
-from icdgen.vectors.make import MessageVectors, Raw, Row, known_text
+from icdgen.vectors.make import MessageVectors, Raw, Row, ascii_text
 from icdgen.vectors.settings import NEVER, bits_of, float_of
 from icdgen.vectors.write import raw_json
 
@@ -255,7 +255,7 @@ def _name(field: NodePlace, raw: Any) -> object:
 
 def _physical(field: NodePlace, raw: Any) -> object:
     if field.type == "text":
-        return (known_text(raw),)
+        return (ascii_text(raw),)
     double = codec.physical_double(field, raw)
     return None if double is None else bits_of(double)
 

@@ -19,7 +19,7 @@ from icdgen.describe.nodes import Direction
 from icdgen.icd.model import Icd, Message
 from icdgen.icd.places import NodePlace, raw_fields_in, scalars_in
 from icdgen.render import Renderer
-from icdgen.vectors.ids import worth_asking
+from icdgen.vectors.ids import test_ids
 from icdgen.vectors.make import MessageVectors, Raw, Row, make
 from icdgen.vectors.patterns import values
 from icdgen.vectors.settings import NEVER, Settings, bits_of
@@ -103,7 +103,7 @@ class _Rows:
         known = self.node.ids(direction.kind)
         lengths = {one.id: one.first.message.model for one in known if not one.is_shared}
         shared = {one.id for one in known if one.is_shared}
-        asked = (id for id in worth_asking((*lengths, *shared), id_bits) if id not in shared)
+        asked = (id for id in test_ids((*lengths, *shared), id_bits) if id not in shared)
         rows = [_id(id, lengths.get(id)) for id in asked]
         frames = [_frame(row) for row in self.vectors.shared if row.direction == direction.kind]
         return f"{self.node.name}_{direction.kind}", rows, bool(shared), frames

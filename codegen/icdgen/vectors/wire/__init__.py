@@ -1,4 +1,6 @@
-"""What the protocol layer is asked: requests made from the protocol facts of a node, a module a theme."""
+"""Requests that test the protocol layer, derived from the protocol facts of a node; one
+module per subject.
+"""
 
 from collections.abc import Iterator
 from random import Random
@@ -12,7 +14,7 @@ Script = list[dict[str, Any]]
 
 
 def pieces(why: str, stream: bytes, source: Random) -> Iterator[tuple[str, list[bytes]]]:
-    """The stream as a whole, and cut."""
+    """Yield the stream in one piece, byte by byte, and cut at random positions."""
     yield why, [stream]
     yield f"{why}, byte by byte", [bytes([byte]) for byte in stream]
     cuts = sorted(source.sample(range(len(stream) + 1), min(5, len(stream))))

@@ -1,4 +1,6 @@
-"""Scripts of the client on each bus: replies, refusals, silence, late and foreign messages."""
+"""Scripts of the client on each bus: replies, negative acknowledges, time-outs, late
+and unrelated messages.
+"""
 
 from __future__ import annotations
 
@@ -16,15 +18,18 @@ from icdgen.protocol.sections import CAN, I2C, UART
 from icdgen.vectors.wire import Requests
 
 SETTINGS = {"reply_timeout": 100, "retries": 2, "poll_interval": 10, "poll_timeout": 50}
-OURS = 0x42
+OURS = 0x42  # CAN address of the client
 
 
 class Sample:
-    """Messages of the node that the scripts speak of; where it has none of a kind, others in their place."""
+    """Messages of the node for the scripts.
 
-    def __init__(self, known: Facts, source: Random) -> None:
-        self.known = known
-        sent, frames = known.telecommands.values(), known.telemetry.values()
+    If the node has no message of a kind, another one replaces it.
+    """
+
+    def __init__(self, facts: Facts, source: Random) -> None:
+        self.facts = facts
+        sent, frames = facts.telecommands.values(), facts.telemetry.values()
         acknowledged = [m for m in sent if m.acknowledge and m.kind != CONFIGURATION]
         self.plain: Message = max(acknowledged or sent, key=lambda m: (m.length <= 8, m.length))
         self.long: Message = max(sent, key=lambda m: m.length)
@@ -47,27 +52,27 @@ class Sample:
         return {"at": at, "telemetry": message.telemetry_id}
 
 
-def scripts(known: Facts) -> Requests:
-    """Everything that is asked of the client."""
-    if not known.telecommands or not known.telemetry:
+def scripts(facts: Facts) -> Requests:
+    """Yield the scripts of the client on all buses."""
+    if not facts.telecommands or not facts.telemetry:
         return
-    sample = Sample(known, Random(f"{known.node.name} client"))
-    if known.framing and known.acknowledge:
-        for why, rows in _uart(known, sample):
+    sample = Sample(facts, Random(f"{facts.node.name} client"))
+    if facts.framing and facts.acknowledge:
+        for why, rows in _uart(facts, sample):
             yield f"UART: {why}", _op(UART, rows)
-        if known.checksum and UART in known.checksum.telecommand_buses:
-            for why, rows in _checked(known, sample):
+        if facts.checksum and UART in facts.checksum.telecommand_buses:
+            for why, rows in _checked(facts, sample):
                 yield f"UART with checksum: {why}", _op(UART, rows, crc=True)
-        if known.checksum and UART in known.checksum.telemetry_buses:
-            for why, rows in _checked_frames(known, sample):
+        if facts.checksum and UART in facts.checksum.telemetry_buses:
+            for why, rows in _checked_frames(facts, sample):
                 yield f"UART, {why}", _op(UART, rows)
                 yield f"UART with checksum, {why}", _op(UART, rows, crc=True)
-    if known.polled and known.i2c_address is not None:
-        for checked in (False, True) if known.checksum else (False,):
-            for why, rows in _i2c(known, sample, checked):
+    if facts.polled and facts.i2c_address is not None:
+        for checked in (False, True) if facts.checksum else (False,):
+            for why, rows in _i2c(facts, sample, checked):
                 yield f"I2C{' with checksum' * checked}: {why}", _op(I2C, rows, **({"crc": True} if checked else {}))
-    if known.can:
-        for why, rows in _can(known, sample):
+    if facts.can:
+        for why, rows in _can(facts, sample):
             yield f"CAN: {why}", _op(CAN, rows, address=OURS)
 
 
@@ -75,33 +80,33 @@ def _op(bus: str, script: list[dict[str, Any]], **more: object) -> dict[str, Any
     return {"op": "client", "bus": bus, **more, "settings": SETTINGS, "script": script}
 
 
-def _line(known: Facts, message: bytes) -> str:
-    assert known.framing
-    return uart.encode(known.framing, message).hex()
+def _line(facts: Facts, message: bytes) -> str:
+    assert facts.framing
+    return uart.encode(facts.framing, message).hex()
 
 
-def _acknowledge(known: Facts, message: Message, code: int = 0) -> str:
-    form = known.acknowledge
+def _acknowledge(facts: Facts, message: Message, code: int = 0) -> str:
+    form = facts.acknowledge
     assert form and message.telecommand_id is not None
     data = bytearray(form.length)
     data[form.id_at], data[form.error_at] = message.telecommand_id, code
-    return _line(known, bytes(data))
+    return _line(facts, bytes(data))
 
 
-def _uart(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
+def _uart(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
     def ack(at: int, message: Message, code: int = 0) -> dict[str, Any]:
-        return {"at": at, "receive": _acknowledge(known, message, code)}
+        return {"at": at, "receive": _acknowledge(facts, message, code)}
 
     def reply(at: int, message: Message, more: int = 0) -> dict[str, Any]:
         data = s.source.randbytes(message.length + more)
-        return {"at": at, "receive": _line(known, bytes([message.telemetry_id or 0]) + data)}
+        return {"at": at, "receive": _line(facts, bytes([message.telemetry_id or 0]) + data)}
 
-    plain, frame, framing = s.plain, s.frame, need(known.framing, "uart")
-    other = next((m for m in known.telecommands.values() if m.acknowledge and m is not plain), plain)
+    plain, frame, framing = s.plain, s.frame, need(facts.framing, "uart")
+    other = next((m for m in facts.telecommands.values() if m.acknowledge and m is not plain), plain)
     escape = f"{framing.escape:02x}"
     begin, finish = f"{escape}{framing.start:02x}", f"{escape}{framing.end:02x}"
     yield "a telecommand and its acknowledge", [s.ask(0, plain), ack(30, plain), s.ask(30, plain), ack(40, plain)]
-    for name, code in known.errors.items():
+    for name, code in facts.errors.items():
         if name != "none":
             yield f"refused: {name}", [s.ask(0, plain), ack(30, plain, code)]
     yield "refused with a code that has no name", [s.ask(0, plain), ack(30, plain, 200)]
@@ -154,60 +159,60 @@ def _uart(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]
         yield "not acknowledged", [s.ask(0, s.silent), s.ask(0, s.silent), s.request(0, frame), reply(9, frame)]
     if s.reset:
         yield "a reset", [s.ask(0, s.reset), ack(5, s.reset)]
-    unknown = next(id for id in range(256) if id not in known.telecommands)
+    unknown = next(id for id in range(256) if id not in facts.telecommands)
     yield "an unknown id", [{"at": 0, "telecommand": unknown, "bytes": ""}, {"at": 0, "telemetry": 0}]
     yield "a wrong length", [{"at": 0, "telecommand": plain.telecommand_id, "bytes": "00" * (plain.length + 1)}]
-    if known.files and UART in known.files.packet_ids:
-        data = bytes([known.files.packet_ids[UART]]) + s.source.randbytes(
-            known.files.counter_bytes + known.files.packet_bytes
+    if facts.files and UART in facts.files.packet_ids:
+        data = bytes([facts.files.packet_ids[UART]]) + s.source.randbytes(
+            facts.files.counter_bytes + facts.files.packet_bytes
         )
-        yield "download packets", [{"at": 0, "receive": _line(known, data) * 2}]
-    if known.mask and known.log_message:
-        log = log_files.encode_message(known, bytes(known.mask.size), [])
+        yield "download packets", [{"at": 0, "receive": _line(facts, data) * 2}]
+    if facts.mask and facts.log_message:
+        log = log_files.encode_message(facts, bytes(facts.mask.size), [])
         yield "an unsolicited log while a reply is awaited", [
-            s.request(0, frame), {"at": 1, "receive": _line(known, log)}, reply(2, frame),
+            s.request(0, frame), {"at": 1, "receive": _line(facts, log)}, reply(2, frame),
         ]  # fmt: skip
 
 
-def _checked(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
-    code = known.errors.get("checksum")
+def _checked(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
+    code = facts.errors.get("checksum")
     if code is None:
         return
-    bad = {"receive": _acknowledge(known, s.plain, code)}
-    good = {"receive": _acknowledge(known, s.plain)}
+    bad = {"receive": _acknowledge(facts, s.plain, code)}
+    good = {"receive": _acknowledge(facts, s.plain)}
     yield "sent again after a wrong checksum", [s.ask(0, s.plain), {"at": 1, **bad}, {"at": 2, **good}]
     yield "always a wrong checksum", [s.ask(0, s.plain), *({"at": at, **bad} for at in range(1, 5))]
 
 
-def _checked_frames(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
+def _checked_frames(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
     id, data = s.frame.telemetry_id or 0, s.source.randbytes(s.frame.length)
-    right, bare = i2c.telecommand(known, id, data, True), i2c.telecommand(known, id, data, False)
+    right, bare = i2c.telecommand(facts, id, data, True), i2c.telecommand(facts, id, data, False)
     wrong = right[:-1] + bytes([right[-1] ^ 1])
-    good, bad, none = ({"receive": _line(known, one)} for one in (right, wrong, bare))
+    good, bad, missing = ({"receive": _line(facts, checked)} for checked in (right, wrong, bare))
     yield "a frame with its checksum", [s.request(0, s.frame), {"at": 1, **good}]
     yield "a wrong checksum, then the right one", [s.request(0, s.frame), {"at": 1, **bad}, {"at": 2, **good}]
-    yield "a frame without its checksum, then with it", [s.request(0, s.frame), {"at": 1, **none}, {"at": 2, **good}]
+    yield "a frame without its checksum, then with it", [s.request(0, s.frame), {"at": 1, **missing}, {"at": 2, **good}]
     yield "always a wrong checksum", [s.request(0, s.frame), *({"at": at, **bad} for at in (1, 101, 201)), {"at": 301}]
-    longer = {"receive": _line(known, bare + bytes(known.checksum.bytes + 1 if known.checksum else 1))}
+    longer = {"receive": _line(facts, bare + bytes(facts.checksum.bytes + 1 if facts.checksum else 1))}
     yield "more than a checksum behind a frame", [s.request(0, s.frame), {"at": 1, **longer}, {"at": 2, **good}]
 
 
-def _i2c(known: Facts, s: Sample, checked: bool) -> Iterator[tuple[str, list[dict[str, Any]]]]:
-    polled = known.polled
+def _i2c(facts: Facts, s: Sample, checked: bool) -> Iterator[tuple[str, list[dict[str, Any]]]]:
+    polled = facts.polled
     assert polled
-    checked_frames = bool(checked and known.checksum and I2C in known.checksum.telemetry_buses)
+    checked_frames = bool(checked and facts.checksum and I2C in facts.checksum.telemetry_buses)
 
     def frame(message: Message, data: bytes) -> str:
-        return i2c.telecommand(known, message.telemetry_id or 0, data, checked_frames)[1:].hex()
+        return i2c.telecommand(facts, message.telemetry_id or 0, data, checked_frames)[1:].hex()
 
     def state(at: int, message: Message, processed: int, code: int = 0) -> dict[str, Any]:
-        raw: dict[str, Any] = {field.name: 0 for field in frame_fields(polled.message.layout, known.node.orders)}
+        raw: dict[str, Any] = {field.name: 0 for field in frame_fields(polled.message.layout, facts.node.orders)}
         raw[polled.id], raw[polled.processed] = message.telecommand_id, processed
         raw[polled.error], raw[polled.parameter] = code, 7 if code else 0
-        return {"at": at, "receive": frame(polled.message, codec.encode(known.node, polled.message, raw))}
+        return {"at": at, "receive": frame(polled.message, codec.encode(facts.node, polled.message, raw))}
 
     plain, wide = s.plain, s.frame
-    other = next((m for m in known.telecommands.values() if m is not plain), plain)
+    other = next((m for m in facts.telecommands.values() if m is not plain), plain)
     written, failed = {"at": 1, "receive": ""}, {"receive": None}
     yield "a telecommand, polled until it is processed", [
         s.ask(0, plain), written, {"at": 10}, {"at": 11}, state(12, plain, 0), {"at": 22}, state(23, plain, 1),
@@ -215,7 +220,7 @@ def _i2c(known: Facts, s: Sample, checked: bool) -> Iterator[tuple[str, list[dic
     yield "the acknowledge is still that of another telecommand", [
         s.ask(0, plain), written, {"at": 11}, state(12, other, 1), {"at": 22}, state(23, plain, 1),
     ]  # fmt: skip
-    for name, code in known.errors.items():
+    for name, code in facts.errors.items():
         yield f"outcome {name}", [s.ask(0, plain), written, {"at": 11}, state(12, plain, 1, code)]
     yield "never processed", [
         s.ask(0, plain), written, *(row for at in range(11, 100, 11) for row in ({"at": at}, state(at + 1, plain, 0))),
@@ -250,10 +255,16 @@ def _i2c(known: Facts, s: Sample, checked: bool) -> Iterator[tuple[str, list[dic
     if s.silent:
         yield "not acknowledged", [s.ask(0, s.silent), written, s.ask(2, s.silent), {"at": 3, "receive": ""}]
     yield "a transfer that was not asked for", [{"at": 0, "receive": "00"}]
-    second = next((m for m in known.telecommands.values() if m.acknowledge and m is not plain), other)
-    quiet = [{"at": 100}, {"at": 110}, {"at": 210}, {"at": 220}, {"at": 320}]  # until a request has no attempt left
-    near = next((m for m in known.telemetry.values() if m is not wide and m.length == wide.length), wide)
-    begin = 320 if near is not wide else 420  # the same id is held back
+    second = next((m for m in facts.telecommands.values() if m.acknowledge and m is not plain), other)
+    quiet = [
+        {"at": 100},
+        {"at": 110},
+        {"at": 210},
+        {"at": 220},
+        {"at": 320},
+    ]  # until all attempts of a request are used
+    near = next((m for m in facts.telemetry.values() if m is not wide and m.length == wide.length), wide)
+    begin = 320 if near is not wide else 420  # a request of the same id is delayed
     old, new = ({"receive": frame(near, bytes((value,)) * near.length)} for value in (1, 2))
     yield "frames after the time-out of their request do not belong to the next", [
         s.request(0, wide), *quiet, s.request(begin, near), *({"at": begin + n, **old} for n in (1, 2, 3)),
@@ -285,12 +296,12 @@ def _i2c(known: Facts, s: Sample, checked: bool) -> Iterator[tuple[str, list[dic
     ]  # fmt: skip
 
 
-def _can(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
-    assert known.can
-    node = known.can.node_address
+def _can(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
+    assert facts.can
+    node = facts.can.node_address
 
     def come(at: int, kind: str, id: int | None, data: bytes = b"", source: int = node) -> list[dict[str, Any]]:
-        packets = can.split(known, can.Message(kind, id or 0, source, OURS, data))
+        packets = can.split(facts, can.Message(kind, id or 0, source, OURS, data))
         return [{"at": at, "receive": {"id": p.id, "bytes": p.data.hex()}} for p in packets]
 
     plain, frame, wide = s.plain, s.frame, s.wide
@@ -305,8 +316,8 @@ def _can(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
     yield "a long frame", [s.request(0, wide), *packets]
     if len(packets) > 1:
         yield "a long frame, turned round", [s.request(0, wide), *packets[::-1]]
-        again = [{**row, "at": 105} for row in packets]
-        yield "a lost packet, and the repeated frame", [s.request(0, wide), *packets[1:], {"at": 100}, *again]
+        repeated = [{**row, "at": 105} for row in packets]
+        yield "a lost packet, and the repeated frame", [s.request(0, wide), *packets[1:], {"at": 100}, *repeated]
     yield "a frame that is too short", [s.request(0, frame), *come(5, "reply", frame_id, bytes(1)), {"at": 100}]
     yield "from another node", [
         s.ask(0, plain),

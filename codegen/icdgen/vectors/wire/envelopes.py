@@ -1,4 +1,6 @@
-"""Messages in the envelope of a link: sent, whole and in pieces, after noise, damaged, cut off, one within another."""
+"""Messages in the packet format of a link: complete, in pieces, after noise, damaged,
+truncated and nested.
+"""
 
 from __future__ import annotations
 
@@ -12,13 +14,13 @@ from icdgen.protocol.errors import RangeError
 from icdgen.protocol.facts import Facts, need
 from icdgen.vectors.wire import Requests, pieces
 
-_SPLITS = 40  # of a message, at most
-_MARKERS = bytes((0x00, 0x7D, 0x7E, 0xC0, 0xDB, 0xDC, 0xDD, 0xFF))  # which delimiters are made of
+_SPLITS = 40  # maximum number of split positions of a message
+_MARKERS = bytes((0x00, 0x7D, 0x7E, 0xC0, 0xDB, 0xDC, 0xDD, 0xFF))  # delimiter and escape bytes of SLIP, HDLC and COBS
 
 
-def requests(known: Facts, source: Random) -> Requests:
-    """All that is asked of the envelope."""
-    form = need(known.stream, "stream")
+def requests(facts: Facts, source: Random) -> Requests:
+    """Yield the requests of a packet format."""
+    form = need(facts.stream, "stream")
     for direction in DIRECTIONS:
         yield from _encoded(form, direction, source)
         if form.rows(direction):
@@ -31,13 +33,13 @@ def _encode(direction: str, id: int, data: bytes, **values: int) -> dict[str, ob
 
 
 def _unknown(form: Stream, direction: str) -> int:
-    """An id that no message has, of those that the envelope can carry where it can."""
-    known = {row.id for row in form.rows(direction)}
-    return next(id for id in range(len(known) + 1) if id not in known)
+    """Return an id that no message has, within the range of the id field if possible."""
+    known_ids = {row.id for row in form.rows(direction)}
+    return next(id for id in range(len(known_ids) + 1) if id not in known_ids)
 
 
 def _data(row: StreamRow, source: Random) -> Iterator[tuple[str, bytes]]:
-    """Data of a message, of the lengths that it can have."""
+    """Yield data of a message in the lengths that it can have, each with its purpose."""
     for size in sorted({row.least, (row.least + row.most) // 2, row.most}):
         yield f"{size} random bytes", source.randbytes(size)
     yield "zeros", bytes(row.most)
@@ -49,7 +51,7 @@ def _data(row: StreamRow, source: Random) -> Iterator[tuple[str, bytes]]:
 
 
 def _encoded(form: Stream, direction: str, source: Random) -> Requests:
-    """Messages as they are sent; and refused ones."""
+    """Yield requests that encode messages, and such as must be refused."""
     for row in form.rows(direction):
         for why, data in _data(row, source):
             yield f"{row.name}: {why}", _encode(direction, row.id, data)
@@ -66,8 +68,8 @@ def _encoded(form: Stream, direction: str, source: Random) -> Requests:
                     line = stream.encode(form, direction, row.id, data, {field.role: value})
                     yield f"{field.role} {value}, and back", _events(direction, [line])
                 if field.bits < 32:
-                    one = {field.role: field.mask + 1}
-                    yield f"a {field.role} that does not fit", _encode(direction, row.id, data, **one)
+                    too_large = {field.role: field.mask + 1}
+                    yield f"a {field.role} that does not fit", _encode(direction, row.id, data, **too_large)
         absent = next((role for role in GIVEN if form.of(role) is None), None)
         if absent:
             yield "a value that no field takes", _encode(direction, row.id, data, **{absent: 7})
@@ -78,7 +80,7 @@ def _events(direction: str, chunks: list[bytes], **more: int) -> dict[str, objec
 
 
 def _streams(form: Stream, direction: str, source: Random) -> Requests:
-    """Streams that are cut, noisy, damaged, broken off."""
+    """Yield streams that are cut, noisy, damaged or truncated."""
     rows = form.rows(direction)
     short = min(rows, key=lambda row: row.most)
     lines = [_line(form, direction, row, source, number) for number, row in enumerate(rows[:6])]
@@ -90,7 +92,7 @@ def _streams(form: Stream, direction: str, source: Random) -> Requests:
         for why, damaged in _damaged(good, source):
             yield why, _events(direction, [damaged, good])
         return
-    whole = [
+    streams = [
         ("messages, one after the other", b"".join(lines)),
         ("noise before, between and after", b"\x00\xff\x7f" + good + b"noise" + good + b"\x55"),
         ("random bytes before", source.randbytes(300) + good + good),
@@ -100,16 +102,18 @@ def _streams(form: Stream, direction: str, source: Random) -> Requests:
         ("a message that has only begun", good + good[: len(good) // 2]),
         *((why, damaged + good + good) for why, damaged in _damaged(good, source)),
         *_nested(form, direction, rows, good),
-        *_strangers(form, direction, short, good),
+        *_undefined_messages(form, direction, short, good),
         *_gaps(form, direction, short, source),
         ("nothing", b""),
     ]
-    for why, line in whole:
+    for why, line in streams:
         for how, chunks in pieces(why, line, source):
             yield how, _events(direction, chunks)
-    both = b"\x01" + good + good
-    for at in range(1, min(len(both), _SPLITS)):
-        yield f"two messages after noise, cut behind byte {at}", _events(direction, [both[:at], both[at:]])
+    two_messages = b"\x01" + good + good
+    for at in range(1, min(len(two_messages), _SPLITS)):
+        yield f"two messages after noise, cut behind byte {at}", _events(
+            direction, [two_messages[:at], two_messages[at:]]
+        )
     for more in (-1, 0):
         limit = form.header_bytes + short.most + form.trailer_bytes + more
         if limit >= form.header_bytes + form.trailer_bytes:
@@ -118,13 +122,13 @@ def _streams(form: Stream, direction: str, source: Random) -> Requests:
 
 
 def _line(form: Stream, direction: str, row: StreamRow, source: Random, number: int) -> bytes:
-    """A message on the line, with that sequence number."""
+    """Return the transmitted bytes of a message with a sequence number."""
     values = {"sequence": number} if form.of("sequence") else {}
     return stream.encode(form, direction, row.id, source.randbytes(row.most), values)
 
 
 def _damaged(good: bytes, source: Random) -> Iterator[tuple[str, bytes]]:
-    """The message with something wrong, one thing at a time."""
+    """Yield the message with one error each."""
     for at in sorted({0, 1, 2, 3, 4, len(good) // 2, len(good) - 2, len(good) - 1} & set(range(len(good)))):
         flipped = good[at] ^ 1 << source.randrange(8)
         yield f"byte {at} is damaged", good[:at] + bytes([flipped]) + good[at + 1 :]
@@ -133,7 +137,9 @@ def _damaged(good: bytes, source: Random) -> Iterator[tuple[str, bytes]]:
 
 
 def _nested(form: Stream, direction: str, rows: tuple[StreamRow, ...], good: bytes) -> Iterator[tuple[str, bytes]]:
-    """A message within the data of another one, which is whole, damaged, or cut off."""
+    """Yield a message within the data of another message, which is complete, damaged or
+    truncated.
+    """
     outer = max(rows, key=lambda row: row.most)
     if outer.most < len(good):
         return
@@ -143,23 +149,27 @@ def _nested(form: Stream, direction: str, rows: tuple[StreamRow, ...], good: byt
     yield "messages within a truncated message", line[:-3] + good + good
 
 
-def _strangers(form: Stream, direction: str, row: StreamRow, good: bytes) -> Iterator[tuple[str, bytes]]:
-    """Messages of other lengths and ids, all else right: made by a form that has them."""
+def _undefined_messages(form: Stream, direction: str, row: StreamRow, good: bytes) -> Iterator[tuple[str, bytes]]:
+    """Yield messages with an unknown id or length, encoded with a packet format that
+    defines them.
+    """
     place = form.of("id")
-    id = next((one for one in range(1, 1000) if all(one != row.id for row in form.rows(direction))), 0)
-    others = []
+    id = next(
+        (candidate for candidate in range(1, 1000) if all(candidate != row.id for row in form.rows(direction))), 0
+    )
+    variants = []
     if place and id <= place.mask:
-        others.append(("of an unknown id", id, row.most, 0))
+        variants.append(("of an unknown id", id, row.most, 0))
     if form.longest_data > row.most:
-        others.append(("that is too long by one", row.id, row.most + 1, row.seed))
+        variants.append(("that is too long by one", row.id, row.most + 1, row.seed))
     if row.most:
-        others.append(("that is too short by one", row.id, row.most - 1, row.seed))
-    for why, id, size, seed in others:
-        one = StreamRow(id, 0, size, False, seed, None, "")
-        strange = replace(form, telecommands=(one,), telemetry=(one,))
+        variants.append(("that is too short by one", row.id, row.most - 1, row.seed))
+    for why, id, size, seed in variants:
+        row_ = StreamRow(id, 0, size, False, seed, None, "")
+        strange = replace(form, telecommands=(row_,), telemetry=(row_,))
         try:
             line = stream.encode(strange, direction, id, b"\x2a" * size)
-        except RangeError:  # no header says such a length
+        except RangeError:  # the length field cannot represent this length
             continue
         yield f"a message {why}", good + line + good
 
@@ -176,6 +186,6 @@ def _gaps(form: Stream, direction: str, row: StreamRow, source: Random) -> Itera
     ):
         fitting = [number & place.mask for number in numbers]
         yield why, b"".join(_line(form, direction, row, source, number) for number in fitting)
-    others = form.rows(direction)[:2]
-    turns = [_line(form, direction, one, source, number) for number in (1, 2, 3) for one in others]
+    sequence_rows = form.rows(direction)[:2]
+    turns = [_line(form, direction, row_, source, number) for number in (1, 2, 3) for row_ in sequence_rows]
     yield "messages in turn", b"".join(turns)

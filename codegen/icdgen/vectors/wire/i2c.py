@@ -1,4 +1,4 @@
-"""What is written to and read from the I2C bus, and who the node is."""
+"""Requests on I2C transactions and on the identification of the node."""
 
 from __future__ import annotations
 
@@ -9,25 +9,25 @@ from icdgen.protocol.i2c import telecommand
 from icdgen.vectors.wire import Requests
 
 
-def requests(known: Facts, source: Random) -> Requests:
-    """What is written and read, with and without a checksum."""
-    for id, message in list(known.telecommands.items())[:5]:
-        for checked in (False, True) if known.checksum else (False,):
+def requests(facts: Facts, source: Random) -> Requests:
+    """Yield requests on writes and reads, with and without a checksum."""
+    for id, message in list(facts.telecommands.items())[:5]:
+        for checked in (False, True) if facts.checksum else (False,):
             data = source.randbytes(message.length)
-            asked = {"op": "i2c_request", "kind": "telecommand", "id": id, "bytes": data.hex(), "crc": checked}
-            yield f"telecommand {id}", asked
-    for id, message in list(known.telemetry.items())[:3]:
+            request = {"op": "i2c_request", "kind": "telecommand", "id": id, "bytes": data.hex(), "crc": checked}
+            yield f"telecommand {id}", request
+    for id, message in list(facts.telemetry.items())[:3]:
         frame = source.randbytes(message.length)
-        for checked in (False, True) if known.checksum else (False,):
+        for checked in (False, True) if facts.checksum else (False,):
             yield f"telemetry {id}", {"op": "i2c_request", "kind": "telemetry", "id": id, "crc": checked}
-            data = telecommand(known, id, frame, checked)[1:]
+            data = telecommand(facts, id, frame, checked)[1:]
             about = {"op": "i2c_reply", "id": id, "crc": checked}
             yield f"telemetry {id}", {**about, "bytes": data.hex()}
             yield f"telemetry {id}, too short", {**about, "bytes": data[:-1].hex()}
             yield f"telemetry {id}, one bit wrong", {**about, "bytes": (bytes([data[0] ^ 1]) + data[1:]).hex()}
-    step = known.identification
+    step = facts.identification
     if step:
         for change in range(2):
-            frame = bytes([(known.node.node_type or 0) + change, known.node.interface_version or 0])
+            frame = bytes([(facts.node.node_type or 0) + change, facts.node.interface_version or 0])
             yield "who the node is", {"op": "identify", "bytes": frame.ljust(step.message.length, b"\0").hex()}
         yield "a frame that is too short", {"op": "identify", "bytes": "00"}

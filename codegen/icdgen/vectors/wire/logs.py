@@ -1,4 +1,4 @@
-"""Log files and unsolicited logs, whole and truncated."""
+"""Requests on log files and unsolicited logs, complete and truncated."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from icdgen.protocol.facts import Facts, need
 from icdgen.vectors.wire import Requests
 
 
-def masks(known: Facts) -> list[bytes]:
-    """Masks of nothing, of one bit, of some and of all."""
-    layout = need(known.mask, "log_mask")
+def masks(facts: Facts) -> list[bytes]:
+    """Return masks of no bit, of single bits, of some bits and of all bits."""
+    layout = need(facts.mask, "log_mask")
     short = [bit for bit, row in layout.bits.items() if row.length < layout.slot_bytes]
     free = [bit for bit in range(layout.size * 8) if bit not in layout.bits]
     single = [1 << bit for bit in (*sorted(layout.bits)[::7], *short, *free[:1], *free[-1:])]
@@ -19,37 +19,43 @@ def masks(known: Facts) -> list[bytes]:
     return [number.to_bytes(layout.size, "little") for number in (0, *single, some, (1 << 8 * layout.size) - 1)]
 
 
-def requests(known: Facts, source: Random) -> Requests:
-    """Log files and unsolicited logs, whole and truncated."""
-    layout = known.mask
+def requests(facts: Facts, source: Random) -> Requests:
+    """Yield requests on log files and unsolicited logs, complete and truncated."""
+    layout = facts.mask
     if not layout:
         return
-    for mask in masks(known):
+    for mask in masks(facts):
         slots = layout.selected(mask)
         data = [[source.randbytes(slot.length) for slot in slots] for _ in range(2)]
-        if known.log_file:
-            most = [(1 << 8 * size) - 1 for _, size in (known.log_file.seconds, known.log_file.milliseconds)]
+        if facts.log_file:
+            most = [(1 << 8 * size) - 1 for _, size in (facts.log_file.seconds, facts.log_file.milliseconds)]
             times = [(0, 0), (min(0xFFFFFFFF, most[0]), min(999, most[1]))]
             entries = [
-                {"seconds": s, "milliseconds": ms, "frames": [f.hex() for f in one]}
-                for (s, ms), one in zip(times, data, strict=True)
+                {"seconds": s, "milliseconds": ms, "frames": [f.hex() for f in slots_data]}
+                for (s, ms), slots_data in zip(times, data, strict=True)
             ]
-            file = log_files.encode(known, mask, [(s, ms, one) for (s, ms), one in zip(times, data, strict=True)])
+            file = log_files.encode(
+                facts, mask, [(s, ms, slots_data) for (s, ms), slots_data in zip(times, data, strict=True)]
+            )
             yield "two entries", {"op": "log_encode", "mask": mask.hex(), "entries": entries}
             for size in sorted({0, len(mask) - 1, len(mask), len(mask) + 1, len(file) - 1, len(file)}):
                 yield f"{size} of {len(file)} bytes", {"op": "log_decode", "bytes": file[:size].hex()}
-        if known.log_message:
-            message = log_files.encode_message(known, mask, data[0])
+        if facts.log_message:
+            message = log_files.encode_message(facts, mask, data[0])
             frames = [frame.hex() for frame in data[0]]
             yield "an unsolicited log", {"op": "log_message_encode", "mask": mask.hex(), "frames": frames}
             for size in (len(message), len(message) - 1, 3):
                 yield f"{size} of {len(message)} bytes", {"op": "log_message_decode", "bytes": message[:size].hex()}
-    one = (1 << min(layout.bits, default=0)).to_bytes(layout.size, "little").hex()
-    wrong = [
+    mask_of_one = (1 << min(layout.bits, default=0)).to_bytes(layout.size, "little").hex()
+    invalid = [
         ("a frame too few", []),
         ("a frame too many", ["00" * layout.slot_bytes] * 2),
         ("a frame too short", ["00"]),
     ]
-    for why, data_ in wrong:
-        yield why, {"op": "log_encode", "mask": one, "entries": [{"seconds": 1, "milliseconds": 2, "frames": data_}]}
+    for why, data_ in invalid:
+        yield why, {
+            "op": "log_encode",
+            "mask": mask_of_one,
+            "entries": [{"seconds": 1, "milliseconds": 2, "frames": data_}],
+        }
     yield "a mask that is too short", {"op": "log_encode", "mask": "01", "entries": []}

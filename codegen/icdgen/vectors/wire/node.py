@@ -1,4 +1,7 @@
-"""A node with files, as far as a procedure can tell: answers requests, loses some. Made from the roles of the ICD."""
+"""Simulated node with files for procedures; derived from the roles of the ICD.
+
+It responds to requests and loses some.
+"""
 
 from __future__ import annotations
 
@@ -14,30 +17,34 @@ from icdgen.protocol.sections import UART, Step
 
 
 class FileNode:
-    """``files``: content by type and counter. ``loss``: how likely a packet, a reply or an acknowledge is lost."""
+    """Simulated node with files.
 
-    def __init__(self, known: Facts, bus: str, source: Random, loss: float = 0.0) -> None:
-        assert known.files and known.hole_map and known.crc16
-        self.known, self.form, self.bus, self.source, self.loss = known, known.files, bus, source, loss
+    ``files``: content by type and counter. ``loss``: probability that a packet, reply
+    or acknowledge is lost.
+    """
+
+    def __init__(self, facts: Facts, bus: str, source: Random, loss: float = 0.0) -> None:
+        assert facts.files and facts.hole_map and facts.crc16
+        self.facts, self.form, self.bus, self.source, self.loss = facts, facts.files, bus, source, loss
         self.files: dict[tuple[int, int], bytes] = {}
         self.pointer = 0
         self.block = b""  # loaded for download
-        self.map = bytes(known.hole_map.bytes)
-        self.queue: list[int] = []  # packets still to be read, where the client reads them
+        self.map = bytes(facts.hole_map.bytes)
+        self.queue: list[int] = []  # packets to be read, on buses where the client reads them
         self.uploaded: dict[int, bytes] = {}
         self.program = b""
-        self.polls = 0  # until a flag says that it is done
+        self.polls = 0  # remaining polls until the node reports completion
         self.steps = {step.message.ids[0]: (name, step) for name, step in self.form.steps.items()}
-        self.holes = {id: n for n, m in enumerate(known.hole_map.messages) for id in (m.telecommand_id, m.telemetry_id)}
+        self.holes = {id: n for n, m in enumerate(facts.hole_map.messages) for id in (m.telecommand_id, m.telemetry_id)}
 
     def lost(self) -> bool:
         return self.source.random() < self.loss
 
     def answer(self, request: Request) -> list[dict[str, Any]]:
-        """The events that a client would give: packets, and at last the outcome."""
+        """Return the events that a client would report: packets, then the outcome."""
         if request.kind == TELECOMMAND:
-            acknowledged = self.known.telecommands[request.id].acknowledge
-            if acknowledged and self.lost():  # the request or its acknowledge
+            acknowledged = self.facts.telecommands[request.id].acknowledge
+            if acknowledged and self.lost():  # either the request or its acknowledge
                 return [*(self._telecommand(request) if self.lost() else ()), {"event": "timeout"}]
             if not acknowledged and self.lost():
                 return [{"event": "done", "bytes": ""}]
@@ -45,7 +52,7 @@ class FileNode:
         return [{"event": "done", "bytes": self._telemetry(request.id).hex()}]
 
     def _raw(self, step: Step, data: bytes) -> dict[str, Any]:
-        raw = codec.decode(self.known.node, step.message, data)
+        raw = codec.decode(self.facts.node, step.message, data)
         return {role: raw[name] for role, name in step.fields.items()}
 
     def _telecommand(self, request: Request) -> list[dict[str, Any]]:
@@ -80,12 +87,12 @@ class FileNode:
     def _packet(self, position: int) -> bytes:
         size = self.form.packet_bytes
         data = self.block[position * size : (position + 1) * size].ljust(size, b"\xee")
-        return self.known.bytes_of(self.form.first_packet + position, self.form.counter_bytes) + data
+        return self.facts.bytes_of(self.form.first_packet + position, self.form.counter_bytes) + data
 
     def _burst(self, everything: bool) -> list[dict[str, Any]]:
-        count = self.known.packets_of(len(self.block))
+        count = self.facts.packets_of(len(self.block))
         first = self.form.first_packet
-        lost = range(count) if everything else [n - first for n in files.missing(self.known, count, self.map)]
+        lost = range(count) if everything else [n - first for n in files.missing(self.facts, count, self.map)]
         if self.bus != UART:
             self.queue = list(lost)
             return []
@@ -94,9 +101,9 @@ class FileNode:
 
     def _telemetry(self, id: int) -> bytes:
         if id in self.holes:
-            size = self.known.telemetry[id].length
+            size = self.facts.telemetry[id].length
             received = [self.form.first_packet + n for n in self.uploaded]
-            map_ = files.hole_map(self.known, self.form.block_packets, received)
+            map_ = files.hole_map(self.facts, self.form.block_packets, received)
             return map_[self.holes[id] * size : (self.holes[id] + 1) * size]
         if id == self.form.packet_ids.get(self.bus):
             while self.queue and self.lost():
@@ -105,14 +112,14 @@ class FileNode:
             return self._packet(position)
         name, step = self.steps[id]
         busy, self.polls = int(self.polls > 0), max(0, self.polls - 1)
-        return step.frame(self.known.node, self._values_of(name, busy))
+        return step.frame(self.facts.node, self._values_of(name, busy))
 
     def _sum(self, data: bytes) -> int:
-        assert self.known.crc16
-        return crc.compute(self.known.crc16, data)
+        assert self.facts.crc16
+        return crc.compute(self.facts.crc16, data)
 
     def _values_of(self, step: str, busy: int) -> dict[str, Any]:
-        """What the frame of a step tells, by role."""
+        """Return the values of the frame of a step, by role."""
         if step == "list.information":
             return {"busy": 1} if busy else self._listed()
         if step == "download.ready":

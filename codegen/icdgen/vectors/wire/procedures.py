@@ -1,4 +1,6 @@
-"""Scripts of procedures, recorded against a node that loses things, and of such as must fail."""
+"""Scripts of procedures, recorded with a simulated node that loses messages, and
+scripts of failing procedures.
+"""
 
 from __future__ import annotations
 
@@ -13,51 +15,54 @@ from icdgen.vectors.wire import Requests, Script
 from icdgen.vectors.wire.node import FileNode
 from icdgen.vectors.wire.operations import neighbours
 
-STEPS = 100_000  # more than any procedure takes
-AGAIN = 8  # attempts that a client makes
+STEPS = 100_000  # limit above the steps of any procedure
+ATTEMPTS = 8  # attempts of a client
 
 
-def record(known: Facts, request: dict[str, Any], node: FileNode) -> tuple[Script, transfer.Procedure]:
-    """The script of a procedure against the node; a client would send what may be repeated again."""
-    procedure, now = procedure_of(known, request), 0
+def record(facts: Facts, request: dict[str, Any], node: FileNode) -> tuple[Script, transfer.Procedure]:
+    """Return the script of a procedure with the simulated node.
+
+    Repeatable requests are repeated as by a client.
+    """
+    procedure, now = procedure_of(facts, request), 0
     script: Script = [{"at": 0}]
-    asked = procedure.next(now)
+    pending = procedure.next(now)
     while procedure.result is None and len(script) < STEPS:
-        if asked is None:
+        if pending is None:
             now = procedure.deadline if procedure.deadline is not None else now + 1
             script.append({"at": now})
-            asked = procedure.next(now)
+            pending = procedure.next(now)
             continue
-        events, tries = node.answer(asked), 1
-        while asked.repeat and events[-1]["event"] == "timeout" and tries < AGAIN:
-            events, tries = events[:-1] + node.answer(asked), tries + 1
+        events, tries = node.answer(pending), 1
+        while pending.repeat and events[-1]["event"] == "timeout" and tries < ATTEMPTS:
+            events, tries = events[:-1] + node.answer(pending), tries + 1
         for event in events:
             now += 1
             script.append({"at": now, "event": event})
             procedure.event(now, event)
-            asked = procedure.next(now)
+            pending = procedure.next(now)
     return script, procedure
 
 
-def scripts(known: Facts) -> Requests:
-    """Everything that is asked of the procedures."""
-    form = known.files
-    if not form or not known.hole_map or not known.crc16:
+def scripts(facts: Facts) -> Requests:
+    """Yield the scripts of all procedures."""
+    form = facts.files
+    if not form or not facts.hole_map or not facts.crc16:
         return
     if form.list:
-        yield from _lists(known)
+        yield from _lists(facts)
     if form.download:
-        yield from _downloads(known)
+        yield from _downloads(facts)
     if form.upload:
-        yield from _uploads(known, form.upload)
+        yield from _uploads(facts, form.upload)
     else:
         request = {"op": "file", "do": "upload", "destination": 3, "bytes": "00", "script": [{"at": 0}]}
         yield "the node takes no uploads", request
     if form.erase:
         for all_ in (False, True):
-            yield from _recorded(known, "erased", {"do": "erase", "type": 2, "counter": 3, "all": all_}, 0.0)
+            yield from _recorded(facts, "erased", {"do": "erase", "type": 2, "counter": 3, "all": all_}, 0.0)
     if form.format:
-        yield from _recorded(known, "formatted", {"do": "format"}, 0.0)
+        yield from _recorded(facts, "formatted", {"do": "format"}, 0.0)
         refusal = {"event": "refused", "code": 3}
         yield "refused", {"op": "file", "do": "format", "script": [{"at": 0}, {"at": 1, "event": refusal}]}
         busy = [{"at": 0}, {"at": 1, "event": {"event": "done", "bytes": ""}}]
@@ -67,56 +72,56 @@ def scripts(known: Facts) -> Requests:
         yield "busy for ever", {"op": "file", "do": "format", "script": busy}
 
 
-def _node(known: Facts, bus: str, loss: float, why: str) -> FileNode:
-    node = FileNode(known, bus, Random(f"{known.node.name} {why} {bus} {loss}"), loss)
+def _node(facts: Facts, bus: str, loss: float, why: str) -> FileNode:
+    node = FileNode(facts, bus, Random(f"{facts.node.name} {why} {bus} {loss}"), loss)
     assert node.form
     for counter, size in enumerate((1, node.form.packet_bytes * 3, 130)):
         node.files[2, counter] = node.source.randbytes(size)
     return node
 
 
-def _recorded(known: Facts, why: str, request: dict[str, Any], loss: float, bus: str = UART) -> Requests:
-    script, _ = record(known, request, _node(known, bus, loss, why))
+def _recorded(facts: Facts, why: str, request: dict[str, Any], loss: float, bus: str = UART) -> Requests:
+    script, _ = record(facts, request, _node(facts, bus, loss, why))
     yield f"{why}, {loss:.0%} lost", {"op": "file", **request, "script": script}
 
 
-def _lists(known: Facts) -> Requests:
+def _lists(facts: Facts) -> Requests:
     for loss in (0.0, 0.3):
-        yield from _recorded(known, "the list of files", {"do": "list"}, loss)
+        yield from _recorded(facts, "the list of files", {"do": "list"}, loss)
 
 
-def _downloads(known: Facts) -> Requests:
-    assert known.files
-    size = known.files.packet_bytes
-    for bus in known.files.packet_ids:
+def _downloads(facts: Facts) -> Requests:
+    assert facts.files
+    size = facts.files.packet_bytes
+    for bus in facts.files.packet_ids:
         for loss in (0.0, 0.3):
             request = {"do": "download", "bus": bus, "type": 2, "counter": 2, "size": 130, "block": 4 * size}
-            yield from _recorded(known, f"a file in two blocks over {bus}", request, loss, bus)
+            yield from _recorded(facts, f"a file in two blocks over {bus}", request, loss, bus)
     request = {"do": "download", "bus": UART, "type": 2, "counter": 1, "block": 2 * size}
-    yield from _recorded(known, "a file of unknown size", request, 0.1)
+    yield from _recorded(facts, "a file of unknown size", request, 0.1)
     request = {"do": "download", "bus": UART, "type": 2, "counter": 2, "size": 131}
-    yield from _recorded(known, "a file shorter than announced", request, 0.0)
+    yield from _recorded(facts, "a file shorter than announced", request, 0.0)
     yield "an empty file", {"op": "file", **request, "size": 0, "script": [{"at": 0}]}
     request = {"do": "download", "bus": UART, "type": 2, "counter": 1, "size": 3 * size}
-    yield from _recorded(known, "nothing arrives", request, 1.0)
-    script, _ = record(known, request, _Wrong(known, UART, Random(1)))
+    yield from _recorded(facts, "nothing arrives", request, 1.0)
+    script, _ = record(facts, request, _NodeWithWrongChecksums(facts, UART, Random(1)))
     yield "a checksum that is never right", {"op": "file", **request, "script": script}
 
 
-class _Wrong(FileNode):
-    """Its checksums are wrong."""
+class _NodeWithWrongChecksums(FileNode):
+    """Simulated node whose checksums are wrong."""
 
-    def __init__(self, known: Facts, bus: str, source: Random) -> None:
-        super().__init__(known, bus, source)
-        self.files[2, 1] = bytes(known.files.packet_bytes * 3 if known.files else 0)
+    def __init__(self, facts: Facts, bus: str, source: Random) -> None:
+        super().__init__(facts, bus, source)
+        self.files[2, 1] = bytes(facts.files.packet_bytes * 3 if facts.files else 0)
 
     def _sum(self, data: bytes) -> int:
         return super()._sum(data) ^ 1
 
 
-def _uploads(known: Facts, form: Upload) -> Requests:
-    assert known.files
-    size, most, allowed = known.files.packet_bytes, form.destination_bytes, form.destinations
+def _uploads(facts: Facts, form: Upload) -> Requests:
+    assert facts.files
+    size, most, allowed = facts.files.packet_bytes, form.destination_bytes, form.destinations
     destination = allowed[0] if allowed else 3
     first = {"op": "file", "do": "upload", "destination": destination, "bytes": "00", "script": [{"at": 0}]}
     for number in allowed:
@@ -126,12 +131,12 @@ def _uploads(known: Facts, form: Upload) -> Requests:
     if most is not None and most < LONGEST:
         yield "as much as a destination holds", {**first, "times": most}
         yield "a byte more than a destination holds", {**first, "times": most + 1}
-    data = Random(f"{known.node.name} program").randbytes(7 * size + 3)
+    data = Random(f"{facts.node.name} program").randbytes(7 * size + 3)
     if most is not None and most < len(data):
         return
     for loss in (0.0, 0.3):
         request = {"do": "upload", "destination": destination, "bytes": data.hex(), "block": 4 * size}
-        yield from _recorded(known, "a program in two blocks", request, loss)
+        yield from _recorded(facts, "a program in two blocks", request, loss)
     request = {"do": "upload", "destination": destination, "bytes": data[: 2 * size].hex()}
-    script, _ = record(known, request, _Wrong(known, UART, Random(1)))
+    script, _ = record(facts, request, _NodeWithWrongChecksums(facts, UART, Random(1)))
     yield "a checksum that is never right", {"op": "file", **request, "script": script}

@@ -1,4 +1,4 @@
-"""Checksums, and messages in streams of bytes."""
+"""Requests on checksums and on messages in byte streams of the UART."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from icdgen.protocol.sections import UART
 from icdgen.vectors.wire import Requests, pieces
 from icdgen.vectors.wire.logs import masks
 
-CHECKED = b"123456789"  # what check values of CRCs are computed over
+CHECKED = b"123456789"  # input of the check values of CRCs
 
 
-def checksums(known: Facts, source: Random) -> Requests:
-    """CRCs of nothing, of single bytes, and of random data."""
+def checksums(facts: Facts, source: Random) -> Requests:
+    """Yield CRCs of no bytes, of single bytes and of random data."""
     data = [
         ("nothing", b""),
         ("the check value", CHECKED),
@@ -26,14 +26,14 @@ def checksums(known: Facts, source: Random) -> Requests:
     ]
     data += [(f"bit {bit}", bytes([1 << bit])) for bit in range(8)]
     data += [(f"{size} random bytes", source.randbytes(size)) for size in (2, 7, 22, 255, 1000)]
-    for op, there in (("crc8", known.checksum), ("crc16", known.crc16)):
-        for why, one in data if there else ():
-            yield why, {"op": op, "bytes": one.hex()}
+    for op, declaration in (("crc8", facts.checksum), ("crc16", facts.crc16)):
+        for why, content in data if declaration else ():
+            yield why, {"op": op, "bytes": content.hex()}
 
 
-def _messages(known: Facts, source: Random) -> Iterator[tuple[str, bytes]]:
-    """Messages as they are framed: id and data."""
-    framing = need(known.framing, "uart")
+def _messages(facts: Facts, source: Random) -> Iterator[tuple[str, bytes]]:
+    """Yield messages (id and data) for framing."""
+    framing = need(facts.framing, "uart")
     escape, end, start = framing.escape, framing.end, framing.start
     yield "an id alone", b"\x80"
     yield "an id that is the escape byte", bytes([escape, 0])
@@ -41,24 +41,24 @@ def _messages(known: Facts, source: Random) -> Iterator[tuple[str, bytes]]:
     yield "what looks like an end within the data", bytes([1, escape, escape, end, escape, end, 2])
     yield "what looks like a start within the data", bytes([1, escape, start, 2, escape])
     yield "the markers as data", bytes([end, start, end])
-    yield "every byte", bytes([0x90, *range(256)])[: known.longest]
-    for id in sorted({min(known.telecommands), max(known.telecommands)} if known.telecommands else ()):
-        yield f"telecommand {id}", bytes([id]) + source.randbytes(known.telecommands[id].length)
-    yield "the longest message", bytes([0x80]) + source.randbytes(known.longest - 1)
-    yield "the longest message, all escaped", bytes([escape] * known.longest)
+    yield "every byte", bytes([0x90, *range(256)])[: facts.longest]
+    for id in sorted({min(facts.telecommands), max(facts.telecommands)} if facts.telecommands else ()):
+        yield f"telecommand {id}", bytes([id]) + source.randbytes(facts.telecommands[id].length)
+    yield "the longest message", bytes([0x80]) + source.randbytes(facts.longest - 1)
+    yield "the longest message, all escaped", bytes([escape] * facts.longest)
 
 
-def encoded(known: Facts, source: Random) -> Requests:
-    """Messages on the line, and back."""
+def encoded(facts: Facts, source: Random) -> Requests:
+    """Yield requests that encode messages and decode them again."""
     yield "no id", {"op": "uart_encode", "bytes": ""}
-    for why, message in _messages(known, source):
+    for why, message in _messages(facts, source):
         yield why, {"op": "uart_encode", "bytes": message.hex()}
-        yield why, {"op": "uart_decode", "bytes": uart.encode(need(known.framing, "uart"), message).hex()}
+        yield why, {"op": "uart_decode", "bytes": uart.encode(need(facts.framing, "uart"), message).hex()}
 
 
-def streams(known: Facts, source: Random) -> Requests:
-    """Streams that are cut, noisy, broken off."""
-    framing = need(known.framing, "uart")
+def streams(facts: Facts, source: Random) -> Requests:
+    """Yield streams that are cut, noisy or truncated."""
+    framing = need(facts.framing, "uart")
     escape, start, end = framing.escape, framing.start, framing.end
     begin, finish = bytes([escape, start]), bytes([escape, end])
 
@@ -66,7 +66,7 @@ def streams(known: Facts, source: Random) -> Requests:
         return uart.encode(framing, bytes(data))
 
     good = line(0x90, 1, escape, end, 2)
-    whole = [
+    streams_to_decode = [
         ("two messages", good + line(0x91)),
         ("noise before, between and after", b"\x00\xff\x7f" + good + b"noise" + good + b"\x55"),
         ("an escape byte before the start", bytes([escape]) + good),
@@ -83,41 +83,41 @@ def streams(known: Facts, source: Random) -> Requests:
         ("random bytes", source.randbytes(600)),
         ("random bytes rich in markers", bytes(source.choices([escape, start, end, 0, 0x90], k=600)) + good),
     ]
-    for why, stream in whole:
+    for why, stream in streams_to_decode:
         yield why, {"op": "uart_decode", "bytes": stream.hex()}
         for how, chunks in pieces(why, stream, source):
             yield how, {"op": "uart_events", "chunks": [chunk.hex() for chunk in chunks]}
     long = line(0x90, *range(1, 9), escape)
-    for limit in (9, 10) if known.longest >= 10 else ():  # no buffer is longer than the longest message
+    for limit in (9, 10) if facts.longest >= 10 else ():  # no buffer is longer than the longest message
         cut = [(long + good[:-2]).hex(), finish.hex()]
         yield f"ten bytes in a buffer of {limit}", {"op": "uart_events", "limit": limit, "chunks": cut}
-    too_long = uart.encode(framing, bytes([0x90]) * (known.longest + 1))
+    too_long = uart.encode(framing, bytes([0x90]) * (facts.longest + 1))
     yield "a message that is too long by one", {"op": "uart_events", "chunks": [(too_long + good).hex()]}
-    for why, message in _kinds(known, source):
+    for why, message in _kinds(facts, source):
         yield why, {"op": "uart_events", "chunks": [uart.encode(framing, message).hex()]}
 
 
-def _kinds(known: Facts, source: Random) -> Iterator[tuple[str, bytes]]:
-    """Messages of each kind, and such as are none."""
-    if known.acknowledge:
-        ids = sorted({min(known.telecommands, default=0), known.framing.escape if known.framing else 0})
+def _kinds(facts: Facts, source: Random) -> Iterator[tuple[str, bytes]]:
+    """Yield messages of each kind, and messages of no kind."""
+    if facts.acknowledge:
+        ids = sorted({min(facts.telecommands, default=0), facts.framing.escape if facts.framing else 0})
         for id in ids:
-            yield f"the acknowledge of telecommand {id}", bytes([id, *bytes(known.acknowledge.length - 1)])
-        yield "an acknowledge that is too long", bytes([ids[0], *bytes(known.acknowledge.length)])
-    files = known.files
+            yield f"the acknowledge of telecommand {id}", bytes([id, *bytes(facts.acknowledge.length - 1)])
+        yield "an acknowledge that is too long", bytes([ids[0], *bytes(facts.acknowledge.length)])
+    files = facts.files
     if files and UART in files.packet_ids:
         size = files.counter_bytes + files.packet_bytes
         for more in (-1, 0, 1):
             why = f"a download packet{('', ' too long', ' too short')[more]}"
             yield why, bytes([files.packet_ids[UART]]) + source.randbytes(size + more)
-    for id, message in list(known.telemetry.items())[:3]:
+    for id, message in list(facts.telemetry.items())[:3]:
         yield f"telemetry {id}", bytes([id]) + source.randbytes(message.length)
-    first, last = known.telemetry_ids.first, known.telemetry_ids.last
+    first, last = facts.telemetry_ids.first, facts.telemetry_ids.last
     for id in sorted({first - 1, first, last, last + 1} & set(range(256))):
         yield f"id {id}, at the ends of the telemetry range", bytes([id, 0])
-    if known.log_message and known.mask:
-        for mask in masks(known)[:4]:
-            data = [source.randbytes(slot.length) for slot in known.mask.selected(mask)]
-            log = log_files.encode_message(known, mask, data)
+    if facts.log_message and facts.mask:
+        for mask in masks(facts)[:4]:
+            data = [source.randbytes(slot.length) for slot in facts.mask.selected(mask)]
+            log = log_files.encode_message(facts, mask, data)
             yield "an unsolicited log", log
             yield "an unsolicited log that is too short", log[:-1]
