@@ -77,9 +77,9 @@ def diff(
         print_findings(error.findings, {}, "text", err=True)
         sys.exit(2)
     for side in (old, new):
-        if not side.is_whole():
+        if not side.is_comparable():
             print_findings(side.findings, side.texts, "text", err=True)
-    if not (old.is_whole(unchecked) and new.is_whole(unchecked)):
+    if not (old.is_comparable(unchecked) and new.is_comparable(unchecked)):
         help = "correct them; --unchecked passes over what can be read and only breaks a rule"
         raise UserError("ICDs with errors are not compared", help)
     made = report.make(old, new, _acceptances(accepted))
@@ -92,12 +92,12 @@ def diff(
 def _acceptances(path: Path | None) -> list[Acceptance]:
     from icdgen.diff import accepted
 
-    found = path or accepted.find(Path.cwd())
+    found = path or accepted.find_file(Path.cwd())
     if found is None:
         return []
     name = os.path.relpath(found) if path is None else str(found)
     try:
-        return accepted.read(found, name)[0]
+        return accepted.read_file(found, name)[0]
     except Findings as error:
         texts = {}
         with suppress(OSError):

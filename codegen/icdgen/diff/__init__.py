@@ -1,1 +1,3 @@
-"""Two sets of ICDs -> what changed between them, on which layer, how badly, and for whom."""
+"""Comparison of two sets of ICDs: changes with their layer, their severity and the
+parties that they affect.
+"""

@@ -1,4 +1,7 @@
-"""``.icdgen-accepted.yaml``: changes that someone accepted, each with a reason, so that they do not fail again."""
+"""Reader of ``.icdgen-accepted.yaml``: accepted changes with their reasons.
+
+They no longer make `icdgen diff` fail.
+"""
 
 from __future__ import annotations
 
@@ -21,24 +24,30 @@ STALE = "DIF901"
 
 
 class Acceptance(NamedTuple):
-    """One entry. ``said`` has what it says of the change but for its code: where it is, what was and what is now."""
+    """Entry of the file.
+
+    ``criteria`` are the attributes that a change must have in addition to the code:
+    location, old value (``was``) and new value (``now``).
+    """
 
     code: str
-    said: dict[str, str]
+    criteria: dict[str, str]
     reason: str
     place: Place
 
     def covers(self, change: Change) -> bool:
-        """Whether the entry is about this change."""
-        known = {**change.where._asdict(), "was": change.was, "now": change.now}
-        return self.code == change.code and all(known[key] == value for key, value in self.said.items())
+        """Whether the entry accepts this change."""
+        attributes = {**change.where._asdict(), "was": change.was, "now": change.now}
+        return self.code == change.code and all(attributes[key] == value for key, value in self.criteria.items())
 
 
 Accepted = tuple[Change, Acceptance]
 
 
-def find(start: Path) -> Path | None:
-    """The file in the nearest folder upwards that has one, within the repository."""
+def find_file(start: Path) -> Path | None:
+    """Return the file in the nearest parent folder that contains one, within the
+    repository; None if there is none.
+    """
     for folder in (start, *start.parents):
         if os.path.isfile(folder / NAME):
             return folder / NAME
@@ -47,8 +56,11 @@ def find(start: Path) -> Path | None:
     return None
 
 
-def read(path: Path, name: str) -> tuple[list[Acceptance], str]:
-    """The entries, and the text of the file for excerpts. Raises `Findings`."""
+def read_file(path: Path, name: str) -> tuple[list[Acceptance], str]:
+    """Return the entries, and the text of the file for excerpts.
+
+    Raises `Findings`.
+    """
     data = source.contents(path, name)
     tree = source.parse(data, name)
     findings, _ = schema.check(tree, "accepted")
@@ -60,8 +72,8 @@ def read(path: Path, name: str) -> tuple[list[Acceptance], str]:
 
 
 def _entry(item: Map) -> Acceptance:
-    said = {key: str(item[key]) for key in (*Where._fields, "was", "now") if key in item}
-    return Acceptance(item["code"].upper(), said, item["reason"], item.at("code"))
+    criteria = {key: str(item[key]) for key in (*Where._fields, "was", "now") if key in item}
+    return Acceptance(item["code"].upper(), criteria, item["reason"], item.at("code"))
 
 
 def _unknown(entry: Acceptance) -> Finding:
@@ -70,10 +82,12 @@ def _unknown(entry: Acceptance) -> Finding:
     return Finding("ICD010", f"there is no rule {quote(entry.code)}", entry.place, help)
 
 
-def sort(
+def sort_changes(
     changes: Iterable[Change], entries: Sequence[Acceptance]
 ) -> tuple[list[Change], list[Accepted], list[Acceptance]]:
-    """The changes that nobody accepted, the others with the first entry that covers each, and the entries that cover nothing."""
+    """Return the changes that are not accepted, the accepted ones with the first
+    matching entry, and unused entries.
+    """
     covered = [(change, [entry for entry in entries if entry.covers(change)]) for change in changes]
     used = {id(entry) for _, covering in covered for entry in covering}
     accepted = [(change, covering[0]) for change, covering in covered if covering]
@@ -82,7 +96,7 @@ def sort(
 
 
 def about_stale(entry: Acceptance) -> Finding:
-    """What is said of an entry that no longer applies."""
-    where = ", ".join(f"{key} {quote(value)}" for key, value in entry.said.items())
+    """Return the finding about an entry that no longer matches any change."""
+    where = ", ".join(f"{key} {quote(value)}" for key, value in entry.criteria.items())
     text = f"this accepted change does not happen: {entry.code} at {where}"
     return Finding(STALE, text, entry.place, "take the entry out, or correct it", "warning")

@@ -1,4 +1,4 @@
-"""What a change is."""
+"""Change between two ICDs."""
 
 from __future__ import annotations
 
@@ -9,12 +9,16 @@ from icdgen.diff.pairs import Pair
 from icdgen.diff.rule import Rule
 from icdgen.diff.where import Where
 
-CERTAIN, LIKELY = 0.95, 0.7  # from here on a match is called certain, likely; else uncertain
+CERTAIN, LIKELY = 0.95, 0.7  # lower limits of the confidence of certain and likely matches
 
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """One change. ``sure`` tells how sure it is that old and new are the same thing, 1 where the name says so."""
+    """Change between two ICDs.
+
+    ``sure``: confidence from 0 to 1 that old and new side are the same object; 1 if the
+    names are equal.
+    """
 
     rule: Rule
     message: str
@@ -25,9 +29,9 @@ class Change:
     new: Place | None
     details: tuple[str, ...]
     severity: str  # "error" | "warning" | "note"
-    addition: bool  # something came that nobody relied upon
+    addition: bool  # new object that existing software does not depend on
     sure: float
-    errata: tuple[str, ...]  # decisions about the manual that make the difference: "ACP-007 is new"
+    errata: tuple[str, ...]  # errata that cause the change: "ACP-007 is new"
     pair: Pair = field(compare=False, repr=False)
 
     @property
@@ -40,37 +44,37 @@ class Change:
 
     @property
     def breaks(self) -> bool:
-        """Whether it can harm what relied upon the old ICD."""
+        """Whether the change can break software that uses the old ICD."""
         return self.severity != "note" and not self.addition
 
     @property
     def place(self) -> Place | None:
-        """Where to look: in the new ICD if it is there."""
+        """Place of the change: in the new ICD if the object exists there."""
         return self.new or self.old
 
     @property
     def kind(self) -> str:
-        """In a word: ``addition``, or how bad it is."""
+        """``addition``, or the severity."""
         return "addition" if self.addition else self.severity
 
     @property
     def places(self) -> list[Place]:
-        """Where it was and where it is."""
+        """Places in the old and in the new ICD."""
         return [place for place in (self.old, self.new) if place is not None]
 
     @property
     def certainty(self) -> str:
-        """How sure it is that old and new are the same thing, in a word; empty for a match by name."""
+        """Confidence of the match as a word; empty for a match by name."""
         if self.sure >= 1:
             return ""
         return "certain" if self.sure >= CERTAIN else "likely" if self.sure >= LIKELY else "uncertain"
 
     @property
     def notes(self) -> list[str]:
-        """What is said below a change: consequences, how sure the match is, decisions about the manual."""
-        said = list(self.details)
+        """Notes of the change: consequences, confidence of the match, errata."""
+        notes = list(self.details)
         if self.certainty:
-            said.append(f"Matched by similarity, {self.certainty} ({self.sure:.0%}).")
+            notes.append(f"Matched by similarity, {self.certainty} ({self.sure:.0%}).")
         if self.errata:
-            said.append(f"Because erratum {', '.join(self.errata)}.")
-        return said
+            notes.append(f"Because erratum {', '.join(self.errata)}.")
+        return notes

@@ -1,4 +1,4 @@
-"""Two sets of ICDs -> all changes between them."""
+"""Comparison of two sets of ICDs with all changes between them."""
 
 from __future__ import annotations
 
@@ -23,23 +23,23 @@ from icdgen.diff.context import Context
 from icdgen.diff.layers import LAYERS
 from icdgen.diff.match import match
 from icdgen.diff.pairs import FieldPair, Match, MessagePair, NodePair, Pair
-from icdgen.diff.rule import REGISTERED, Check, Found, Rule
+from icdgen.diff.rule import REGISTERED, Check, CheckResult, Rule
 from icdgen.icd.model import Icd
 from icdgen.icd.rules.wording import listing, quote
 
 RULES: dict[str, Rule] = dict(sorted(REGISTERED.items()))
-_CHECKS: dict[tuple[str, str], dict[Check, str]] = {}  # and the code of what it finds, unless it names another
+_CHECKS: dict[tuple[str, str], dict[Check, str]] = {}  # (kind of pair, presence) -> check -> default code
 for _rule in RULES.values():
     for _of in _rule.of:
         _CHECKS.setdefault((_of, _rule.when), {})[_rule.check] = _rule.code
 
 
-MOST_PLACES = 3  # that are shown of a change of a struct
+MOST_PLACES = 3  # maximum number of places shown for a change of a struct
 
 
 @dataclass
 class Comparison:
-    """What changed, in the order of the new ICD, and what was compared with what."""
+    """Changes in the order of the new ICD, and the matched pairs."""
 
     match: Match
     changes: list[Change]
@@ -47,19 +47,24 @@ class Comparison:
 
 
 def compare(old: Icd, new: Icd) -> Comparison:
-    """Everything that differs between two sound sets of ICDs. Order, formatting and spelling of formulas are no difference."""
+    """Return all differences between two valid sets of ICDs.
+
+    Order, formatting and spelling of formulas are ignored.
+    """
     context = Context(match(old, new))
-    changes = sorted(_once(_all(context)), key=lambda c: LAYERS.index(c.layer))
+    changes = sorted(_merge_struct_changes(_all_changes(context)), key=lambda c: LAYERS.index(c.layer))
     return Comparison(context.match, changes, context)
 
 
-def _once(changes: Iterable[Change]) -> list[Change]:
-    """What changed in a struct is said where it stands first, with the other places."""
+def _merge_struct_changes(changes: Iterable[Change]) -> list[Change]:
+    """Report a change of a struct once, at its first use, and list the other uses in
+    its details.
+    """
     result: list[Change] = []
     indexes: dict[object, int] = {}
     other_places: dict[int, list[str]] = {}
     for change in changes:
-        key = _in_struct(change)
+        key = _struct_key(change)
         if key is None or key not in indexes:
             if key is not None:
                 indexes[key] = len(result)
@@ -74,10 +79,12 @@ def _once(changes: Iterable[Change]) -> list[Change]:
     return result
 
 
-def _in_struct(change: Change) -> object:
-    """What a change of a field of a struct has in common with the same change wherever the struct stands; None of others."""
+def _struct_key(change: Change) -> object:
+    """Return a key that is equal for one change of a struct in all its uses; None for
+    other changes.
+    """
     pair: object = change.pair
-    if isinstance(pair, MessagePair):  # many fields are looked at together
+    if isinstance(pair, MessagePair):  # some checks evaluate all fields of a message at once
         pair = next((part for part in pair.parts if part.any.name == change.where.field), None)
     if not isinstance(pair, FieldPair) or not pair.is_of_struct:
         return None
@@ -85,16 +92,16 @@ def _in_struct(change: Change) -> object:
     return change.rule.code, change.old, change.new, sides[-1].at - sides[0].at
 
 
-def _all(context: Context) -> Iterator[Change]:
+def _all_changes(context: Context) -> Iterator[Change]:
     for check, code in _CHECKS["icd", "both"].items():
-        for found in check(context):
-            assert found.pair is not None
-            yield _change(RULES[code], found.pair, found)
+        for finding in check(context):
+            assert finding.pair is not None
+            yield _change(RULES[code], finding.pair, finding)
     for node in context.match.nodes:
         yield from _run("node", node, context)
         for owner in node.declared:
             if not owner.changed or (not node.both and not owner.both):
-                continue  # what comes or goes with its node is not said again
+                continue  # additions and removals of the node include it
             of, parts = ("message", "field") if isinstance(owner, MessagePair) else ("enum", "member")
             yield from _run(of, owner, context)
             for part in owner.parts if owner.both else ():
@@ -105,40 +112,42 @@ def _all(context: Context) -> Iterator[Change]:
 def _run(of: str, pair: Pair, context: Context) -> Iterator[Change]:
     when = "both" if pair.both else "gone" if pair.after is None else "come"
     checks = _CHECKS.get((of, when), {})
-    results = [(found.code or code, found) for check, code in checks.items() for found in check(pair, context)]
-    for code, found in sorted(results, key=itemgetter(0)):
-        yield _change(RULES[code], pair, found)
+    results = [(result.code or code, result) for check, code in checks.items() for result in check(pair, context)]
+    for code, result in sorted(results, key=itemgetter(0)):
+        yield _change(RULES[code], pair, result)
 
 
-def _change(rule: Rule, pair: Pair, found: Found) -> Change:
-    old, new = found.places or pair.places(found.keys)
+def _change(rule: Rule, pair: Pair, result: CheckResult) -> Change:
+    old, new = result.places or pair.places(result.keys)
     return Change(
         rule=rule,
-        message=found.message,
-        where=found.where or pair.where(),
-        was=found.was,
-        now=found.now,
+        message=result.message,
+        where=result.where or pair.where(),
+        was=result.was,
+        now=result.now,
         old=old,
         new=new,
-        details=found.details,
-        severity=found.severity or rule.severity,
-        addition=rule.addition if found.addition is None else found.addition,
+        details=result.details,
+        severity=result.severity or rule.severity,
+        addition=rule.addition if result.addition is None else result.addition,
         sure=pair.sure,
-        errata=_decisions(pair, found.keys),
+        errata=_decisions(pair, result.keys),
         pair=pair,
     )
 
 
 def _decisions(pair: Pair, keys: tuple[str, ...]) -> tuple[str, ...]:
-    """Errata that came, went or changed, and that hold something else for one of these keys of the pair."""
+    """Return the errata that were added, removed or changed and that concern one of
+    these keys of the pair.
+    """
     if isinstance(pair, NodePair):
         return ()
     old, new = ({e.id: e for e in side.errata} if side is not None else {} for side in (pair.before, pair.after))
     decisions = []
     for key in sorted(old.keys() | new.keys()):
         before, after = old.get(key), new.get(key)
-        held = [name for entry in (before, after) if entry for name, _ in entry.held]
-        if before != after and any(name in keys for name in held):
+        affected_keys = [name for entry in (before, after) if entry for name, _ in entry.held]
+        if before != after and any(name in keys for name in affected_keys):
             decisions.append(
                 f"{key} {'is new' if before is None else 'is gone' if after is None else 'says otherwise'}"
             )

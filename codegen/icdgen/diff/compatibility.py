@@ -1,4 +1,4 @@
-"""Who still understands whom: old ground stations, old telecommands, old log files."""
+"""Compatibility of old and new software: ground stations, telecommands and log files."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ YES, PARTLY, NO = "yes", "partly", "no"
 
 
 class Frame(NamedTuple):
-    """What becomes of one frame that is not simply understood."""
+    """Frame that is not fully compatible."""
 
     node: str
     message: str
@@ -32,7 +32,11 @@ class Frame(NamedTuple):
 
 
 class Direction(NamedTuple):
-    """The answer to one question. ``frames`` are those that are not simply understood; ``general`` concerns all."""
+    """Compatibility in one direction.
+
+    ``frames`` are the frames that are not fully compatible. ``general``: reasons that
+    concern all frames.
+    """
 
     key: str
     question: str
@@ -43,7 +47,7 @@ class Direction(NamedTuple):
 
     @property
     def worst_first(self) -> list[Frame]:
-        """The frames, those first that are not understood at all."""
+        """Frames, incompatible ones first."""
         return sorted(self.frames, key=lambda frame: frame.verdict != NO)
 
 
@@ -51,29 +55,33 @@ Judge = Callable[[MessagePair], tuple[str, tuple[str, ...]]]
 
 
 def directions(comparison: Comparison) -> tuple[Direction, ...]:
-    """The answers to the three questions that a team asks."""
-    (heard, logs), (sent, _) = (_facts(comparison, one) for one in ("telemetry", "telecommand"))
+    """Return the compatibility of telemetry, telecommands and log files."""
+    (telemetry_facts, log_facts), (telecommand_facts, _) = (
+        _facts(comparison, direction) for direction in ("telemetry", "telecommand")
+    )
     return (
         _answer("telemetry", "Can an old ground station read the new device's telemetry?",
-                _frames(comparison, "telemetry_id", lambda pair: _read(pair, pair.new, pair.old)), heard),
+                _frames(comparison, "telemetry_id", lambda pair: _read(pair, pair.new, pair.old)), telemetry_facts),
         _answer("telecommands", "Can old telecommands still be sent?",
-                _frames(comparison, "telecommand_id", _new_obeys_old), sent),
+                _frames(comparison, "telecommand_id", _new_obeys_old), telecommand_facts),
         _answer("logs", "Can new software read old log files?",
-                _frames(comparison, "telemetry_id", lambda pair: _read(pair, pair.old, pair.new), logged=True), logs),
+                _frames(comparison, "telemetry_id", lambda pair: _read(pair, pair.old, pair.new), logged=True), log_facts),
     )  # fmt: skip
 
 
 def _answer(key: str, question: str, frames: list[Frame | None], general: tuple[str, ...]) -> Direction:
-    odd = tuple(frame for frame in frames if frame is not None)
-    if odd and len(odd) == len(frames) and all(frame.verdict == NO for frame in odd):
+    affected = tuple(frame for frame in frames if frame is not None)
+    if affected and len(affected) == len(frames) and all(frame.verdict == NO for frame in affected):
         verdict = NO
     else:
-        verdict = PARTLY if odd or general else YES
-    return Direction(key, question, verdict, odd, len(frames), general)
+        verdict = PARTLY if affected or general else YES
+    return Direction(key, question, verdict, affected, len(frames), general)
 
 
 def _facts(comparison: Comparison, direction: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Changed facts of the protocol that concern every frame of a direction on the wire, and every frame in a log."""
+    """Return the changes of protocol facts that concern all frames of a direction in
+    transmission, and all frames in a log.
+    """
     wires: list[str] = []
     logs: list[str] = []
     for change in comparison.changes:
@@ -91,40 +99,50 @@ def _facts(comparison: Comparison, direction: str) -> tuple[tuple[str, ...], tup
 
 
 def _is_of_all(comparison: Comparison, node: NodePair, fact: str, direction: str) -> bool:
-    """Whether a fact concerns every message of a direction; of a node with envelopes only where these are others now."""
-    if not comparison.context.have_envelopes(node):
+    """Return whether a fact concerns all messages of a direction.
+
+    For nodes with packet formats this requires a changed packet format.
+    """
+    if not comparison.context.have_packet_formats(node):
         return True
-    return bool(AROUND.fullmatch(fact)) and direction in comparison.context.other_envelopes(node)
+    return bool(AROUND.fullmatch(fact)) and direction in comparison.context.changed_packet_formats(node)
 
 
 def _frames(comparison: Comparison, key: str, judge: Judge, logged: bool = False) -> list[Frame | None]:
-    """One entry a frame of the old ICD, None where it is simply understood. A frame of a shared ICD counts once."""
-    match, seen, found = comparison.match, set(), []
+    """Return an entry for each frame of the old ICD; None for fully compatible frames.
+
+    A frame of a shared ICD counts once.
+    """
+    match, seen, results = comparison.match, set(), []
     for node in match.nodes:
         if node.before is None:
             continue
         old = [(number, m) for m in match.old.messages_of(node.old) if (number := getattr(m, key)) is not None]
         new = by_id(match.new.messages_of(node.new) if node.both else (), key)
-        wanted = {row.id for row in node.old.loggable} if logged else set()  # of all that do not say what they can log
-        others = () if logged else comparison.context.other_envelopes(node)
+        wanted = {row.id for row in node.old.loggable} if logged else set()  # empty: the node logs all frames
+        changed_formats = () if logged else comparison.context.changed_packet_formats(node)
         for number, message in old:
             if wanted and number not in wanted:
                 continue
-            now = _now(comparison, message, new.get(number, []))
+            now = _counterpart(comparison, message, new.get(number, []))
             verdict, reasons = _verdict(comparison, key, message, now, judge)
-            if verdict != NO and key.removesuffix("_id") in others:
+            if verdict != NO and key.removesuffix("_id") in changed_formats:
                 verdict, reasons = NO, ("its envelope is another",)
             if (id(message), verdict) in seen:
                 continue
             seen.add((id(message), verdict))
-            found.append(None if verdict == YES else Frame(node.old.name, message.name, number, verdict, reasons))
-    return found
+            results.append(None if verdict == YES else Frame(node.old.name, message.name, number, verdict, reasons))
+    return results
 
 
-def _now(comparison: Comparison, old: Message, known: list[Message]) -> Message | None:
-    """What of the messages of an id is the old one, or else has its place."""
+def _counterpart(comparison: Comparison, old: Message, candidates: list[Message]) -> Message | None:
+    """Return the message among those of an id that is the counterpart of the old
+    message, or the only message of this id.
+    """
     after = comparison.match.messages[id(old)].after
-    return next((one for one in known if one is after), known[0] if len(known) == 1 else None)
+    return next(
+        (message for message in candidates if message is after), candidates[0] if len(candidates) == 1 else None
+    )
 
 
 def _verdict(
@@ -142,33 +160,39 @@ def _verdict(
 
 
 def _read(pair: MessagePair, sent: Message, reader: Message) -> tuple[str, tuple[str, ...]]:
-    """How much of what is sent the reader understands."""
-    lengths, odd = _lengths(sent, reader, "come")
+    """Return the compatibility of frames with the layout ``sent`` for software with the
+    layout ``reader``.
+    """
+    lengths, length_reasons = _lengths(sent, reader, "come")
     if lengths == NO:
-        return NO, odd
-    own = [p for p in pair.parts if not p.any.view]  # views read what the others carry
+        return NO, length_reasons
+    own = [p for p in pair.parts if not p.any.view]  # overlays repeat bits of other fields
     derived = [(p, "another formula") for p in pair.common if is_derived_otherwise(p)]
     absent = [p.any for p in own if not p.both and (p.before if reader is pair.old else p.after) is not None]
     wrong = [(p, why) for p in pair.common if (why := _misread(p))]
     if not absent and not wrong and not derived:
-        return lengths, odd
-    reasons = [*odd, *_together((p.any.name, why) for p, why in (*wrong, *derived))]
+        return lengths, length_reasons
+    reasons = [*length_reasons, *_group_by_reason((p.any.name, why) for p, why in (*wrong, *derived))]
     if absent:
         reasons.append(f"not carried: {some([f.name for f in absent])}")
     verdict = NO if len(absent) + len(wrong) == sum(not line.view for line in lines(reader.layout)) else PARTLY
     return verdict, tuple(reasons)
 
 
-def _together(items: Iterable[tuple[str, str]]) -> list[str]:
-    """``has another unit: `a` and `b` ``: names with the same reason in one line."""
-    found: dict[str, list[str]] = {}
+def _group_by_reason(items: Iterable[tuple[str, str]]) -> list[str]:
+    """Return one line for each reason with the names it concerns: ``has another unit:
+    `a` and `b` ``.
+    """
+    names_by_reason: dict[str, list[str]] = {}
     for name, why in items:
-        found.setdefault(why, []).append(name)
-    return [f"{why}: {some(names)}" for why, names in found.items()]
+        names_by_reason.setdefault(why, []).append(name)
+    return [f"{why}: {some(names)}" for why, names in names_by_reason.items()]
 
 
 def _misread(pair: FieldPair) -> str:
-    """Why a value that one side wrote is another to the other side; empty if it is not."""
+    """Return the reason why the sides interpret a value differently; empty if they do
+    not.
+    """
     old, new = pair.old, pair.new
     if not pair.same_bits:
         return "other bits"
@@ -185,9 +209,9 @@ def _misread(pair: FieldPair) -> str:
 
 
 def _lengths(sent: Message, reader: Message, verb: str) -> tuple[str, tuple[str, ...]]:
-    """Whether frames that are sent have a length that is expected."""
+    """Return whether the lengths of sent frames match the expected lengths."""
     lengths, expected = sent.layout.lengths, reader.layout.lengths
-    fitting = sum(one in expected for one in lengths)
+    fitting = sum(length in expected for length in lengths)
     if fitting == len(lengths):
         return YES, ()
     if len(lengths) == len(expected) == 1:
@@ -198,16 +222,18 @@ def _lengths(sent: Message, reader: Message, verb: str) -> tuple[str, tuple[str,
 
 def _new_obeys_old(pair: MessagePair) -> tuple[str, tuple[str, ...]]:
     old, new = pair.old, pair.new
-    lengths, odd = _lengths(old, new, "are sent")
+    lengths, length_reasons = _lengths(old, new, "are sent")
     if lengths == NO:
-        return NO, odd
-    found = [(one, *_disobeyed(one)) for one in pair.parts if not one.any.view]
-    reasons = [*odd, *_together((one.any.name, why) for one, why, _ in found if why)]
-    return (NO if any(refused for *_, refused in found) else PARTLY if reasons else YES), tuple(reasons)
+        return NO, length_reasons
+    results = [(part, *_disobeyed(part)) for part in pair.parts if not part.any.view]
+    reasons = [*length_reasons, *_group_by_reason((part.any.name, why) for part, why, _ in results if why)]
+    return (NO if any(refused for *_, refused in results) else PARTLY if reasons else YES), tuple(reasons)
 
 
 def _disobeyed(pair: FieldPair) -> tuple[str, bool]:
-    """What goes wrong with a field of a telecommand, and whether the whole telecommand is refused for it."""
+    """Return the problem of a field of a telecommand, and whether the device refuses
+    the telecommand because of it.
+    """
     old, new = pair.before, pair.after
     if new is None:
         return "ignored", False

@@ -1,4 +1,6 @@
-"""The protocol section as single facts: what differs, where it stands, and whether that changes what is around each message."""
+"""Protocol section as single facts: differences, their places, and their effect on the
+packet format.
+"""
 
 from __future__ import annotations
 
@@ -14,14 +16,16 @@ from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Icd, Node
 from icdgen.protocol import facts as protocol
 
-WORDS = frozenset(("source", "summary", "printed_constant"))  # keys that say something about the manual, not the device
-NAMES = ("name", "role", "value")  # what tells the rows of a list apart
-PART = re.compile(r"protocol\.stream(\.(header|trailer)(\.[^.]+)?)?")  # without which a message looks otherwise
+WORDS = frozenset(("source", "summary", "printed_constant"))  # keys that describe the manual, not the device
+NAMES = ("name", "role", "value")  # keys that identify the rows of a list
+PART = re.compile(
+    r"protocol\.stream(\.(header|trailer)(\.[^.]+)?)?"
+)  # keys whose addition or removal changes the packet format
 AROUND = re.compile(r"protocol\.stream\.(delimited_by|header|trailer)\b.*|protocol\.checksums\b.*")
 
 
 class Fact(NamedTuple):
-    """A fact that differs; ``old`` or ``new`` is None where it is not stated."""
+    """Fact that differs; ``old`` or ``new`` has the value None if it is not declared."""
 
     path: str  # "protocol.uart.framing.escape"
     old: object
@@ -31,20 +35,20 @@ class Fact(NamedTuple):
 
 
 def facts(old: Node, new: Node) -> Iterator[Fact]:
-    """All facts that differ, in the order of the old node, then of the new one."""
+    """Yield all facts that differ, in the order of the old node, then of the new node."""
     before, after = (_Side(node.protocol, node.source.get("protocol")) for node in (old, new))
     yield from _compare("protocol", before, after, is_word=False)
 
 
 class _Side(NamedTuple):
-    """A value of one side, what was read for it, and where that stands."""
+    """Value of one side with its YAML node and place."""
 
     value: Any = None
     tree: object = None
     place: Place | None = None
 
     def inside(self, step: Any) -> _Side:
-        """A step further down, which may lead nowhere."""
+        """Return the value at a key or index, empty if it does not exist."""
         value, tree = self.value, self.tree
         if step is None or not (step in value if isinstance(value, dict) else step < len(value)):
             return _Side()
@@ -71,18 +75,21 @@ def _compare(path: str, before: _Side, after: _Side, is_word: bool) -> Iterator[
 
 
 def _row_names(rows: list[Any]) -> dict[str, int]:
-    """The place of each row by its name; of several that are called alike the second is ``constant#2``."""
-    found: dict[str, int] = {}
-    seen: Counter[str] = Counter()
+    """Return the index of each row by its name.
+
+    Repeated names are numbered: ``constant#2``.
+    """
+    index_by_name: dict[str, int] = {}
+    occurrences: Counter[str] = Counter()
     for index, row in enumerate(rows):
         key = next((str(row[k]) for k in NAMES if k in row), str(index)) if isinstance(row, dict) else str(index)
-        seen[key] += 1
-        found[f"{key}#{seen[key]}" if seen[key] > 1 else key] = index
-    return found
+        occurrences[key] += 1
+        index_by_name[f"{key}#{occurrences[key]}" if occurrences[key] > 1 else key] = index
+    return index_by_name
 
 
 def shown(value: object) -> str:
-    """A value as a reader of the ICD knows it, short."""
+    """Return a value in the notation of the ICD, shortened."""
     if value is None:
         return ""
     if isinstance(value, bool):
@@ -96,21 +103,29 @@ def shown(value: object) -> str:
     return str(value)
 
 
-def has_envelope(side: tuple[Icd, Node]) -> bool:
-    """Whether messages of the node travel in envelopes."""
+def has_packet_format(side: tuple[Icd, Node]) -> bool:
+    """Return whether messages of the node have a packet format."""
     return "stream" in side[1].protocol
 
 
-def differ(old: tuple[Icd, Node], new: tuple[Icd, Node], direction: str) -> bool:
-    """Whether no message of a direction that one side makes is one of the other's, whatever it holds."""
+def packet_formats_differ(old: tuple[Icd, Node], new: tuple[Icd, Node], direction: str) -> bool:
+    """Return whether the packet formats of a direction are incompatible, regardless of
+    the data.
+    """
     return _form(*old, direction) != _form(*new, direction)
 
 
 def _form(icd: Icd, node: Node, direction: str) -> object:
-    """All that decides what is around the data of a message of ``direction``."""
+    """Return everything that determines header and trailer of a message in
+    ``direction``.
+    """
     stream = protocol.of(icd, node).stream
     assert stream is not None
     place = int(direction == "telemetry")
-    fields = [(*astuple(one)[:-1], one.values[place] if one.role == "constant" else None) for one in stream.fields]
+    # `values` of a constant belong to one direction; defaults of other roles do not
+    # change the format.
+    fields = [
+        (*astuple(field)[:-1], field.values[place] if field.role == "constant" else None) for field in stream.fields
+    ]
     check = None if stream.check is None else astuple(stream.check)
     return stream.delimited_by, stream.header_bytes, stream.trailer_bytes, stream.length_plus, fields, check

@@ -1,4 +1,6 @@
-"""The names and types that generated code has for things, in each language, and how they differ between two ICDs."""
+"""Names and types in generated code, for each language, and their differences between
+two ICDs.
+"""
 
 from __future__ import annotations
 
@@ -36,7 +38,11 @@ LANGUAGES = ("c", "python", "rust")
 
 
 class Name(NamedTuple):
-    """A generated name. ``stem`` is what a file must mention too where the name means nothing alone: a struct's member."""
+    """Generated name.
+
+    ``stem``: second name that a source must mention for an ambiguous name, such as the
+    struct of a member.
+    """
 
     language: str
     text: str
@@ -44,74 +50,81 @@ class Name(NamedTuple):
 
 
 class SourceMarks(Generic[Marked]):
-    """Sources for the parts of an ICD that is made to ask for its names, by which it is known what has each of them."""
+    """Source marks for the parts of a synthetic ICD.
+
+    The backend returns each name with its mark, which identifies the part.
+    """
 
     def __init__(self) -> None:
-        self._known: dict[int, tuple[Map, Marked]] = {}  # by identity, so that each mark must stay
+        self._parts: dict[int, tuple[Map, Marked]] = {}  # by identity: marks must stay alive, so that ids stay unique
 
     def of(self, thing: Marked) -> Map:
-        """A new mark of a thing."""
+        """Return a new mark for a part."""
         mark = Map(Place(""))
-        self._known[id(mark)] = mark, thing
+        self._parts[id(mark)] = mark, thing
         return mark
 
     def names(self, icd: Icd, language: str) -> Iterator[tuple[Marked, Identifier]]:
-        """What has a mark, and each of the names that code in the language has for it."""
+        """Yield each marked part with each of its names in generated code of a
+        language.
+        """
         for identifier in backends.get(language).identifiers(icd):
-            if id(identifier.source) in self._known:
-                yield self._known[id(identifier.source)][1], identifier
+            if id(identifier.source) in self._parts:
+                yield self._parts[id(identifier.source)][1], identifier
 
 
-NOTHING, NODES, OWNERS = range(3)  # what is called by its old name
+NOTHING, NODES, OWNERS = range(3)  # which objects keep their old names
 Names = dict[int, tuple[Name, ...]]  # id(pair) -> names
 
 
 class Generated:
-    """Names of the pairs whose names may have changed: all others keep theirs.
+    """Generated names of all pairs whose names may have changed.
 
-    What has an owner is compared as if its message or enumeration, and their node, had kept their old names: a field's names are
-    not said to change only because its message has another name.
+    To compare the names of a field or member, its owner and its node keep their old
+    names: a new name of a message alone is not reported as a new name of its fields.
     """
 
     def __init__(self, match: Match, changed: Iterable[DeclaredPair]) -> None:
         self._match, self._changed = match, list(changed)
 
     @cached_property
-    def _kept(self) -> set[int]:
-        """Everything whose names may have changed, with what it is part of: id(pair)."""
+    def _affected(self) -> set[int]:
+        """Identities of all pairs whose names may have changed, and of the parts of
+        those pairs.
+        """
         ids: set[int] = set()
         parts_of = {id(p): [part for part in p.parts if may_rename(part)] if p.both else [] for p in self._changed}
-        idle = idle_facts(part for parts in parts_of.values() for part in parts)
+        idle = differences_without_new_names(part for parts in parts_of.values() for part in parts)
         for pair in self._changed:
-            parts = [id(part) for part in parts_of[id(pair)] if what_differs(part) not in idle]
+            parts = [id(part) for part in parts_of[id(pair)] if difference_in_meaning(part) not in idle]
             if parts or may_rename(pair):
                 ids.update((id(pair), *parts))
         return ids
 
     @cached_property
     def everything(self) -> Names:
-        """Old names of everything in messages and enumerations in which anything differs."""
+        """Old names of all parts of changed messages and enumerations."""
         return _ReducedIcd(self._match, 0, {id(part) for pair in self._changed for part in (pair, *pair.parts)}).names
 
     @cached_property
     def _before(self) -> _ReducedIcd:
-        return _ReducedIcd(self._match, 0, self._kept)
+        return _ReducedIcd(self._match, 0, self._affected)
 
     @cached_property
     def _after(self) -> _ReducedIcd:
-        return _ReducedIcd(self._match, 1, self._kept)
+        return _ReducedIcd(self._match, 1, self._affected)
 
     @cached_property
     def _in_old_nodes(self) -> _ReducedIcd:
         if all(node.old.name == node.new.name for node in self._match.nodes if node.both):
             return self._after
-        return _ReducedIcd(self._match, 1, self._kept, NODES)
+        return _ReducedIcd(self._match, 1, self._affected, NODES)
 
     @cached_property
     def _under_old_owners(self) -> _ReducedIcd:
         owners: list[DeclaredPair] = [*self._match.messages.values(), *self._match.enums.values()]
-        if any(pair.both and is_called_otherwise(pair) for pair in owners):
-            return _ReducedIcd(self._match, 1, self._kept, OWNERS)
+        if any(pair.both and is_renamed(pair) for pair in owners):
+            return _ReducedIcd(self._match, 1, self._affected, OWNERS)
         return self._in_old_nodes
 
     @property
@@ -123,7 +136,7 @@ class Generated:
         return self._after.names
 
     def renamed(self, pair: IdentifiedPair) -> list[tuple[Name | None, Name | None]]:
-        """Old and new name of everything that is generated for the pair, where they differ. Its parts are left out."""
+        """Return the differing old and new names of the pair, without its parts."""
         after = self._in_old_nodes if isinstance(pair, MessagePair | EnumPair) else self._under_old_owners
         old, new = self.old.get(id(pair), ()), after.names.get(id(pair), ())
         if old == new:
@@ -140,7 +153,9 @@ class Generated:
         return changes
 
     def retyped(self, pair: FieldPair) -> list[tuple[str, str, str]]:
-        """Language, old and new type of the raw value, where they differ."""
+        """Return language, old and new type of the raw value for each language where
+        they differ.
+        """
         if not _is_sound(pair.old) or not _is_sound(pair.new) or pair.is_of_struct:
             return []
         before, after = self._before, self._under_old_owners
@@ -148,14 +163,16 @@ class Generated:
         return [(language, old, new) for language, old, new in types if old != new]
 
 
-def is_called_otherwise(pair: IdentifiedPair) -> bool:
-    """Whether the name or the identifier of what is on both sides differs."""
+def is_renamed(pair: IdentifiedPair) -> bool:
+    """Return whether the name or the identifier of the two sides differs."""
     return (pair.old.name, pair.old.identifier) != (pair.new.name, pair.new.identifier)
 
 
 def may_rename(pair: IdentifiedPair) -> bool:
-    """Whether anything differs that names or types of the pair itself are made from."""
-    if not pair.both or is_called_otherwise(pair):
+    """Return whether anything differs that determines names or types of the pair
+    itself.
+    """
+    if not pair.both or is_renamed(pair):
         return True
     if isinstance(pair, FieldPair):
         return pair.owner.has_another_vocabulary or _decisive(pair.old) != _decisive(pair.new)
@@ -164,12 +181,14 @@ def may_rename(pair: IdentifiedPair) -> bool:
     return pair.is_of_another_node or pair.has_another_vocabulary
 
 
-Difference = tuple[object, object, tuple[str, ...]]  # decisive facts of a field, old and new, and how words are split
+Difference = tuple[object, object, tuple[str, ...]]  # relevant attributes of a field, old and new, and the vocabulary
 
 
-def what_differs(pair: IdentifiedPair) -> Difference | None:
-    """What a field means otherwise, where that is all that its names could change by."""
-    if not isinstance(pair, FieldPair) or not pair.both or is_called_otherwise(pair):
+def difference_in_meaning(pair: IdentifiedPair) -> Difference | None:
+    """Return the difference in meaning of a field, if its names can change by nothing
+    else; None otherwise.
+    """
+    if not isinstance(pair, FieldPair) or not pair.both or is_renamed(pair):
         return None
     old, new = pair.old, pair.new
     is_typed_otherwise = (old.type, old.bits, old.count) != (new.type, new.bits, new.count)
@@ -178,11 +197,15 @@ def what_differs(pair: IdentifiedPair) -> Difference | None:
     return _decisive(old), _decisive(new), pair.owner.new_node.vocabulary
 
 
-def idle_facts(pairs: Iterable[IdentifiedPair]) -> set[Difference]:
-    """The differences by which no name changes: each is tried on one field, however many differ by it."""
+def differences_without_new_names(pairs: Iterable[IdentifiedPair]) -> set[Difference]:
+    """Return the differences that change no name.
+
+    Each difference is tested with one field, so that many equal changes take no extra
+    time.
+    """
     samples: dict[Difference, FieldPair] = {}
     for pair in pairs:
-        difference = what_differs(pair)
+        difference = difference_in_meaning(pair)
         if difference is not None and isinstance(pair, FieldPair) and _is_sound(pair.old) and _is_sound(pair.new):
             samples.setdefault(difference, pair)
     before, after = (_texts(list(samples.values()), side) for side in (0, 1))
@@ -190,7 +213,9 @@ def idle_facts(pairs: Iterable[IdentifiedPair]) -> set[Difference]:
 
 
 def _texts(samples: list[FieldPair], side: int) -> list[list[tuple[str, str]]]:
-    """The generated names of one side of each sample, by language, all in one message of an ICD of its own."""
+    """Return the generated names of one side of each sample, with their language, from
+    a synthetic ICD with one message.
+    """
     marks = SourceMarks[list[tuple[str, str]]]()
     texts_of_samples: list[list[tuple[str, str]]] = [[] for _ in samples]
     fields = [
@@ -208,7 +233,9 @@ def _texts(samples: list[FieldPair], side: int) -> list[list[tuple[str, str]]]:
 
 
 def _sample(line: Line, name: str, source: Map) -> Scalar:
-    """Return a scalar with what a field means, wherever the field stands."""
+    """Return a scalar with the attributes of a field, independent of its position in a
+    struct.
+    """
     return replace(
         line.scalar,
         name=name,
@@ -227,22 +254,28 @@ def _decisive(field: Line) -> object:
 
 
 def _is_sound(field: NodePlace) -> bool:
-    """Whether a backend can make anything of the field: an ICD that was not checked may hold what none can."""
+    """Return whether backends accept the field.
+
+    An unchecked ICD can contain fields that they do not support.
+    """
     if field.is_bytes:
         return field.at % 8 == field.bits % 8 == 0
-    wanted = {"bool": field.bits == 1, "float": field.bits in (32, 64), "enum": field.enum is not None}
-    return field.bits <= 64 and wanted.get(field.type, True)
+    conditions = {"bool": field.bits == 1, "float": field.bits in (32, 64), "enum": field.enum is not None}
+    return field.bits <= 64 and conditions.get(field.type, True)
 
 
 class _ReducedIcd:
-    """One of both ICDs, with what is to be kept of it; every part has a mark of its own, by which its names are found."""
+    """Copy of one ICD, reduced to the affected pairs.
 
-    def __init__(self, match: Match, side: int, kept: set[int], old_names: int = NOTHING) -> None:
-        self.match, self.side, self.kept, self.old_names = match, side, kept, old_names
+    Marks in the copy identify the names of each part.
+    """
+
+    def __init__(self, match: Match, side: int, affected: set[int], old_names: int = NOTHING) -> None:
+        self.match, self.side, self.affected, self.old_names = match, side, affected, old_names
         self.marks = SourceMarks[IdentifiedPair]()
         self.enums: dict[int, Enum] = {}
-        self.messages: dict[int, Message] = {}  # id(pair) -> what it has become
-        self.nodes: dict[int, LayoutNode] = {}  # id(pair) -> what its node has become
+        self.messages: dict[int, Message] = {}  # id(pair) -> message of the copy
+        self.nodes: dict[int, LayoutNode] = {}  # id(pair) -> layout node of the copy
         icd = match.new if side else match.old
         names = {node.name: self.name_of(pair) for pair in match.nodes if (node := self.side_of(pair)) is not None}
         nodes = [(node, tuple(self.enum(enum, names) for enum in node.enums)) for node in icd.nodes]
@@ -254,7 +287,7 @@ class _ReducedIcd:
                     includes=tuple(names.get(name, name) for name in node.includes),
                     enums=enums,
                     messages=tuple(
-                        self.message(m, names) for m in node.messages if id(match.messages.get(id(m))) in kept
+                        self.message(m, names) for m in node.messages if id(match.messages.get(id(m))) in affected
                     ),
                 )
                 for node, enums in nodes
@@ -265,12 +298,12 @@ class _ReducedIcd:
         return pair.after if self.side else pair.before
 
     def name_of(self, pair: NodePair) -> str:
-        """The name of a node that is on this side."""
+        """Return the name of a node that exists on this side."""
         keeps_its_old_name = not self.side or (self.old_names and pair.before is not None)
         return pair.old.name if keeps_its_old_name else pair.new.name
 
     def marked(self, thing: Thing, pair: IdentifiedPair | None, **more: Any) -> Thing:
-        """The thing with a mark, and under its old name where that is asked for."""
+        """Return a copy of a part with a mark, and with its old name if required."""
         if pair is not None:
             more["source"] = self.marks.of(pair)
             if self.old_names == OWNERS and pair.before is not None and isinstance(pair, MessagePair | EnumPair):
@@ -280,7 +313,7 @@ class _ReducedIcd:
     def enum(self, enum: Enum, names: dict[str, str]) -> Enum:
         pair = self.match.enums.get(id(enum))
         members = {id(self.side_of(p)): p for p in pair.parts} if pair is not None else {}
-        members_to_keep = [m for m in enum.members if id(m) in members and id(members[id(m)]) in self.kept]
+        members_to_keep = [m for m in enum.members if id(m) in members and id(members[id(m)]) in self.affected]
         own = tuple(self.marked(m, members[id(m)]) for m in members_to_keep)
         marked_enum = self.marked(enum, pair, members=own, node=names.get(enum.node, enum.node))
         self.enums[id(enum)] = marked_enum
@@ -294,13 +327,15 @@ class _ReducedIcd:
         return marked_message
 
     def layout(self, message: Message, pair: MessagePair) -> Layout:
-        """The layout of a message with the lines that are kept, each with its mark; structs are left out."""
+        """Return the layout of a message with the affected lines, each with a mark,
+        without structs.
+        """
         layout = message.layout
         parts = {id(side.node): part for part in pair.parts if (side := self.side_of(part)) is not None}
-        nodes: dict[int, Any] = {}  # id(node) -> what is kept of it
+        nodes: dict[int, Any] = {}  # id(node) -> node of the copy
         for place in places_in(layout):
             part = parts.get(id(place.node))
-            if part is not None and id(part) in self.kept and place.struct is None and _is_sound(place):
+            if part is not None and id(part) in self.affected and place.struct is None and _is_sound(place):
                 mark, enum = self.marks.of(part), self.enums.get(id(place.enum), place.enum)
                 nodes[id(place.node)] = with_attributes(place.node, source=mark, enum=enum)
                 self.nodes[id(part)] = nodes[id(place.node)]
@@ -323,7 +358,7 @@ class _ReducedIcd:
 
     @cached_property
     def names(self) -> Names:
-        """Those of everything that was kept."""
+        """Names of all affected pairs."""
         names_by_pair: dict[int, dict[Name, None]] = {}
         types: dict[int, str] = {}  # Rust: id(pair) -> name of the type
         for language in LANGUAGES:
@@ -341,7 +376,7 @@ class _ReducedIcd:
         return {key: tuple(names) for key, names in names_by_pair.items()}
 
     def type_of(self, language: str, pair: FieldPair) -> str:
-        """The type of the field's raw value in a language."""
+        """Return the type of the raw value of a field in a language."""
         from icdgen.backends.c import types as c
         from icdgen.backends.python import fields as python
         from icdgen.backends.rust import names as rust
@@ -362,7 +397,9 @@ class _ReducedIcd:
 
 
 def _of_full_size(node: VariableNode, at: int) -> VariableNode:
-    """Return a variable-length node as one of fixed size, at its position in the longest frame."""
+    """Return a variable-length node as a node of fixed size, at its position in the
+    longest frame.
+    """
     most = size_of(node).most
     if isinstance(node, Scalar):
         return replace(node, at=at, bits=8 * most, length=None)
@@ -370,13 +407,18 @@ def _of_full_size(node: VariableNode, at: int) -> VariableNode:
 
 
 def _sort(name: Name) -> tuple[str, bool]:
-    """Names of one language, and in C those at file scope, correspond in their order. Members come first: they are short."""
+    """Return a key by which names of both sides correspond: language and, in C, file
+    scope. Struct members come first.
+    """
     return name.language, not name.stem
 
 
 @lru_cache(maxsize=4096)
 def _stem(language: str, scope: str) -> str | None:
-    """What a file must mention for a member of that scope to be meant; empty for what stands for itself, None for files."""
+    """Return the name that a source must mention if it uses a member of the scope.
+
+    Empty for names that are unique on their own; None for files.
+    """
     if scope.startswith(("modules of", "files of")):
         return None
     if not scope.startswith("members of "):

@@ -1,6 +1,7 @@
-"""Finds what is the same thing in both ICDs: first by name, then, of what is left, by ids and layout.
+"""Matching of the objects of two ICDs: first by name, then the remaining objects by ids
+and layout.
 
-Everything here is symmetric: from new to old the same pairs are found.
+The matching is symmetric: swapped ICDs result in the same pairs.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from icdgen.diff.similar import letters, likeness, overlap
 from icdgen.icd.lines import Line, lines
 from icdgen.icd.model import CONFIGURATION, Enum, Icd, Member, Message, Node
 
-SAME_NODE = 0.4  # from here on, nodes of different names are one
+SAME_NODE = 0.4  # minimum score of a match of nodes with different names
 SAME_MESSAGE = 0.55
 SAME_ENUM = 0.5
 SAME_FIELD = 0.6
@@ -41,14 +42,14 @@ Thing = TypeVar("Thing")
 Named = TypeVar("Named", bound=_Named)
 Declared = TypeVar("Declared", Enum, Message)
 Paired = TypeVar("Paired", EnumPair, MessagePair)
-Two = tuple[Thing, Thing, float]  # old, new, and how sure it is that they are the same
-Sides = tuple[list[Thing], list[Thing]]  # of old and new
+Two = tuple[Thing, Thing, float]  # old, new, and confidence of the match
+Sides = tuple[list[Thing], list[Thing]]  # of the old and of the new ICD
 Score = Callable[[Thing, Thing], float]
 Keys = Callable[[Thing], Iterable[object]]
 
 
 def match(old: Icd, new: Icd) -> Match:
-    """Both ICDs side by side."""
+    """Return all matched pairs of two ICDs."""
     result = Match(old, new)
     result.nodes = [NodePair(*pair) for pair in _side_by_side(old.nodes, new.nodes, _renamed_nodes)]
     for node, enum in _paired(
@@ -68,17 +69,22 @@ def _side_by_side(
     new: Iterable[Named],
     likely: Callable[[list[Two[Named]], list[Named], list[Named]], list[Two[Named]]],
 ) -> list[tuple[Named | None, Named | None, float]]:
-    """Pairs of equal names, ``likely`` ones of what is left, then what is only on one side."""
-    pairs, left = _by_name(old, new)
-    if all(left):
-        pairs += likely(pairs, *left)
+    """Return pairs of equal names, then ``likely`` pairs of the remaining objects, then
+    objects of one side only.
+    """
+    pairs, remaining = _by_name(old, new)
+    if all(remaining):
+        pairs += likely(pairs, *remaining)
     taken = {id(thing) for pair in pairs for thing in pair[:2]}
-    gone, come = ([thing for thing in things if id(thing) not in taken] for things in left)
-    return [*pairs, *((thing, None, 1.0) for thing in gone), *((None, thing, 1.0) for thing in come)]
+    removed, added = ([thing for thing in things if id(thing) not in taken] for things in remaining)
+    return [*pairs, *((thing, None, 1.0) for thing in removed), *((None, thing, 1.0) for thing in added)]
 
 
 def _by_name(old: Iterable[Named], new: Iterable[Named]) -> tuple[list[Two[Named]], Sides[Named]]:
-    """Pairs of equal names, and what is left on either side. The first of several equal names counts."""
+    """Return pairs of equal names, and the remaining objects of each side.
+
+    Repeated names are matched in order.
+    """
     by_name: dict[str, list[Named]] = {}
     for thing in new:
         by_name.setdefault(thing.name, []).append(thing)
@@ -93,20 +99,21 @@ def _by_name(old: Iterable[Named], new: Iterable[Named]) -> tuple[list[Two[Named
     return pairs, (left, [thing for things in by_name.values() for thing in things])
 
 
-def _alike(
+def _best_pairs(
     old: Sequence[Thing], new: Sequence[Thing], score: Score[Thing], least: float, keys: Keys[Thing]
 ) -> list[Two[Thing]]:
-    """The best pairs of what is left, greedily; ties go to those that stand at like places.
+    """Return the best pairs by score, selected greedily. Ties prefer similar positions.
 
-    Only pairs that have one of their ``keys`` in common are looked at: no others may have a score of ``least`` or more.
+    Only pairs with a common key are scored; `keys` must ensure that other pairs score
+    below ``least``.
     """
-    of_key: dict[object, list[int]] = {}
+    indexes_by_key: dict[object, list[int]] = {}
     for j, other in enumerate(new):
         for key in keys(other):
-            of_key.setdefault(key, []).append(j)
+            indexes_by_key.setdefault(key, []).append(j)
     candidates = []
     for i, thing in enumerate(old):
-        for j in {j for key in keys(thing) for j in of_key.get(key, ())}:
+        for j in {j for key in keys(thing) for j in indexes_by_key.get(key, ())}:
             value = score(thing, new[j])
             if value >= least:
                 candidates.append((-value, abs(i - j), i + j, i, j))
@@ -118,12 +125,13 @@ def _alike(
         if i not in taken_old and j not in taken_new:
             taken_old.add(i)
             taken_new.add(j)
+            # Only equal names have a confidence of 1.
             pairs.append((old[i], new[j], min(0.99, -value)))
     return pairs
 
 
 def _renamed_nodes(pairs: list[Two[Node]], old: list[Node], new: list[Node]) -> list[Two[Node]]:
-    return _alike(old, new, _node_score, SAME_NODE, _node_keys)
+    return _best_pairs(old, new, _node_score, SAME_NODE, _node_keys)
 
 
 def _node_keys(node: Node) -> frozenset[object]:
@@ -136,24 +144,26 @@ def _node_score(old: Node, new: Node) -> float:
 
 
 @dataclass(eq=False)
-class _Left(Generic[Declared]):
-    """A message or an enumeration that has no counterpart of its name, with what is compared more than once."""
+class _Unmatched(Generic[Declared]):
+    """Message or enumeration without a counterpart of the same name, with cached
+    attributes.
+    """
 
     home: NodePair
     thing: Declared
 
     @cached_property
-    def shape(self: _Left[Message]) -> frozenset[tuple[int, int, str]]:
-        """Of a message: where its fields lie, and how they are read."""
+    def shape(self: _Unmatched[Message]) -> frozenset[tuple[int, int, str]]:
+        """Position, width and interpretation of the fields of a message."""
         return frozenset((f.at, f.width, kind(f)) for f in lines(self.thing.layout))
 
     @cached_property
-    def field_names(self: _Left[Message]) -> frozenset[str]:
+    def field_names(self: _Unmatched[Message]) -> frozenset[str]:
         return frozenset(f.name for f in lines(self.thing.layout))
 
     @cached_property
-    def members(self: _Left[Enum]) -> frozenset[tuple[str, str]]:
-        """Of an enumeration."""
+    def members(self: _Unmatched[Enum]) -> frozenset[tuple[str, str]]:
+        """Members of an enumeration."""
         return frozenset((m.values, m.name) for m in self.thing.members)
 
 
@@ -162,10 +172,12 @@ def _paired(
     kind: Callable[..., Paired],
     declared: Callable[[Node], Sequence[Declared]],
     rank: Callable[[Declared], Any],
-    likely: Iterable[tuple[Score[_Left[Declared]], Keys[_Left[Declared]], float]],
+    likely: Iterable[tuple[Score[_Unmatched[Declared]], Keys[_Unmatched[Declared]], float]],
     parts: Callable[[Paired], list[Any]],
 ) -> Iterator[tuple[NodePair, Paired]]:
-    """Pairs of what nodes declare, each with the node of its new side: by name within a node, then by each of the scores."""
+    """Yield pairs of declarations with the node of their new side: by name within a
+    node, then by each score in turn.
+    """
 
     def paired(home: NodePair, node: NodePair, old: object, new: object, sure: float = 1.0) -> tuple[NodePair, Paired]:
         elsewhere = home is not node
@@ -174,39 +186,39 @@ def _paired(
             pair.parts = parts(pair)
         return node, pair
 
-    left_old: list[_Left[Declared]] = []
-    left_new: list[_Left[Declared]] = []
+    left_old: list[_Unmatched[Declared]] = []
+    left_new: list[_Unmatched[Declared]] = []
     for node in nodes:
         pairs, (old, new) = _by_name(
             *(declared(side) if side is not None else () for side in (node.before, node.after))
         )
         yield from (paired(node, node, *pair) for pair in pairs)
-        left_old += [_Left(node, thing) for thing in sorted(old, key=rank)]
-        left_new += [_Left(node, thing) for thing in sorted(new, key=rank)]
+        left_old += [_Unmatched(node, thing) for thing in sorted(old, key=rank)]
+        left_new += [_Unmatched(node, thing) for thing in sorted(new, key=rank)]
     for score, keys, least in likely:
-        taken: set[_Left[Declared]] = set()
-        for mine, theirs, sure in _alike(left_old, left_new, score, least, keys):
-            yield paired(mine.home, theirs.home, mine.thing, theirs.thing, sure)
-            taken |= {mine, theirs}
+        taken: set[_Unmatched[Declared]] = set()
+        for old_item, new_item, sure in _best_pairs(left_old, left_new, score, least, keys):
+            yield paired(old_item.home, new_item.home, old_item.thing, new_item.thing, sure)
+            taken |= {old_item, new_item}
         left_old = [left for left in left_old if left not in taken]
         left_new = [left for left in left_new if left not in taken]
     yield from (paired(left.home, left.home, left.thing, None) for left in left_old)
     yield from (paired(left.home, left.home, None, left.thing) for left in left_new)
 
 
-def _name(left: _Left[Any]) -> Iterable[object]:
+def _name(left: _Unmatched[Any]) -> Iterable[object]:
     return (left.thing.name,)
 
 
-def _moved_enum(old: _Left[Enum], new: _Left[Enum]) -> float:
+def _moved_enum(old: _Unmatched[Enum], new: _Unmatched[Enum]) -> float:
     return 1.0 if old.thing.name == new.thing.name and overlap(old.members, new.members) >= 0.3 else 0.0
 
 
-def _member_keys(left: _Left[Enum]) -> Iterable[object]:
+def _member_keys(left: _Unmatched[Enum]) -> Iterable[object]:
     return [(left.home, *member) for member in left.members] or [(left.home,)]
 
 
-def _renamed_enum(old: _Left[Enum], new: _Left[Enum]) -> float:
+def _renamed_enum(old: _Unmatched[Enum], new: _Unmatched[Enum]) -> float:
     if old.home is not new.home:
         return 0.0
     return 0.85 * overlap(old.members, new.members) + 0.15 * likeness(old.thing.name, new.thing.name)
@@ -219,6 +231,7 @@ def _members(pair: EnumPair) -> list[MemberPair]:
     old = list(pair.before.members) if pair.before else []
     new = list(pair.after.members) if pair.after else []
     pairs: list[MemberPair] = []
+    # From the most to the least reliable key; ambiguous keys match nothing.
     keys: tuple[Callable[[Member], object], ...] = (lambda m: (m.values, m.name), lambda m: m.name, lambda m: m.value)
     for key in keys:
         for member in list(old):
@@ -239,20 +252,22 @@ def _rank(message: Message) -> object:
     return message.kind, message.ids, message.name
 
 
-def _moved_message(left: _Left[Message], right: _Left[Message]) -> float:
+def _moved_message(left: _Unmatched[Message], right: _Unmatched[Message]) -> float:
     same = left.thing.name == right.thing.name and left.thing.kind == right.thing.kind
     return 1.0 if same and (left.thing.ids == right.thing.ids or _layouts_alike(left, right) > 0.5) else 0.0
 
 
-def _message_keys(left: _Left[Message]) -> Iterable[object]:
-    """An id, the name of a field (or that there is none), or the whole layout together with the letters of the name."""
+def _message_keys(left: _Unmatched[Message]) -> Iterable[object]:
+    """Yield the keys of a message: ids, field names (None without fields), and the
+    layout with the letters of the name.
+    """
     yield from ((left.home, place, id) for place, id in enumerate(_ids(left.thing)) if id is not None)
     yield from ((left.home, name) for name in left.field_names or (None,))
     yield left.home, left.shape, letters(left.thing.name)
 
 
-def _renamed_message(left: _Left[Message], right: _Left[Message]) -> float:
-    """The same layout under another name, or name and id."""
+def _renamed_message(left: _Unmatched[Message], right: _Unmatched[Message]) -> float:
+    """Return the score of two messages with different names, and perhaps different ids."""
     old, new = left.thing, right.thing
     if left.home is not right.home or not _same_direction(old, new):
         return 0.0
@@ -260,10 +275,10 @@ def _renamed_message(left: _Left[Message], right: _Left[Message]) -> float:
     names = overlap(left.field_names, right.field_names)
     layout = 0.4 * _layouts_alike(left, right) + 0.2 * names + 0.25 * same_id
     if layout + 0.15 < SAME_MESSAGE:
-        return 0.0  # no likeness of names, which takes long to tell, can make up for it
+        return 0.0  # even equal names could not reach the minimum; their comparison is slow
     alike = likeness(old.name, new.name)
     if not same_id and min(len(lines(old.layout)), len(lines(new.layout))) < 2 and alike < 0.6:
-        return 0.0  # too little to go by
+        return 0.0  # too few fields for a match by layout alone
     return layout + 0.15 * alike
 
 
@@ -275,7 +290,7 @@ def _ids(message: Message) -> tuple[int | None, int | None]:
     return message.telecommand_id, message.telemetry_id
 
 
-def _layouts_alike(old: _Left[Message], new: _Left[Message]) -> float:
+def _layouts_alike(old: _Unmatched[Message], new: _Unmatched[Message]) -> float:
     if old.shape or new.shape:
         return overlap(old.shape, new.shape)
     return 0.75 if old.thing.length == new.thing.length else 0.0
@@ -288,12 +303,14 @@ _MESSAGES_LIKELY = ((_moved_message, _name, SAME_MESSAGE), (_renamed_message, _m
 
 
 def _fields(pair: MessagePair) -> list[FieldPair]:
-    """Those that the ICD has lines for, those of structs wherever they stand."""
+    """Return the pairs of fields that have a line in the ICD; fields of a struct for
+    each use of it.
+    """
     old, new = (
         sorted((line for line in lines(message.layout) if not line.is_count), key=_place) if message else []
         for message in (pair.before, pair.after)
     )
-    pairs = _side_by_side(old, new, lambda known_pairs, *left: _renamed_fields(pair, known_pairs, *left))
+    pairs = _side_by_side(old, new, lambda pairs_by_name, *left: _renamed_fields(pair, pairs_by_name, *left))
     field_pairs = [FieldPair(*sides, owner=pair) for sides in pairs]
     return sorted(field_pairs, key=lambda p: _place(p.before or p.new))
 
@@ -303,18 +320,18 @@ def _place(field: Line) -> tuple[int, str]:
 
 
 def _renamed_fields(
-    pair: MessagePair, known_pairs: list[Two[Line]], old: list[Line], new: list[Line]
+    pair: MessagePair, pairs_by_name: list[Two[Line]], old: list[Line], new: list[Line]
 ) -> list[Two[Line]]:
     spans_old, spans_new = ([position(node, f) for f in rows] for node, rows in
                             ((pair.old_node, old), (pair.new_node, new)))  # fmt: skip
     spans = {id(f): span for f, span in zip((*old, *new), (*spans_old, *spans_new), strict=True)}
-    shifts = _Shifts(known_pairs)
+    shifts = _Shifts(pairs_by_name)
 
     def sense(line: Line) -> object:
         return line.type, line.scale, line.curve, line.unit, line.limits
 
     def keys(line: Line) -> Iterable[object]:
-        """Where it lies, or what it holds."""
+        """Return position and meaning of a field."""
         return spans[id(line)], (line.bits, sense(line))
 
     def score(old_line: Line, new_line: Line) -> float:
@@ -333,18 +350,22 @@ def _renamed_fields(
             return 0.6 + 0.3 * alike
         return 0.8 * alike if alike >= 0.75 else 0.0
 
-    return _alike(old, new, score, SAME_FIELD, keys)
+    return _best_pairs(old, new, score, SAME_FIELD, keys)
 
 
 class _Shifts:
-    """By how much the nearest known field before a place has moved, as seen in the old frame and in the new one."""
+    """Shift in bits of the nearest matched field before a position, seen from the old
+    and from the new frame.
+    """
 
     def __init__(self, pairs: list[Two[Line]]) -> None:
         self.old = sorted((old.at, new.at - old.at) for old, new, _ in pairs)
         self.new = sorted((new.at, new.at - old.at) for old, new, _ in pairs)
 
     def allows(self, old_at: int, new_at: int) -> bool:
-        """Whether a field that moved so far moved with the one before it."""
+        """Return whether a field with these positions moved together with the field
+        before it.
+        """
         for rows, at in ((self.old, old_at), (self.new, new_at)):
             index = bisect_left(rows, (at,))
             if index and rows[index - 1][1] == new_at - old_at:
@@ -353,10 +374,12 @@ class _Shifts:
 
 
 def _in_order(result: Match) -> None:
-    """As the ICDs have them: what is new or there still as in the new one, what is gone at its end."""
+    """Sort the pairs in the order of the new ICD; removed objects come last, in their
+    old order.
+    """
     nodes = (*result.old.nodes, *result.new.nodes)
-    rows = (some for node in nodes for some in (node.messages, node.enums))
-    places = {id(thing): number for some in rows for number, thing in enumerate(some)}
+    rows = (declarations for node in nodes for declarations in (node.messages, node.enums))
+    places = {id(thing): number for declarations in rows for number, thing in enumerate(declarations)}
 
     def rank(pair: DeclaredPair) -> tuple[bool, int]:
         return pair.after is None, places[id(pair.any)]

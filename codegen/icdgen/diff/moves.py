@@ -1,4 +1,4 @@
-"""Fields that lie elsewhere: shifted by something inserted before them, moved as a block, or alone."""
+"""Moved fields: shifted by an insertion before them, moved as a block, or moved alone."""
 
 from __future__ import annotations
 
@@ -11,31 +11,36 @@ from icdgen.icd.lines import Line
 
 @dataclass
 class Move:
-    """Neighbouring fields that moved by the same number of bits, and what before them came, went or grew."""
+    """Adjacent fields that moved by the same number of bits, and the added, removed or
+    resized fields before them.
+    """
 
     fields: list[FieldPair]
-    by: int  # bits; positive: towards the end
+    by: int  # in bits; positive towards the end
     gained: list[FieldPair] = field(default_factory=list)
     lost: list[FieldPair] = field(default_factory=list)
     resized: list[FieldPair] = field(default_factory=list)
-    reserved: bool = False  # reserved bits came or went before them, and the frame changed its length
+    reserved: bool = False  # reserved bits were added or removed before them, and the length of the frame changed
 
     @property
     def is_shift(self) -> bool:
-        """Whether the fields only made room, or took it."""
+        """Whether the fields moved because of a change before them."""
         return bool(self.gained or self.lost or self.resized or self.reserved)
 
 
 @dataclass
 class Moves:
-    """All moves of a message. ``causes`` are fields that came or went and made others move."""
+    """Moves of a message.
+
+    ``causes``: added or removed fields that moved other fields.
+    """
 
     moves: list[Move] = field(default_factory=list)
     causes: set[int] = field(default_factory=set)  # id(pair)
 
 
 class _Order:
-    """The fields that are in both ICDs, as they stand in the frame of one."""
+    """Fields that exist in both ICDs, in the order of one frame."""
 
     def __init__(self, pairs: list[FieldPair], side: Callable[[FieldPair], Line]) -> None:
         self.rows = sorted(pairs, key=lambda pair: (side(pair).at, side(pair).name))
@@ -47,7 +52,7 @@ class _Order:
 
 
 def moves(message: MessagePair) -> Moves:
-    """The moves within a message that is in both ICDs."""
+    """Return the moves within a message that exists in both ICDs."""
     result = Moves()
     if not any(pair.moved for pair in message.common):
         return result
@@ -68,7 +73,9 @@ def moves(message: MessagePair) -> Moves:
 
 
 def _runs(rows: list[FieldPair], old: _Order, new: _Order) -> list[list[FieldPair]]:
-    """Split where another field lies between, in the old frame and in the new one."""
+    """Split fields into groups of adjacent fields, adjacent in the old or in the new
+    frame.
+    """
     runs: list[list[FieldPair]] = []
     for pair in rows:
         last = runs[-1][-1] if runs else None

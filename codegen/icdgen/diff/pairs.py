@@ -1,4 +1,7 @@
-"""Old and new, side by side. A thing that is only in one of them has None on the other side."""
+"""Pairs of old and new objects.
+
+An object that exists in one ICD only has None on the other side.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ from icdgen.icd.lines import Line
 from icdgen.icd.model import Enum, Erratum, Icd, Member, Message, Node, Struct
 from icdgen.layout import Piece, pieces_at
 
-# What a key of an ICD is called in the output of ``show``.
+# Names of ICD keys in the output of ``icdgen show``, which is a possible input of the diff.
 _SHOWN = {
     "at": ("offset",),
     "formula": ("scale", "coefficients", "points"),
@@ -32,30 +35,31 @@ Row = TypeVar("Row")
 
 @dataclass(eq=False)
 class SideBySide(Generic[Thing]):
-    """Two things that are the same thing in both ICDs. ``sure`` is 1 where they have the same name."""
+    """Object in both ICDs.
+
+    ``sure``: confidence of the match, 1 for equal names.
+    """
 
     before: Thing | None
     after: Thing | None
     sure: float = 1.0
-    is_of_another_node: bool = field(
-        default=False, kw_only=True
-    )  # a message or an enumeration that another one declares now
+    is_of_another_node: bool = field(default=False, kw_only=True)  # declaration that moved to another node
 
     @property
     def old(self) -> Thing:
-        """What it was, for those who know that it was there."""
-        assert self.before is not None, "asked for the old side of what came"
+        """Old side. The caller ensures that it exists."""
+        assert self.before is not None, "an added object has no old side"
         return self.before
 
     @property
     def new(self) -> Thing:
-        """What it is, for those who know that it is there."""
-        assert self.after is not None, "asked for the new side of what went"
+        """New side. The caller ensures that it exists."""
+        assert self.after is not None, "a removed object has no new side"
         return self.after
 
     @property
     def changed(self) -> bool:
-        """Whether anything at all differs."""
+        """Whether there is any difference."""
         return self.before != self.after
 
     @property
@@ -64,27 +68,31 @@ class SideBySide(Generic[Thing]):
 
     @property
     def any(self) -> Thing:
-        """The new one, or the old one where there is no new one."""
+        """New side if it exists, otherwise the old side."""
         return self.old if self.after is None else self.after
 
     @property
     def is_of_struct(self) -> bool:
-        """Whether it is a field whose names a struct declares, and no message: see DIF313."""
+        """Whether it is a field that a struct declares.
+
+        Its names belong to the struct; see DIF313.
+        """
         return False
 
     def where(self) -> Where:
         raise NotImplementedError
 
     def places(self, keys: tuple[str, ...]) -> Places:
-        """Where the first of the keys that is there stands, in old and new."""
+        """Return the places of the first existing key in the old and in the new ICD."""
         return place_of(self.before, keys), place_of(self.after, keys)
 
 
 @dataclass(eq=False)
 class _DeclaredPair(SideBySide[Thing], Generic[Thing, Part]):
-    """What a node declares: ``old_node`` and ``new_node`` are where; the same where it is only on one side.
+    """Message or enumeration with the nodes that declare it.
 
-    ``parts`` are its fields or members.
+    ``old_node`` and ``new_node`` are equal if it exists on one side only. ``parts`` are
+    its fields or members.
     """
 
     old_node: Node = field(kw_only=True)
@@ -93,12 +101,15 @@ class _DeclaredPair(SideBySide[Thing], Generic[Thing, Part]):
 
     @property
     def node(self) -> Node:
-        """The node that declares it."""
+        """Node that declares it."""
         return self.old_node if self.after is None else self.new_node
 
     @property
     def has_another_vocabulary(self) -> bool:
-        """Whether words are split in another way, so that its names may differ."""
+        """Whether the vocabularies, which split words of names, differ.
+
+        Then generated names may differ.
+        """
         return self.old_node.vocabulary != self.new_node.vocabulary
 
 
@@ -123,7 +134,10 @@ class FieldPair(SideBySide[Line]):
 
     @cached_property
     def same_bits(self) -> bool:
-        """Whether both lie on the same bits, however these are numbered; of a variable-length part, those of one element."""
+        """Whether both sides occupy the same bits, independent of bit numbering.
+
+        For a variable-length part, the bits of one element are compared.
+        """
         was, now = (
             position(node, line, self.is_open)
             for node, line in ((self.owner.old_node, self.old), (self.owner.new_node, self.new))
@@ -132,7 +146,7 @@ class FieldPair(SideBySide[Line]):
 
     @cached_property
     def is_open(self) -> bool:
-        """Whether it is in a variable-length part of its message on one side."""
+        """Whether the field belongs to a variable-length part on either side."""
         sides = (self.owner.old, self.old), (self.owner.new, self.new)
         return any(line.levels[0].node is node for message, line in sides for node in message.layout.sequence)
 
@@ -142,7 +156,7 @@ class FieldPair(SideBySide[Line]):
 
     @property
     def moved(self) -> bool:
-        """Whether it lies elsewhere for another reason than the order of bytes or bits."""
+        """Whether the position differs for a reason other than byte or bit order."""
         return self.old.at != self.new.at and not self.same_bits
 
 
@@ -167,7 +181,7 @@ class MessagePair(_DeclaredPair[Message, FieldPair]):
 
     @property
     def common(self) -> list[FieldPair]:
-        """Fields that are in both, in the order of the old frame."""
+        """Fields of both sides, in the order of the old frame."""
         return [pair for pair in self.parts if pair.both]
 
     @property
@@ -180,20 +194,23 @@ class MessagePair(_DeclaredPair[Message, FieldPair]):
 
     @property
     def reordered(self) -> bool:
-        """Whether bytes or bits are in another order."""
+        """Whether byte or bit order differs."""
         return orders(self.old_node) != orders(self.new_node)
 
 
 @dataclass(eq=False)
 class NodePair(SideBySide[Node]):
-    """``messages`` and ``enums`` are those that the node declares now, or declared."""
+    """Node in both ICDs.
+
+    ``messages`` and ``enums``: declarations of the node on either side.
+    """
 
     messages: list[MessagePair] = field(default_factory=list)
     enums: list[EnumPair] = field(default_factory=list)
 
     @property
     def declared(self) -> Sequence[DeclaredPair]:
-        """Its messages, then its enumerations."""
+        """Messages, then enumerations."""
         return [*self.messages, *self.enums]
 
     def where(self) -> Where:
@@ -201,13 +218,13 @@ class NodePair(SideBySide[Node]):
 
 
 DeclaredPair = MessagePair | EnumPair
-IdentifiedPair = MessagePair | FieldPair | EnumPair | MemberPair  # what has names in generated code
+IdentifiedPair = MessagePair | FieldPair | EnumPair | MemberPair  # pairs with names in generated code
 Pair = NodePair | MessagePair | FieldPair | EnumPair | MemberPair
 
 
 @dataclass(eq=False)
 class Match:
-    """The nodes side by side, and the pair of every message and enumeration, by identity."""
+    """Pairs of nodes, and the pair of each message and enumeration by identity."""
 
     old: Icd
     new: Icd
@@ -216,7 +233,7 @@ class Match:
     enums: dict[int, EnumPair] = field(default_factory=dict)
 
     def same_enum(self, old: Enum | None, new: Enum | None) -> bool:
-        """Whether both are the same enumeration, renamed or not."""
+        """Return whether both are the same enumeration, even if it was renamed."""
         if old is None or new is None:
             return old is new
         return id(old) in self.enums and self.enums[id(old)] is self.enums.get(id(new))
@@ -230,9 +247,10 @@ def orders(node: Node) -> tuple[str, str]:
 
 
 def position(node: Node, line: Line, first_only: bool = False) -> Position:
-    """Return the bits that a field has, comparable between nodes of different byte and bit order.
+    """Return the bits of a field in a form that is comparable between nodes of
+    different byte and bit order.
 
-    With `first_only` those in the first element of a variable-length part.
+    With ``first_only``, bits of the first element of a variable-length part.
     """
     if line.derived is not None:
         return ()
@@ -245,7 +263,9 @@ def position(node: Node, line: Line, first_only: bool = False) -> Position:
 
 
 def kind(line: Line) -> str:
-    """How the bits are read: as an unsigned or signed number, as a float, as bytes."""
+    """Return the interpretation of the bits: ``unsigned``, ``int``, ``float`` or
+    ``bytes``.
+    """
     if line.is_bytes:
         return "bytes"
     if line.type in ("uint", "int", "enum", "bool"):
@@ -256,7 +276,9 @@ def kind(line: Line) -> str:
 def differing(
     old: Iterable[Row], new: Iterable[Row], key: Callable[[Row], Any]
 ) -> Iterator[tuple[Any, Row | None, Row | None]]:
-    """The rows of a list that differ, by their key and in its order; None where a side has no such row."""
+    """Yield differing rows of two lists by key, in the order of the keys; None for a
+    missing row.
+    """
     before, after = ({key(row): row for row in side} for side in (old, new))
     for name in sorted(before.keys() | after.keys()):
         if before.get(name) != after.get(name):
@@ -267,7 +289,10 @@ def place_of(
     thing: Node | Message | Line | LayoutNode | Struct | Enum | Member | Loggable | Erratum | None,
     keys: tuple[str, ...],
 ) -> Place | None:
-    """Where the first key stands that is there, of a node in its head; the thing itself if none is."""
+    """Return the place of the first existing key, otherwise of the object itself.
+
+    For a node, the keys of its `node` section are searched.
+    """
     if thing is None:
         return None
     source = thing.source.get("node", thing.source) if isinstance(thing, Node) else thing.source

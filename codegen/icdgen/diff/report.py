@@ -1,4 +1,4 @@
-"""Everything that a report of a comparison tells, finished."""
+"""Content of a report on a comparison."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from icdgen.diff.accepted import Acceptance, sort
+from icdgen.diff.accepted import Acceptance, sort_changes
 from icdgen.diff.change import Change
 from icdgen.diff.compare import Comparison, compare
 from icdgen.diff.compatibility import Direction, directions
@@ -20,7 +20,11 @@ ADDITIONS = "additions"
 
 @dataclass
 class Report:
-    """``changes`` are those that nobody accepted. Places are as a user knows them."""
+    """Report on a comparison.
+
+    ``changes`` contains the changes that are not accepted. Places refer to files as the
+    user named them.
+    """
 
     old: Side
     new: Side
@@ -30,34 +34,37 @@ class Report:
     stale: list[Acceptance]
     directions: tuple[Direction, ...]
     step: Step
-    uses: Sequence[Use] | None = None  # None: nobody asked
+    uses: Sequence[Use] | None = None  # None: not requested
 
     def of_layer(self, layer: str) -> list[Change]:
         return [change for change in self.changes if change.layer == layer]
 
     def counts(self) -> dict[str, int]:
-        """Changes of each layer."""
-        found = Counter(change.layer for change in self.changes)
-        return {layer: found[layer] for layer in LAYERS}
+        """Return the number of changes of each layer."""
+        counts = Counter(change.layer for change in self.changes)
+        return {layer: counts[layer] for layer in LAYERS}
 
     def additions(self, layer: str) -> int:
-        """How many of the layer's changes are additions."""
+        """Return the number of additions of a layer."""
         return sum(1 for change in self.of_layer(layer) if change.addition)
 
-    def fails(self, asked: Sequence[str]) -> list[Change]:
-        """Changes of the layers asked for; additions only if they are asked for too."""
-        return [c for c in self.changes if (ADDITIONS if c.addition else c.layer) in asked]
+    def fails(self, layers: Sequence[str]) -> list[Change]:
+        """Return the changes of the given layers that make the command fail.
+
+        Additions count only if ``additions`` is given.
+        """
+        return [c for c in self.changes if (ADDITIONS if c.addition else c.layer) in layers]
 
 
 def _placed(change: Change, old: Side, new: Side) -> Change:
-    """With places as a user knows them."""
+    """Return the change with places in files as the user named them."""
     places = old.place(change.old), new.place(change.new)
     return change if places == (change.old, change.new) else replace(change, old=places[0], new=places[1])
 
 
 def make(old: Side, new: Side, acceptances: Sequence[Acceptance] = ()) -> Report:
-    """Compares two sides."""
+    """Return the report on two sides."""
     comparison = compare(old.icd, new.icd)
     comparison.changes = [_placed(change, old, new) for change in comparison.changes]
-    sorted_changes = sort(comparison.changes, acceptances)
+    sorted_changes = sort_changes(comparison.changes, acceptances)
     return Report(old, new, comparison, *sorted_changes, directions(comparison), step(comparison.changes))

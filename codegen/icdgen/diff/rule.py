@@ -1,4 +1,4 @@
-"""What a rule of the diff is, and how the modules of ``changes`` register theirs."""
+"""Rules of the diff and their registration by the modules of ``changes``."""
 
 from __future__ import annotations
 
@@ -13,47 +13,53 @@ from icdgen.diff.where import Places, Where
 from icdgen.icd.rules import pages
 
 
-class Found(NamedTuple):
-    """What a check has to say about a pair. ``keys`` are those of the ICD that differ, the most telling first."""
+class CheckResult(NamedTuple):
+    """Result of a check for a pair.
+
+    ``keys``: differing keys of the ICD, the most significant first.
+    """
 
     message: str
     keys: tuple[str, ...] = ()
     was: str = ""
     now: str = ""
     details: tuple[str, ...] = ()
-    severity: str | None = None  # where it differs from the rule's
+    severity: str | None = None  # None: severity of the rule
     addition: bool | None = None
-    where: Where | None = None  # where it is not the pair's
-    places: Places | None = None  # where they are not those of the keys
-    pair: Pair | None = None  # where both ICDs were looked at, and not one pair
-    code: str = ""  # of the rule, where a check is registered for several
+    where: Where | None = None  # None: location of the pair
+    places: Places | None = None  # None: places of the keys
+    pair: Pair | None = None  # of a check of the whole ICDs: pair of the finding
+    code: str = ""  # code of the rule, if a check is registered for several rules
 
 
-Check = Callable[..., Iterator[Found]]
+Check = Callable[..., Iterator[CheckResult]]
 PAGES = Path(__file__).parent / "changes"
 
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """A kind of change. The first digit of its code is the layer: 1 wire, 2 meaning, 3 source, 4 text."""
+    """Rule of the diff: a kind of change.
+
+    The first digit of its code is the layer: 1 wire, 2 meaning, 3 source, 4 text.
+    """
 
     code: str
     layer: str  # one of `LAYERS`
-    of: tuple[str, ...]  # what it looks at: "icd", "node", "message", "field", "enum", "member"
+    of: tuple[str, ...]  # kinds of pairs that it checks: "icd", "node", "message", "field", "enum", "member"
     theme: str
     check: Check
     severity: str = "error"  # "error" | "warning" | "note"
-    addition: bool = False  # something that nobody relied upon came
-    when: str = "both"  # or "gone", "come": only in the old ICD, only in the new one
+    addition: bool = False  # new object that existing software does not depend on
+    when: str = "both"  # pairs on both sides, "gone": only in the old ICD, "come": only in the new one
 
     @property
     def page(self) -> pages.Page:
-        """Title, reason, and the same ICD before and after."""
+        """Page of the rule: title, reason, and an example ICD before and after."""
         return pages.of(self.theme, PAGES)[self.code]
 
     @property
     def title(self) -> str:
-        """The rule in one line."""
+        """Title of the rule."""
         return self.page.title
 
 
@@ -63,9 +69,11 @@ REGISTERED: dict[str, Rule] = {}
 def rule(
     code: str, *of: str, severity: str = "error", addition: bool = False, when: str = "both"
 ) -> Callable[[Check], Check]:
-    """Registers the decorated function, which looks at one pair of things; its module's name is the theme.
+    """Register the decorated function as check of a rule. The name of its module is the
+    theme.
 
-    A function that tells several kinds of change from one another is registered for each, and names the code in what it finds.
+    A function that reports several kinds of changes is registered for each, and its
+    findings name their code.
     """
 
     def register(check: Check) -> Check:
@@ -79,6 +87,9 @@ def rule(
 
 
 def explain(code: str) -> str:
-    """The page of a rule in Markdown. Raises `KeyError`."""
-    one = REGISTERED[code]
-    return pages.text(one.code, f"{one.layer}, {one.severity}", one.page, ("Before", "After"))
+    """Return the page of a rule in Markdown.
+
+    Raises `KeyError`.
+    """
+    rule = REGISTERED[code]
+    return pages.text(rule.code, f"{rule.layer}, {rule.severity}", rule.page, ("Before", "After"))

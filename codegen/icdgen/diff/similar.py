@@ -1,4 +1,4 @@
-"""How alike two names are, and whether the second still says what the first said."""
+"""Similarity of names in spelling and in meaning."""
 
 from __future__ import annotations
 
@@ -7,41 +7,49 @@ from functools import lru_cache
 from icdgen.icd.model import Enum
 from icdgen.naming import words
 
-_SHORTEST = 5  # letters of a word in which a slip of the pen is told from another word
+_SHORTEST = 5  # minimum letters of a word for the recognition of typing errors
 
 
-def likeness(one: str, other: str) -> float:
-    """0: nothing in common, 1: the same words. Symmetric: the share of pairs of letters that both have."""
-    first, second = letters(one), letters(other)
+def likeness(first_name: str, second_name: str) -> float:
+    """Return the similarity of two names from 0 (nothing in common) to 1 (same words).
+
+    The measure is symmetric: the Dice coefficient of their pairs of letters.
+    """
+    first, second = letters(first_name), letters(second_name)
     return 2 * len(first & second) / (len(first) + len(second)) if first or second else 1.0
 
 
 @lru_cache(maxsize=1 << 18)
 def letters(name: str) -> frozenset[str]:
-    """The pairs of letters of a name's words, by which `likeness` goes."""
+    """Return the pairs of letters of the words of a name, as compared by `likeness`."""
     text = f" {' '.join(words(name))} "
     return frozenset(text[i : i + 2] for i in range(len(text) - 1)) if text.strip() else frozenset()
 
 
-def overlap(one: frozenset[object], other: frozenset[object]) -> float:
-    """Share of what both have in what either has; a half where there is nothing to compare."""
-    return len(one & other) / len(one | other) if one or other else 0.5
+def overlap(first: frozenset[object], second: frozenset[object]) -> float:
+    """Return the Jaccard index of two sets (common elements by all elements); 0.5 for
+    two empty sets.
+    """
+    return len(first & second) / len(first | second) if first or second else 0.5
 
 
 def other_senses(old: Enum, new: Enum) -> list[int]:
-    """Values to which both give names of another sense; of what is so for a range, where it begins or ends."""
-    ends = sorted({value for enum in (old, new) for one in enum.members for value in (one.value, one.last)})
+    """Return the values whose names have different meanings; for ranges, their first
+    and last value.
+    """
+    ends = sorted({value for enum in (old, new) for member in enum.members for value in (member.value, member.last)})
     named = ((value, old.member_of(value), new.member_of(value)) for value in ends)
     return [value for value, was, now in named if was and now and not same_sense(was.name, now.name)]
 
 
 @lru_cache(maxsize=1 << 18)
-def same_sense(one: str, other: str) -> bool:
-    """Whether the names differ only in spelling: case, punctuation, spaces, or one slip of the pen in a long word.
+def same_sense(first_name: str, second_name: str) -> bool:
+    """Return whether two names differ only in spelling: case, punctuation, order of
+    words, or one typing error in a long word.
 
-    Cautious: what could be another word is another sense.
+    Cautious: a possible other word counts as another meaning.
     """
-    first, second = words(one), words(other)
+    first, second = words(first_name), words(second_name)
     if "".join(first) == "".join(second) or sorted(first) == sorted(second):
         return True
     if len(first) != len(second):
@@ -49,24 +57,35 @@ def same_sense(one: str, other: str) -> bool:
     return all(a == b or _is_slip(a, b) for a, b in zip(first, second, strict=True))
 
 
-def extends(one: str, other: str) -> bool:
-    """Whether one name only says more than the other: ``Mode`` and ``Control Mode``."""
-    first, second = sorted((words(one), words(other)), key=len)
-    rest = iter(second)
-    return bool(first) and not _NEGATIONS.intersection(second) and all(word in rest for word in first)
+def extends(first_name: str, second_name: str) -> bool:
+    """Return whether one name is the other with additional words: ``Mode`` and
+    ``Control Mode``.
+    """
+    first, second = sorted((words(first_name), words(second_name)), key=len)
+    remaining_words = iter(second)
+    return bool(first) and not _NEGATIONS.intersection(second) and all(word in remaining_words for word in first)
 
 
+# Additional words that reverse the meaning.
 _NEGATIONS = frozenset("no not non un in dis de off without anti negative inverse inverted".split())
 
 
-def _is_slip(one: str, other: str) -> bool:
-    """One letter more, less, or two in the wrong order, within a word; s for z. Never in a number or at the beginning."""
-    if min(len(one), len(other)) < _SHORTEST or one[0] != other[0] or any(c.isdigit() for c in one + other):
+def _is_slip(first: str, second: str) -> bool:
+    """Return whether two words differ by one typing error: an additional, missing or
+    swapped letter, or s for z.
+
+    Numbers and first letters must be equal.
+    """
+    if min(len(first), len(second)) < _SHORTEST or first[0] != second[0] or any(c.isdigit() for c in first + second):
         return False
-    if len(one) == len(other):
-        apart = [i for i, (a, b) in enumerate(zip(one, other, strict=True)) if a != b]
-        if len(apart) == 1:
-            return {one[apart[0]], other[apart[0]]} == {"s", "z"}
-        return len(apart) == 2 and one[apart[0]] == other[apart[1]] and one[apart[1]] == other[apart[0]]
-    short, long = sorted((one, other), key=len)
+    if len(first) == len(second):
+        differences = [i for i, (a, b) in enumerate(zip(first, second, strict=True)) if a != b]
+        if len(differences) == 1:
+            return {first[differences[0]], second[differences[0]]} == {"s", "z"}
+        return (
+            len(differences) == 2
+            and first[differences[0]] == second[differences[1]]
+            and first[differences[1]] == second[differences[0]]
+        )
+    short, long = sorted((first, second), key=len)
     return len(long) - len(short) == 1 and any(long[:i] + long[i + 1 :] == short for i in range(len(long)))

@@ -1,4 +1,4 @@
-"""Which lines of a user's own sources use names that a change touches."""
+"""Uses of changed names in the user's sources."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ SUFFIXES = {
     **dict.fromkeys((".py", ".pyi"), "python"),
     ".rs": "rust",
 }
-MARK = "enerated by icdgen"  # at the beginning of a file that icdgen wrote; nobody's own source
+MARK = "enerated by icdgen"  # at the beginning of a generated file, which is not searched
 _HEAD = 400
-_MOST = 8_000_000  # bytes of a source file that are looked at
+_MOST = 8_000_000  # bytes of a source file that are searched
 _SKIPPED = frozenset((".git", ".hg", ".svn", "node_modules", "__pycache__", ".venv", "target"))
 
 _NAME = r"(?P<name>[A-Za-z_][A-Za-z0-9_]*)"
@@ -32,50 +32,56 @@ _TEXT = (
     r"""(?:\"{3}(?:\\.|[^\\])*?(?:\"{3}|\Z)|'{3}(?:\\.|[^\\])*?(?:'{3}|\Z)|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*')"""
 )
 _PYTHON = re.compile(rf"#[^\n]*|(?P<format>[rR]?[fF][rR]?{_TEXT})|[rbuRBU]{{0,2}}{_TEXT}|{_NAME}", re.DOTALL)
-_FORMATTED = re.compile(r"(?<!\{)\{(?!\{)[^{}]*")  # what an f-string computes
+_FORMATTED = re.compile(r"(?<!\{)\{(?!\{)[^{}]*")  # expressions of an f-string
 _INNER = re.compile(_NAME)
 _LEXERS = {"c": _C_LIKE, "rust": _C_LIKE, "python": _PYTHON}
 
 
 class Use(NamedTuple):
-    """A name of generated code in a user's source, and what changed about it."""
+    """Use of a generated name in a source of the user, with the changes of that name."""
 
     file: str
     line: int
     column: int
     name: str
-    text: str  # the line
+    text: str  # source line
     changes: tuple[Change, ...]
 
     @property
     def codes(self) -> list[str]:
-        """Kinds of the changes, each once."""
+        """Codes of the changes, without duplicates."""
         return list(dict.fromkeys(change.code for change in self.changes))
 
     @property
     def messages(self) -> list[str]:
-        """What the changes say, each once."""
+        """Messages of the changes, without duplicates."""
         return list(dict.fromkeys(change.message for change in self.changes))
 
 
-_Wanted = dict[str, dict[str, list[Change]]]  # name -> stem of what must be mentioned, too -> what changed about it
+_ChangesByName = dict[str, dict[str, list[Change]]]  # name -> stem that must be mentioned too -> changes
 
 
 def uses(comparison: Comparison, changes: Iterable[Change], paths: Iterable[Path]) -> list[Use]:
-    """Every use of a touched name, by file and line. Comments and strings are passed over. Raises `UserError`."""
-    wanted = _wanted(comparison, changes)
-    found: list[Use] = []
+    """Return all uses of changed names, by file and line.
+
+    Comments and strings are ignored. Raises `UserError`.
+    """
+    changed_names = _changed_names(comparison, changes)
+    results: list[Use] = []
     for path in dict.fromkeys(file for top in paths for file in _sources(top)):
         language = SUFFIXES[path.suffix.lower()]
-        if wanted[language]:
-            found += _in_file(path, language, wanted[language])
-    return found
+        if changed_names[language]:
+            results += _in_file(path, language, changed_names[language])
+    return results
 
 
-def _wanted(comparison: Comparison, changes: Iterable[Change]) -> dict[str, _Wanted]:
-    """By language: what changed about its names. Changes of words touch nobody's code."""
+def _changed_names(comparison: Comparison, changes: Iterable[Change]) -> dict[str, _ChangesByName]:
+    """Return the changed names by language.
+
+    Changes of the text layer affect no sources.
+    """
     old = comparison.context.generated.everything
-    result: dict[str, _Wanted] = {language: {} for language in _LEXERS}
+    result: dict[str, _ChangesByName] = {language: {} for language in _LEXERS}
     for change in changes:
         if not change.breaks:
             continue
@@ -105,7 +111,7 @@ def _sources(top: Path) -> Iterator[Path]:
         yield from (Path(folder, name) for name in sorted(files) if Path(name).suffix.lower() in SUFFIXES)
 
 
-def _in_file(path: Path, language: str, wanted: _Wanted) -> Iterator[Use]:
+def _in_file(path: Path, language: str, changed_names: _ChangesByName) -> Iterator[Use]:
     try:
         with open(path, "rb") as file:
             text = file.read(_MOST).decode("utf-8", "replace")
@@ -114,11 +120,11 @@ def _in_file(path: Path, language: str, wanted: _Wanted) -> Iterator[Use]:
     if MARK in text[:_HEAD]:
         return
     tokens = list(_tokens(text, _LEXERS[language]))
-    known = {name for name, _ in tokens}
+    mentioned = {name for name, _ in tokens}
     starts = [0, *(match.end() for match in re.finditer("\n", text))]
     for name, start in tokens:
-        touched = wanted.get(name, {}).items()
-        rows = [changes for stem, changes in touched if not stem or _mentions(language, known, stem)]
+        touched = changed_names.get(name, {}).items()
+        rows = [changes for stem, changes in touched if not stem or _mentions(language, mentioned, stem)]
         if rows:
             number = bisect_right(starts, start)
             line = text[starts[number - 1] :].split("\n", 1)[0].rstrip("\r")
@@ -126,7 +132,7 @@ def _in_file(path: Path, language: str, wanted: _Wanted) -> Iterator[Use]:
 
 
 def _tokens(text: str, lexer: re.Pattern[str]) -> Iterator[tuple[str, int]]:
-    """Every name of the code and where it begins."""
+    """Yield each name in the code with its position."""
     for match in lexer.finditer(text):
         if match["name"]:
             yield match["name"], match.start("name")
@@ -135,8 +141,8 @@ def _tokens(text: str, lexer: re.Pattern[str]) -> Iterator[tuple[str, int]]:
                 yield from ((m["name"], m.start()) for m in _INNER.finditer(text, part.start(), part.end()))
 
 
-def _mentions(language: str, known: set[str], stem: str) -> bool:
-    """Whether the file speaks of the type that the member belongs to."""
+def _mentions(language: str, mentioned: set[str], stem: str) -> bool:
+    """Return whether the source mentions the type of a member."""
     if language != "c":
-        return stem in known
-    return any(name == stem or name.lower().startswith(f"{stem}_") for name in known)
+        return stem in mentioned
+    return any(name == stem or name.lower().startswith(f"{stem}_") for name in mentioned)

@@ -1,4 +1,4 @@
-"""Which number of the version of the generated packages must be counted up, and why."""
+"""Semantic version step of the generated packages."""
 
 from __future__ import annotations
 
@@ -13,7 +13,11 @@ MAJOR, MINOR, PATCH, NONE = "major", "minor", "patch", "none"
 
 
 class Step(NamedTuple):
-    """``step`` is ``major``, ``minor``, ``patch`` or ``none``; ``deciding`` are the codes of the changes that decide."""
+    """Version step with its reason.
+
+    ``step``: ``major``, ``minor``, ``patch`` or ``none``. ``deciding``: codes of the
+    changes that decide.
+    """
 
     step: str
     reason: str
@@ -21,13 +25,13 @@ class Step(NamedTuple):
 
 
 def step(changes: list[Change]) -> Step:
-    """The step by Semantic Versioning. What someone accepted is still a change."""
+    """Return the step of Semantic Versioning. Accepted changes count too."""
     breaking = [change for change in changes if change.breaks]
     additions = [change for change in changes if change.addition]
     if breaking:
         counts = Counter(change.layer for change in breaking)
-        said = [f"{count(counts[layer], 'change')} of {_OF[layer]}" for layer in LAYERS if counts[layer]]
-        return Step(MAJOR, f"{listing(said)}, the first: {breaking[0].message}", _codes(breaking))
+        counts_by_layer = [f"{count(counts[layer], 'change')} of {_OF[layer]}" for layer in LAYERS if counts[layer]]
+        return Step(MAJOR, f"{listing(counts_by_layer)}, the first: {breaking[0].message}", _codes(breaking))
     if additions:
         reason = f"nothing breaks, {count(len(additions), 'addition')}, the first: {additions[0].message}"
         return Step(MINOR, reason, _codes(additions))

@@ -1,4 +1,4 @@
-"""What a change is about, and where that stands."""
+"""Subject of a change and its places."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from typing import NamedTuple
 
 from icdgen.diagnostics import Place
 
-Places = tuple[Place | None, Place | None]  # in the old ICD and in the new one
+Places = tuple[Place | None, Place | None]  # in the old and in the new ICD
 
 
 class Where(NamedTuple):
-    """What a change is about, by the names that the new ICD has for it, else the old."""
+    """Subject of a change by the names of the new ICD, otherwise of the old one."""
 
     node: str = ""
     message: str = ""

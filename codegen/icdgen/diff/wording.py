@@ -1,4 +1,4 @@
-"""Turns of phrase that changes share."""
+"""Phrases that messages of changes share."""
 
 from __future__ import annotations
 
@@ -12,35 +12,39 @@ from icdgen.icd.formula import Scale
 from icdgen.icd.lines import Line
 from icdgen.icd.rules.wording import count, listing, quote
 
-MOST = 4  # things that are named before the rest is counted
+MOST = 4  # maximum number of names before the remaining ones are counted
 
 
 def some(names: Sequence[str], what: str = "") -> str:
-    """`` `a`, `b` and 12 more``: a few of the names, and how many there are besides."""
+    """Return some of the names and the number of the remaining ones: `` `a`, `b` and 12
+    more``.
+    """
     shown = [quote(name) for name in names[:MOST]]
-    rest = len(names) - len(shown)
-    text = listing([*shown, f"{rest} more"] if rest else shown) if shown else ""
-    return f"{text} ({count(len(names), what)})" if what and rest else text
+    remaining = len(names) - len(shown)
+    text = listing([*shown, f"{remaining} more"] if remaining else shown) if shown else ""
+    return f"{text} ({count(len(names), what)})" if what and remaining else text
 
 
 def bits(number: int) -> str:
-    """``16 bits``, ``2 bytes``"""
+    """Return a size: ``16 bits``, ``2 bytes``."""
     return count(number // 8, "byte") if number and number % 8 == 0 else count(number, "bit")
 
 
 def span(field: Line) -> str:
-    """``bits 16 to 31``"""
+    """Return the bits of a field: ``bits 16 to 31``."""
     return bit_range(field.at, field.width)
 
 
 def number(value: Fraction | int | None) -> str:
-    """Exact: ``0.01``, ``1/3``; empty where there is none."""
+    """Return an exact number: ``0.01``, ``1/3``; empty for None."""
     return "" if value is None else factor_text(Fraction(value))
 
 
 @lru_cache(maxsize=4096)
 def formula(scale: Scale | Curve | None) -> str:
-    """The formula in one spelling: ``raw``, ``raw*0.01``, ``raw*0.5 - 40``, ``3e-06*raw^2 + raw*0.02 - 40``."""
+    """Return a formula in a uniform notation: ``raw``, ``raw*0.01``, ``raw*0.5 - 40``,
+    ``3e-06*raw^2 + raw*0.02 - 40``.
+    """
     if scale is None:
         return "raw"
     if isinstance(scale, Curve):
@@ -64,7 +68,9 @@ def _polynomial(curve: Curve) -> str:
 
 
 def type_of(field: Line) -> str:
-    """``16-bit int``, ``4-bit enum Mode``, ``4-bit signed enum Mode``, ``6 elements, 16-bit int``"""
+    """Return the type of a field: ``16-bit int``, ``4-bit enum Mode``, ``4-bit signed
+    enum Mode``, ``6 elements, 16-bit int``.
+    """
     return f"{count(field.count, 'element')}, {_type_of(field)}" if field.count else _type_of(field)
 
 
@@ -75,10 +81,10 @@ def _type_of(field: Line) -> str:
 
 
 def read_as(field: Line) -> str:
-    """``int``, ``enum``, ``signed enum``"""
+    """Return the type as which a field is read: ``int``, ``enum``, ``signed enum``."""
     return f"signed {field.type}" if field.type == "enum" and field.is_signed else field.type
 
 
 def ids(values: Iterable[int | None]) -> str:
-    """``120 / 247``"""
+    """Return ids as text: ``120 / 247``."""
     return " / ".join(str(value) for value in values if value is not None)

@@ -63,7 +63,7 @@ def _older(site: Site, previous: str, icds: list[Path]) -> Side:
     from icdgen.diff import inputs
 
     side = inputs.one_side(previous, icds)
-    if not side.is_whole():
+    if not side.is_comparable():
         site.ok = False
         site.findings += side.findings
         site.texts.update(side.texts)

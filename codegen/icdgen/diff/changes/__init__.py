@@ -1,1 +1,5 @@
-"""The rules of the diff. Each is one pure function of a theme module; its explanation and example stand in ``<theme>.md``."""
+"""Rules of the diff.
+
+Each rule is a pure function of a theme module; ``<theme>.md`` contains its explanation
+and example.
+"""

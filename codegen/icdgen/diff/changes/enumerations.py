@@ -1,4 +1,4 @@
-"""Enumerations: what the values of a field stand for."""
+"""Rules about enumerations: names of the values of a field."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from icdgen.diff.context import Context
 from icdgen.diff.pairs import EnumPair, FieldPair, MemberPair
-from icdgen.diff.rule import Found, rule
+from icdgen.diff.rule import CheckResult, rule
 from icdgen.diff.similar import other_senses, same_sense
 from icdgen.diff.wording import some
 from icdgen.icd.model import Enum
@@ -14,7 +14,7 @@ from icdgen.icd.rules.wording import quote
 
 
 @rule("DIF204", "field")
-def other_enumeration(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+def other_enumeration(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old.enum, pair.new.enum
     if (pair.old.type == "enum") == (pair.new.type == "enum") and ctx.match.same_enum(old, new):
         return
@@ -26,7 +26,7 @@ def other_enumeration(pair: FieldPair, ctx: Context) -> Iterator[Found]:
         text = f"the values of {quote(pair.new.name)} now have names, as in {quote(now)}"
     else:
         text = f"the values of {quote(pair.new.name)} no longer have names; they were in {quote(was)}"
-    yield Found(text, ("enum", "type"), was, now, details, None if was and now else "warning")
+    yield CheckResult(text, ("enum", "type"), was, now, details, None if was and now else "warning")
 
 
 def _differences(old: Enum, new: Enum) -> tuple[str, ...]:
@@ -37,34 +37,34 @@ def _differences(old: Enum, new: Enum) -> tuple[str, ...]:
 
 
 def _used(owner: EnumPair, ctx: Context) -> tuple[str, ...]:
-    """Fields that hold the enumeration's values."""
+    """Return a detail that lists the fields with values of the enumeration."""
     users = ctx.users.get(id(owner.new), ())
     return (f"Used by {some(users)}.",) if users else ()
 
 
 @rule("DIF205", "member")
-def other_sense(pair: MemberPair, ctx: Context) -> Iterator[Found]:
+def other_sense(pair: MemberPair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     if old.values == new.values and old.name != new.name and not same_sense(old.name, new.name):
         text = f"{new.values} of {quote(pair.owner.new.name)} is {quote(new.name)}, was {quote(old.name)}"
-        yield Found(text, ("name",), old.name, new.name, _used(pair.owner, ctx))
+        yield CheckResult(text, ("name",), old.name, new.name, _used(pair.owner, ctx))
 
 
 @rule("DIF206", "member")
-def renumbered(pair: MemberPair, ctx: Context) -> Iterator[Found]:
+def renumbered(pair: MemberPair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     if old.values != new.values:
         text = f"{quote(new.name)} of {quote(pair.owner.new.name)} is {new.values}, was {old.values}"
-        yield Found(text, ("value",), old.values, new.values, _used(pair.owner, ctx))
+        yield CheckResult(text, ("value",), old.values, new.values, _used(pair.owner, ctx))
 
 
 @rule("DIF207", "member", severity="warning", when="gone")
-def member_removed(pair: MemberPair, ctx: Context) -> Iterator[Found]:
+def member_removed(pair: MemberPair, ctx: Context) -> Iterator[CheckResult]:
     text = f"{pair.old.values} of {quote(pair.owner.any.name)} has no name now, was {quote(pair.old.name)}"
-    yield Found(text, ("name",), f"{pair.old.values} = {pair.old.name}", "", _used(pair.owner, ctx))
+    yield CheckResult(text, ("name",), f"{pair.old.values} = {pair.old.name}", "", _used(pair.owner, ctx))
 
 
 @rule("DIF208", "member", severity="note", when="come", addition=True)
-def member_added(pair: MemberPair, ctx: Context) -> Iterator[Found]:
+def member_added(pair: MemberPair, ctx: Context) -> Iterator[CheckResult]:
     text = f"{pair.new.values} of {quote(pair.owner.any.name)} is {quote(pair.new.name)}; it had no name"
-    yield Found(text, ("name",), "", f"{pair.new.values} = {pair.new.name}", _used(pair.owner, ctx))
+    yield CheckResult(text, ("name",), "", f"{pair.new.values} = {pair.new.name}", _used(pair.owner, ctx))

@@ -1,4 +1,4 @@
-"""Decisions about the manual's faults."""
+"""Rules about errata: decisions on faults of the manual."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from icdgen.diff.context import Context
 from icdgen.diff.pairs import NodePair, differing, place_of
-from icdgen.diff.rule import Found, rule
+from icdgen.diff.rule import CheckResult, rule
 from icdgen.icd.erratum import Erratum
 from icdgen.icd.rules.wording import listing
 
@@ -16,7 +16,7 @@ _PARTS = ("title", "why", "evidence", "confidence", "tables", "printed", "held",
 @rule("DIF403", "node", severity="note")
 @rule("DIF404", "node", severity="note")
 @rule("DIF405", "node", severity="note")
-def erratum_differs(pair: NodePair, ctx: Context) -> Iterator[Found]:
+def erratum_differs(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
     for _, old, new in differing(pair.old.errata, pair.new.errata, lambda entry: entry.id):
         entry = new or old
         assert entry is not None
@@ -29,11 +29,11 @@ def erratum_differs(pair: NodePair, ctx: Context) -> Iterator[Found]:
         text = f"{entry.label.lower()} {entry.id} {what}: {entry.title}"
         where = pair.where()._replace(erratum=entry.id)
         places = place_of(old, ("id",)), place_of(new, ("id",))
-        yield Found(text, ("name",), was, now, where=where, places=places, code=code)
+        yield CheckResult(text, ("name",), was, now, where=where, places=places, code=code)
 
 
 def _differences(old: Erratum, new: Erratum) -> tuple[str, str, str]:
-    """What is said of an entry that is another, what it was, and what it is."""
+    """Return the description of a changed entry, its old text and its new text."""
     parts = [part for part in _PARTS if getattr(old, part) != getattr(new, part)]
     was, now = _kind(old), _kind(new)
     if was == now:

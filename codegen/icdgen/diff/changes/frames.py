@@ -1,4 +1,4 @@
-"""Messages: there or not, their ids, kinds and lengths."""
+"""Rules about messages: additions, removals, ids, kinds and lengths."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from icdgen.describe.numbers import length_text
 from icdgen.diff.context import Context, by_id
 from icdgen.diff.pairs import MessagePair, NodePair
-from icdgen.diff.rule import Found, rule
+from icdgen.diff.rule import CheckResult, rule
 from icdgen.diff.wording import ids, some
 from icdgen.icd.layout import VariablePart
 from icdgen.icd.model import Message
@@ -21,18 +21,18 @@ def _summary(message: Message) -> str:
 
 
 @rule("DIF101", "message", when="gone")
-def removed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
+def removed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
     text = f"{quote(pair.old.name)} is gone: {pair.old.kind} {ids(pair.old.ids)} is no longer spoken"
-    yield Found(text, ("name",), _summary(pair.old), "")
+    yield CheckResult(text, ("name",), _summary(pair.old), "")
 
 
 @rule("DIF102", "message", when="come", severity="note", addition=True)
-def added(pair: MessagePair, ctx: Context) -> Iterator[Found]:
-    yield Found(f"{quote(pair.new.name)} is new: {_summary(pair.new)}", ("name",), "", _summary(pair.new))
+def added(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
+    yield CheckResult(f"{quote(pair.new.name)} is new: {_summary(pair.new)}", ("name",), "", _summary(pair.new))
 
 
 @rule("DIF103", "message")
-def id_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
+def id_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     for kind, key in DIRECTIONS.items():
         before, after = getattr(old, key), getattr(new, key)
@@ -40,12 +40,12 @@ def id_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
             own = "set_id" if kind == "telecommand" else "get_id"
             keys = (own,) if new.kind == old.kind == "configuration" else ("id", own)
             text = f"the {kind} id of {quote(new.name)} is {after}, was {before}"
-            yield Found(text, keys, str(before), str(after))
+            yield CheckResult(text, keys, str(before), str(after))
 
 
 @rule("DIF104", "icd")
-def id_taken_over(ctx: Context) -> Iterator[Found]:
-    seen = set()
+def id_taken_over(ctx: Context) -> Iterator[CheckResult]:
+    reported = set()
     for node in ctx.match.nodes:
         if not node.both:
             continue
@@ -53,18 +53,20 @@ def id_taken_over(ctx: Context) -> Iterator[Found]:
             before, after = (by_id(icd.messages_of(side), key) for icd, side in ctx.sides(node))
             for number in sorted(before.keys() & after.keys()):
                 old, new = _exchanged(ctx, before[number], after[number])
-                if old is None or new is None or (id(old), id(new), kind) in seen:
+                if old is None or new is None or (id(old), id(new), kind) in reported:
                     continue
-                gone, come = ctx.pair(old), ctx.pair(new)
-                seen.add((id(old), id(new), kind))
+                old_pair, new_pair = ctx.pair(old), ctx.pair(new)
+                reported.add((id(old), id(new), kind))
+                # An exchange of messages of equal length passes all length checks of
+                # decoders.
                 same = " Both have the same length, so no decoder can notice." if old.length == new.length else ""
-                yield Found(
+                yield CheckResult(
                     f"{kind} {number} was {quote(old.name)} and is {quote(new.name)} now",
                     was=old.name,
                     now=new.name,
                     details=(f"Old software takes one for the other.{same}",),
-                    pair=come,
-                    places=(gone.places(_ID)[0], come.places(_ID)[1]),
+                    pair=new_pair,
+                    places=(old_pair.places(_ID)[0], new_pair.places(_ID)[1]),
                 )
 
 
@@ -72,31 +74,33 @@ _ID = ("id", "set_id", "get_id")
 
 
 def _exchanged(ctx: Context, before: list[Message], after: list[Message]) -> tuple[Message | None, Message | None]:
-    """Of the messages of an id one that no longer has it, and one that has it now: of the same length, if there is such."""
-    left = [message for message in before if not any(ctx.pair(message) is ctx.pair(other) for other in after)]
-    come = [message for message in after if not any(ctx.pair(message) is ctx.pair(other) for other in before)]
-    both = [(old, new) for old in left for new in come]
-    return min(both, key=lambda pair: pair[0].length != pair[1].length, default=(None, None))
+    """Return a message that lost the id and a message that gained it, of equal length
+    if possible.
+    """
+    losing = [message for message in before if not any(ctx.pair(message) is ctx.pair(other) for other in after)]
+    gaining = [message for message in after if not any(ctx.pair(message) is ctx.pair(other) for other in before)]
+    candidates = [(old, new) for old in losing for new in gaining]
+    return min(candidates, key=lambda pair: pair[0].length != pair[1].length, default=(None, None))
 
 
 @rule("DIF105", "message")
-def kind_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
+def kind_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     if old.kind == new.kind:
         return
     lost = [kind for kind, key in DIRECTIONS.items() if getattr(old, key) is not None and getattr(new, key) is None]
     details = tuple(f"It can no longer be {'sent' if kind == 'telecommand' else 'requested'}." for kind in lost)
     text = f"{quote(new.name)} is a {new.kind} now, was a {old.kind}"
-    yield Found(text, ("kind",), old.kind, new.kind, details, None if lost else "note", not lost)
+    yield CheckResult(text, ("kind",), old.kind, new.kind, details, None if lost else "note", not lost)
 
 
 @rule("DIF106", "message")
-def length_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
+def length_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     if old.layout.sequence or new.layout.sequence:
         if old.layout.sequence and new.layout.sequence and old.layout.length != new.layout.length:
             text = f"{quote(new.name)} has {length_text(new)}, had {length_text(old)}"
-            yield Found(text, ("length",), length_text(old), length_text(new))
+            yield CheckResult(text, ("length",), length_text(old), length_text(new))
         return
     if old.length == new.length:
         return
@@ -111,11 +115,11 @@ def length_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     details = [f"Decoders of the other release refuse the frame: they take {taken}."]
     if tail and not ctx.is_touched_before(pair, shorter * 8):
         details.append(f"The first {shorter} bytes are as they were.")
-    yield Found(text, ("length",), f"{old.length} bytes", f"{new.length} bytes", tuple(details))
+    yield CheckResult(text, ("length",), f"{old.length} bytes", f"{new.length} bytes", tuple(details))
 
 
 @rule("DIF119", "message")
-def open_end_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
+def open_end_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     was, now = _variable_parts(old), _variable_parts(new)
     if was == now:
@@ -127,11 +131,11 @@ def open_end_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     if old_parts and len(new_parts) == 1 and old_parts[-1].most < new_parts[-1].most:
         details.append(f"Decoders of the other release refuse frames of more than {old_parts[-1].most}.")
     text = f"what ends {quote(new.name)} is {now}, was {was}"
-    yield Found(text, ("length",), was, now, tuple(details))
+    yield CheckResult(text, ("length",), was, now, tuple(details))
 
 
 def _variable_parts(message: Message) -> str:
-    """``up to 12 of `Levels`, counted by `Levels Count` ``"""
+    """Return the variable parts: ``up to 12 of `Levels`, counted by `Levels Count` ``."""
     return ", behind it ".join(map(_variable_part, message.layout.parts)) or "of fixed size"
 
 
@@ -143,7 +147,7 @@ def _variable_part(part: VariablePart) -> str:
 
 @rule("DIF125", "message")
 @rule("DIF126", "message", severity="note")
-def end_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
+def end_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     if old.may_end_early == new.may_end_early:
         return
@@ -153,29 +157,29 @@ def end_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     else:
         code, text = "DIF126", f"{quote(new.name)} is always sent with the zeros that it ends with"
         details = "Decoders of the other release take such frames, too."
-    yield Found(text, ("may_end_early", "length"), length_text(old), length_text(new), (details,), code=code)
+    yield CheckResult(text, ("may_end_early", "length"), length_text(old), length_text(new), (details,), code=code)
 
 
 @rule("DIF130", "node", when="gone")
-def node_removed(pair: NodePair, ctx: Context) -> Iterator[Found]:
+def node_removed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
     text = f"node `{pair.old.name}` is gone, with {count(len(pair.old.messages), 'message')}"
-    yield Found(text, ("name",), pair.old.name, "")
+    yield CheckResult(text, ("name",), pair.old.name, "")
 
 
 @rule("DIF131", "node", when="come", severity="note", addition=True)
-def node_added(pair: NodePair, ctx: Context) -> Iterator[Found]:
+def node_added(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
     text = f"node `{pair.new.name}` is new, with {count(len(pair.new.messages), 'message')}"
-    yield Found(text, ("name",), "", pair.new.name)
+    yield CheckResult(text, ("name",), "", pair.new.name)
 
 
 @rule("DIF132", "node")
 @rule("DIF133", "node", severity="note", addition=True)
-def speaks_others(pair: NodePair, ctx: Context) -> Iterator[Found]:
+def used_messages_changed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
     details = ("They are still there, and declared or included elsewhere.",)
-    less, more = ([m.name for m in ctx.unspoken(pair, side)] for side in (0, 1))
+    less, more = ([m.name for m in ctx.messages_not_used(pair, side)] for side in (0, 1))
     if less:
         text = f"`{pair.new.name}` no longer speaks {some(less, 'message')}"
-        yield Found(text, ("include",), count(len(less), "message"), "", details, code="DIF132")
+        yield CheckResult(text, ("include",), count(len(less), "message"), "", details, code="DIF132")
     if more:
         text = f"`{pair.new.name}` speaks {some(more, 'message')} too"
-        yield Found(text, ("include",), "", count(len(more), "message"), details, code="DIF133")
+        yield CheckResult(text, ("include",), "", count(len(more), "message"), details, code="DIF133")

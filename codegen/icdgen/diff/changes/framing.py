@@ -1,4 +1,6 @@
-"""Framing, checksums, addresses, logs: the protocol section and the log mask."""
+"""Rules about the protocol section and the log mask: framing, checksums, addresses,
+logs.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +9,7 @@ from collections.abc import Iterator
 from icdgen.diff.context import Context
 from icdgen.diff.facts import AROUND, PART, facts, shown
 from icdgen.diff.pairs import NodePair, differing, place_of
-from icdgen.diff.rule import Found, rule
+from icdgen.diff.rule import CheckResult, rule
 from icdgen.icd.annex import Loggable
 from icdgen.icd.rules.wording import quote
 
@@ -22,14 +24,14 @@ def _short(text: str) -> str:
 @rule("DIF121", "node", severity="warning")
 @rule("DIF134", "node")
 @rule("DIF413", "node", severity="note")
-def fact_differs(pair: NodePair, ctx: Context) -> Iterator[Found]:
-    other_envelopes, have_envelopes = ctx.other_envelopes(pair), ctx.have_envelopes(pair)
+def fact_differs(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
+    changed_packet_formats, have_packet_formats = ctx.changed_packet_formats(pair), ctx.have_packet_formats(pair)
     for fact in facts(pair.old, pair.new):
         was, now = shown(fact.old), shown(fact.new)
         keys: tuple[str, ...] = (fact.path.rsplit(".", 1)[-1],)
-        is_around = have_envelopes and AROUND.fullmatch(fact.path)
-        # A spelling, such as an order that is the node's anyway, changes no frame.
-        is_spelling = is_around and not other_envelopes and "checksums" not in fact.path
+        is_around = have_packet_formats and AROUND.fullmatch(fact.path)
+        # Another notation, such as an explicit default byte order, changes no frame.
+        is_spelling = is_around and not changed_packet_formats and "checksums" not in fact.path
         if fact.is_word or is_spelling:
             code, what, keys = "DIF413", "says otherwise", ()
         else:
@@ -42,13 +44,13 @@ def fact_differs(pair: NodePair, ctx: Context) -> Iterator[Found]:
             else:
                 code, what = "DIF120", f"is {now}, was {was}"
         where = pair.where()._replace(section=fact.path)
-        yield Found(f"`{fact.path}` {what}", keys, was, now, where=where, places=fact.places, code=code)
+        yield CheckResult(f"`{fact.path}` {what}", keys, was, now, where=where, places=fact.places, code=code)
 
 
 @rule("DIF122", "node")
 @rule("DIF123", "node")
 @rule("DIF124", "node", severity="note", addition=True)
-def mask_bit_differs(pair: NodePair, ctx: Context) -> Iterator[Found]:
+def mask_bit_differs(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
     for bit, old, new in differing(pair.old.loggable, pair.new.loggable, lambda row: row.bit):
         if new is None:
             code, what = "DIF123", f"no longer selects {_frame(old)}"
@@ -57,11 +59,11 @@ def mask_bit_differs(pair: NodePair, ctx: Context) -> Iterator[Found]:
         elif old.id != new.id:
             code, what = "DIF122", f"selects {_frame(new)}, selected {_frame(old)}"
         else:
-            continue  # it is only called otherwise
+            continue  # only the name differs (DIF415)
         where = pair.where()._replace(section=f"loggable {bit}")
         places = (place_of(old, ("id",)), place_of(new, ("id",)))
         was, now = (f"telemetry {row.id}" if row else "" for row in (old, new))
-        yield Found(f"log mask bit {bit} {what}", ("id",), was, now, where=where, places=places, code=code)
+        yield CheckResult(f"log mask bit {bit} {what}", ("id",), was, now, where=where, places=places, code=code)
 
 
 def _frame(row: Loggable | None) -> str:

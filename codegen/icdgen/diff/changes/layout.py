@@ -1,4 +1,4 @@
-"""Fields: which bits they lie on, and how these are read."""
+"""Rules about fields: their bits and the interpretation of these bits."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from icdgen.describe.comments import condition_text
 from icdgen.diff.context import Context, free_before
 from icdgen.diff.moves import Move
 from icdgen.diff.pairs import FieldPair, MessagePair, NodePair, kind, orders
-from icdgen.diff.rule import Found, rule
+from icdgen.diff.rule import CheckResult, rule
 from icdgen.diff.where import Places
 from icdgen.diff.wording import bits, read_as, some, span, type_of
 from icdgen.icd.lines import Line
@@ -20,7 +20,7 @@ from icdgen.icd.wire_ids import size
 @rule("DIF107", "message")
 @rule("DIF108", "message")
 @rule("DIF109", "message")
-def fields_moved(pair: MessagePair, ctx: Context) -> Iterator[Found]:
+def fields_moved(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
     for move in ctx.moves(pair).moves:
         first, last = move.fields[0], move.fields[-1]
         if move.is_shift:
@@ -33,11 +33,11 @@ def fields_moved(pair: MessagePair, ctx: Context) -> Iterator[Found]:
         details = () if first is last else (f"From {quote(first.new.name)} to {quote(last.new.name)}.",)
         where = causes[0].where() if causes else first.where() if first is last else pair.where()
         was, now = f"bit {first.old.at}", f"bit {first.new.at}"
-        yield Found(text, (), was, now, details, where=where, places=_places(first, causes), code=code)
+        yield CheckResult(text, (), was, now, details, where=where, places=_places(first, causes), code=code)
 
 
 def _places(first: FieldPair, causes: list[FieldPair]) -> Places:
-    """Where the first field stands that moved, or what made it move."""
+    """Return the places of the first moved field, or of the change that moved it."""
     old, new = first.places(("at",))
     for cause in causes:
         before, after = cause.places(("at", "bits"))
@@ -70,29 +70,29 @@ def _cause(move: Move) -> str:
 
 
 @rule("DIF110", "field")
-def width_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+def width_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     if old.bits != new.bits and not (new.is_bytes and pair.is_open):
         text = f"{quote(new.name)} has {count(new.bits, 'bit')}, had {old.bits}"
-        yield Found(text, ("bits",), f"{old.bits} bits", f"{new.bits} bits")
+        yield CheckResult(text, ("bits",), f"{old.bits} bits", f"{new.bits} bits")
 
 
 @rule("DIF118", "field")
-def count_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+def count_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     before, after = old.own_count, new.own_count
     if before != after and (pair.is_of_struct or not pair.is_open):  # see DIF119; of structs DIF127
         was, now = (count(number, "element") if number else "one value" for number in (before, after))
         text = f"{quote(new.name)} is {_an_array(after)}, was {_an_array(before)}"
-        yield Found(text, ("count", "bits"), was, now)
+        yield CheckResult(text, ("count", "bits"), was, now)
 
 
 @rule("DIF128", "field")
-def condition_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+def condition_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     was, now = (_needs(line, message) for line, message in ((pair.old, pair.owner.old), (pair.new, pair.owner.new)))
     if _conditions(pair.old) != _conditions(pair.new):
         text = f"{quote(pair.new.name)} is {now}, was {was}"
-        yield Found(
+        yield CheckResult(
             text, ("when", "name"), was, now, ("In other frames its bits belong to other fields or are reserved.",)
         )
 
@@ -112,7 +112,7 @@ def _an_array(elements: int) -> str:
 
 
 @rule("DIF111", "field")
-def read_otherwise(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+def read_otherwise(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     if kind(old) == kind(new):
         return
@@ -122,11 +122,11 @@ def read_otherwise(pair: FieldPair, ctx: Context) -> Iterator[Found]:
         first, last = (str(half), str(-half)) if new.is_signed else (str(-half), str(half))
         details = (f"Bits read as {first} is read as {last}.",)
     text = f"{quote(new.name)} is a {type_of(new)}, was a {type_of(old)}"
-    yield Found(text, ("type",), read_as(old), read_as(new), details)
+    yield CheckResult(text, ("type",), read_as(old), read_as(new), details)
 
 
 @rule("DIF112", "node")
-def order_changed(pair: NodePair, ctx: Context) -> Iterator[Found]:
+def order_changed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
     if orders(pair.old) == orders(pair.new):
         return
     fields, messages = [], set()
@@ -140,44 +140,44 @@ def order_changed(pair: NodePair, ctx: Context) -> Iterator[Found]:
         if before != after and fields:
             text = f"the {key.replace('_', ' ')} of `{pair.new.name}` is {after}, was {before}"
             what = f"{count(len(fields), 'field')} of {count(len(messages), 'message')}"
-            yield Found(text, (key,), before, after, (f"Read otherwise, {what}: {some(fields)}.",))
+            yield CheckResult(text, (key,), before, after, (f"Read otherwise, {what}: {some(fields)}.",))
 
 
 @rule("DIF117", "field")
-def own_order_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+def own_order_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     old, new, nodes = pair.old, pair.new, (pair.owner.old_node, pair.owner.new_node)
     if pair.same_bits or (old.at, old.bits, old.count) != (new.at, new.bits, new.count):
         return
     for key in ("byte_order", "bit_order"):
         own = getattr(old, key), getattr(new, key)
         if own[0] == own[1]:
-            continue  # if it is read otherwise, its node has turned round
+            continue  # then the order of the node has changed (DIF112)
         was, now = (order or getattr(node, key) for order, node in zip(own, nodes, strict=True))
         if was != now:
             text = f"the {key.replace('_', ' ')} of {quote(new.name)} is {now}, was {was}"
-            yield Found(text, (key, "type"), was, now)
+            yield CheckResult(text, (key, "type"), was, now)
 
 
 @rule("DIF116", "node")
-def id_width_changed(pair: NodePair, ctx: Context) -> Iterator[Found]:
+def id_width_changed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
     was, now = pair.old.id_bits, pair.new.id_bits
     if was != now:
         text = f"ids of `{pair.new.name}` have {now} bits, had {was}"
         same = size(was) == size(now)
         details = () if same else (f"An id is sent as {count(size(now), 'byte')}, was as {count(size(was), 'byte')}.",)
-        yield Found(text, ("id_bits",), str(was), str(now), details, "note" if same else None)
+        yield CheckResult(text, ("id_bits",), str(was), str(now), details, "note" if same else None)
 
 
 @rule("DIF113", "field", when="gone")
-def field_removed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    if not pair.old.view and not ctx.is_said_of_the_message(pair):
+def field_removed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
+    if not pair.old.view and not ctx.is_reported_for_message(pair):
         text = f"{quote(pair.old.name)} is gone: {span(pair.old)} no longer carry it"
-        yield Found(text, ("at",), f"{span(pair.old)}, {type_of(pair.old)}", "")
+        yield CheckResult(text, ("at",), f"{span(pair.old)}, {type_of(pair.old)}", "")
 
 
 @rule("DIF114", "field", when="come", severity="note", addition=True)
-def field_added(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    if not pair.new.view and not ctx.is_said_of_the_message(pair):
+def field_added(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
+    if not pair.new.view and not ctx.is_reported_for_message(pair):
         where = "bits that were reserved" if free_before(pair) else "bits that carried something else"
         text = f"{quote(pair.new.name)} is new, in {where}: {span(pair.new)}"
-        yield Found(text, ("at",), "", f"{span(pair.new)}, {type_of(pair.new)}")
+        yield CheckResult(text, ("at",), "", f"{span(pair.new)}, {type_of(pair.new)}")

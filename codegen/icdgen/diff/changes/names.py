@@ -1,4 +1,4 @@
-"""Names and types of the generated code, in each language."""
+"""Rules about names and types in generated code of each language."""
 
 from __future__ import annotations
 
@@ -6,27 +6,30 @@ from collections.abc import Iterator
 
 from icdgen.backends import TITLES
 from icdgen.diff.context import Context
-from icdgen.diff.generated import Name, is_called_otherwise, may_rename
+from icdgen.diff.generated import Name, is_renamed, may_rename
 from icdgen.diff.pairs import EnumPair, FieldPair, IdentifiedPair, MemberPair, MessagePair, NodePair, Pair
-from icdgen.diff.rule import Found, rule
+from icdgen.diff.rule import CheckResult, rule
 from icdgen.icd.lines import Line
 from icdgen.icd.rules.wording import count, listing, quote
 
-MOST = 2  # names that are shown of one language
+MOST = 2  # maximum number of names shown for each language
 
 _WHAT = {MessagePair: "message", FieldPair: "field", EnumPair: "enumeration", MemberPair: "value", NodePair: "node"}
 Renamed = list[tuple[Name | None, Name | None]]
 
 
 def _either(old: Name | None, new: Name | None) -> Name:
-    """The old name, or the new one where there was none."""
+    """Return the old name, or the new name if there is no old one."""
     name = old or new
     assert name is not None, "neither was nor is"
     return name
 
 
 def lines(renamed: Renamed) -> tuple[str, ...]:
-    """``C: `a` -> `b` and 3 more``, a line a language. Where all came, or all went, just the names."""
+    """Return one line per language: ``C: `a` -> `b` and 3 more``.
+
+    If all names were added or all removed, only the names.
+    """
     rows_by_language: dict[str, list[str]] = {}
     one_way = any(all(pair[side] is None for pair in renamed) for side in (0, 1))
     for old, new in sorted(renamed, key=lambda names: not _either(*names).text.endswith("_t")):  # types first
@@ -38,13 +41,13 @@ def lines(renamed: Renamed) -> tuple[str, ...]:
             rows.append(text)
     result = []
     for language, rows in sorted(rows_by_language.items()):
-        others = [f"{len(rows) - MOST} more"] if len(rows) > MOST else []
-        result.append(f"{TITLES[language]}: {listing(rows[:MOST] + others)}")
+        remaining = [f"{len(rows) - MOST} more"] if len(rows) > MOST else []
+        result.append(f"{TITLES[language]}: {listing(rows[:MOST] + remaining)}")
     return tuple(result)
 
 
-def _renamed(pair: IdentifiedPair, ctx: Context) -> Iterator[Found]:
-    if not is_called_otherwise(pair) or pair.is_of_another_node:
+def _renamed(pair: IdentifiedPair, ctx: Context) -> Iterator[CheckResult]:
+    if not is_renamed(pair) or pair.is_of_another_node:
         return
     renamed = ctx.generated.renamed(pair)
     if renamed:
@@ -55,7 +58,7 @@ def _renamed(pair: IdentifiedPair, ctx: Context) -> Iterator[Found]:
         else:
             was, now = old.identifier or old.name, new.identifier or new.name
             text = f"{_WHAT[type(pair)]} {quote(new.name)} has other identifiers, from {quote(now)}, were from {quote(was)}"
-        yield Found(text, ("name", "identifier"), was, now, lines(renamed))
+        yield CheckResult(text, ("name", "identifier"), was, now, lines(renamed))
 
 
 for _code, _of in (("DIF301", "message"), ("DIF302", "field"), ("DIF303", "enum"), ("DIF304", "member")):
@@ -63,25 +66,25 @@ for _code, _of in (("DIF301", "message"), ("DIF302", "field"), ("DIF303", "enum"
 
 
 @rule("DIF305", "node")
-def node_renamed(pair: NodePair, ctx: Context) -> Iterator[Found]:
+def node_renamed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old.name, pair.new.name
     if old != new:
         text = f"node `{new}` was called `{old}`: every generated name of it changes"
         what = f"{count(len(pair.new.messages), 'message')} and {count(len(pair.new.enums), 'enumeration')}"
-        yield Found(text, ("name",), old, new, (f"It declares {what}.",))
+        yield CheckResult(text, ("name",), old, new, (f"It declares {what}.",))
 
 
 @rule("DIF306", "message", "field", "enum", "member", "node", when="gone")
-def names_gone(pair: Pair, ctx: Context) -> Iterator[Found]:
+def names_gone(pair: Pair, ctx: Context) -> Iterator[CheckResult]:
     if pair.is_of_struct:
         return
-    gone: Renamed = [(name, None) for name in ctx.generated.old.get(id(pair), ())]
+    removed_names: Renamed = [(name, None) for name in ctx.generated.old.get(id(pair), ())]
     text = f"the generated names of {_WHAT[type(pair)]} {quote(pair.old.name)} are gone"
-    yield Found(text, ("name", "identifier"), pair.old.name, "", lines(gone))
+    yield CheckResult(text, ("name", "identifier"), pair.old.name, "", lines(removed_names))
 
 
 @rule("DIF307", "field")
-def retyped(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+def retyped(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     same = (old.type, old.bits, old.count, not old.when) == (new.type, new.bits, new.count, not new.when)
     if same and ctx.match.same_enum(old.enum, new.enum):
@@ -91,13 +94,13 @@ def retyped(pair: FieldPair, ctx: Context) -> Iterator[Found]:
         details = tuple(f"{TITLES[language]}: `{a}` -> `{b}`" for language, a, b in changed)
         words = listing([TITLES[language] for language, _, _ in changed])
         text = f"{quote(new.name)} has another type in {words}"
-        yield Found(text, ("type", "bits", "enum", "count", "when"), changed[0][1], changed[0][2], details)
+        yield CheckResult(text, ("type", "bits", "enum", "count", "when"), changed[0][1], changed[0][2], details)
 
 
 @rule("DIF308", "field")
-def accessors_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+def accessors_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     is_moved = pair.owner.is_of_another_node or pair.owner.has_another_vocabulary
-    if is_moved or is_called_otherwise(pair) or not may_rename(pair):
+    if is_moved or is_renamed(pair) or not may_rename(pair):
         return
     renamed = ctx.generated.renamed(pair)
     if renamed:
@@ -105,53 +108,53 @@ def accessors_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
         text = f"accessors or constants of {quote(pair.new.name)} {'change' if was else 'are new'}"
         keys = ("unit", "formula", "points", "special", "min", "max", "above", "below")
         severity, addition = (None, None) if was else ("note", True)
-        yield Found(text, keys, was, now, lines(renamed), severity, addition)
+        yield CheckResult(text, keys, was, now, lines(renamed), severity, addition)
 
 
 @rule("DIF309", "node")
-def words_split_otherwise(pair: NodePair, ctx: Context) -> Iterator[Found]:
+def words_split_otherwise(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old.vocabulary, pair.new.vocabulary
     if frozenset(old) == frozenset(new):
         return
     renamed: Renamed = []
     for owner in pair.declared:
         for part in (owner, *owner.parts):
-            if part.both and not is_called_otherwise(part) and not owner.is_of_another_node:
+            if part.both and not is_renamed(part) and not owner.is_of_another_node:
                 renamed += ctx.generated.renamed(part)
     if renamed:
         text = f"words are split in another way: {count(len(renamed), 'generated name')} of `{pair.new.name}` change"
         was, now = (", ".join(sorted(set(a) - set(b))) for a, b in ((old, new), (new, old)))
         places = pair.old.source.at("vocabulary"), pair.new.source.at("vocabulary")
-        yield Found(text, ("vocabulary",), was, now, lines(renamed), places=places)
+        yield CheckResult(text, ("vocabulary",), was, now, lines(renamed), places=places)
 
 
 @rule("DIF310", "message", "enum")
-def declared_elsewhere(pair: MessagePair | EnumPair, ctx: Context) -> Iterator[Found]:
+def declared_elsewhere(pair: MessagePair | EnumPair, ctx: Context) -> Iterator[CheckResult]:
     if pair.is_of_another_node:
         old, new = pair.old_node.name, pair.new_node.name
         text = f"{_WHAT[type(pair)]} {quote(pair.new.name)} is declared by `{new}`, was by `{old}`"
-        yield Found(text, ("name",), old, new, lines(ctx.generated.renamed(pair)))
+        yield CheckResult(text, ("name",), old, new, lines(ctx.generated.renamed(pair)))
 
 
 @rule("DIF311", "message", "field", "enum", "member", "node", when="come", severity="note", addition=True)
-def names_come(pair: Pair, ctx: Context) -> Iterator[Found]:
+def names_come(pair: Pair, ctx: Context) -> Iterator[CheckResult]:
     if pair.is_of_struct:
         return
-    come: Renamed = [(None, name) for name in ctx.generated.new.get(id(pair), ())]
+    added_names: Renamed = [(None, name) for name in ctx.generated.new.get(id(pair), ())]
     text = f"{_WHAT[type(pair)]} {quote(pair.new.name)} has generated names now"
-    yield Found(text, ("name", "identifier"), "", pair.new.name, lines(come))
+    yield CheckResult(text, ("name", "identifier"), "", pair.new.name, lines(added_names))
 
 
 @rule("DIF312", "field")
-def became_a_view(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    was, now = map(_standing, (pair.old, pair.new))
+def became_a_view(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
+    was, now = map(_origin, (pair.old, pair.new))
     if was != now:
         is_view = pair.new.view and pair.new.derived is None
         details = ("The encoded value follows from the fields that own the bits.",) if is_view else ()
-        yield Found(f"{quote(pair.new.name)} is {now}, was {was}", ("view", "at", "name"), was, now, details)
+        yield CheckResult(f"{quote(pair.new.name)} is {now}, was {was}", ("view", "at", "name"), was, now, details)
 
 
-def _standing(line: Line) -> str:
+def _origin(line: Line) -> str:
     if line.derived is not None:
         return "derived from other fields"
     return "a view" if line.view else "a field with bits of its own"

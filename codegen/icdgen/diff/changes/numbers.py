@@ -1,4 +1,6 @@
-"""What the raw value stands for: factor, offset, sign, unit, limits, constants, special values."""
+"""Rules about the meaning of raw values: scale, unit, limits, constants and special
+values.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,7 @@ from icdgen.describe.bounds import KEYS, bounds
 from icdgen.describe.numbers import point_text
 from icdgen.diff.context import Context
 from icdgen.diff.pairs import FieldPair, differing
-from icdgen.diff.rule import Found, rule
+from icdgen.diff.rule import CheckResult, rule
 from icdgen.diff.similar import same_sense
 from icdgen.diff.wording import MOST, formula, number
 from icdgen.icd.curve import Curve
@@ -22,12 +24,12 @@ from icdgen.icd.rules.wording import count, listing, quote
 
 @rule("DIF201", "field")
 @rule("DIF203", "field")
-def scale_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+def scale_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     if pair.old.derived is not None and pair.new.derived is not None:
         if is_derived_otherwise(pair):
             was, now = pair.old.formula, pair.new.formula
             text = f"{quote(pair.new.name)} is derived by {quote(now)}, was by {quote(was)}"
-            yield Found(text, ("formula",), was, now, code="DIF201")
+            yield CheckResult(text, ("formula",), was, now, code="DIF201")
         return
     old, new = (field.curve or field.scale or RAW for field in (pair.old, pair.new))
     if old == new:
@@ -35,30 +37,31 @@ def scale_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     was, now = formula(old), formula(new)
     if isinstance(old, Curve) or isinstance(new, Curve):
         text = f"the value of {quote(pair.new.name)} is {now}, was {was}"
-        yield Found(text, ("points", "outside", "formula", "unit"), was, now, _points(old, new), code="DIF201")
+        yield CheckResult(text, ("points", "outside", "formula", "unit"), was, now, _points(old, new), code="DIF201")
     elif old.factor == -new.factor:
         text = f"the sign of {quote(pair.new.name)} is turned: {now}, was {was}"
-        yield Found(text, ("formula",), was, now, code="DIF203")
+        yield CheckResult(text, ("formula",), was, now, code="DIF203")
     else:
         text = f"the value of {quote(pair.new.name)} is {now}, was {was}"
-        yield Found(text, ("formula", "unit"), was, now, _times(old, new), code="DIF201")
+        yield CheckResult(text, ("formula", "unit"), was, now, _times(old, new), code="DIF201")
 
 
 def is_derived_otherwise(pair: FieldPair) -> bool:
-    """Whether a value is derived in both, and not in the same way."""
+    """Return whether a value is derived by different formulas in the two ICDs."""
     old, new = pair.old.derived, pair.new.derived
+    # A renamed field in a formula is no difference.
     names = {field.old.name: field.new.name for field in pair.owner.common}
     return old is not None and new is not None and old.sense(names) != new.sense({})
 
 
 def _points(old: Curve | Scale, new: Curve | Scale) -> tuple[str, ...]:
-    """Which points of a table are others."""
+    """Return the removed and added points of a lookup table."""
     tables = [curve for curve in (old, new) if isinstance(curve, Curve) and curve.points]
     if len(tables) < 2:
         return ()
     was, now = (frozenset(curve.points) for curve in tables)
-    went, came = (sorted(points) for points in (was - now, now - was))
-    sides = (("It had", went), ("It has", came))
+    removed, added = (sorted(points) for points in (was - now, now - was))
+    sides = (("It had", removed), ("It has", added))
     return tuple(f"{what} {listing(_few(list(map(point_text, points))))}." for what, points in sides if points)
 
 
@@ -74,16 +77,16 @@ def _times(old: Scale, new: Scale) -> tuple[str, ...]:
 
 
 @rule("DIF202", "field")
-def unit_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+def unit_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     old, new = (field.unit_symbol for field in (pair.old, pair.new))
     if old != new:
         text = f"the unit of {quote(pair.new.name)} is {new or 'no longer stated'}, was {old or 'not stated'}"
         severity = None if old and new else "warning"
-        yield Found(text, ("unit",), old, new, severity=severity)
+        yield CheckResult(text, ("unit",), old, new, severity=severity)
 
 
 @rule("DIF209", "field")
-def const_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+def const_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old.const, pair.new.const
     if old == new:
         return
@@ -92,19 +95,25 @@ def const_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
         text, severity = f"{quote(pair.new.name)} need no longer be {was}", "warning"
     else:
         text, severity = f"{quote(pair.new.name)} must be {now}, was {was or 'free'}", None
-    yield Found(text, ("const",), was, now, severity=severity)
+    yield CheckResult(text, ("const",), was, now, severity=severity)
 
 
 def _specials(field: Line) -> list[Special]:
-    """The values that have a meaning; of floats as numbers, for their bits are others where the width is."""
+    """Return the special values.
+
+    Named float values such as NaN are compared by name, because their bits depend on
+    the width.
+    """
     return [replace(special, value=0) if special.number else special for special in field.special]
 
 
 @rule("DIF210", "field", severity="warning")
 @rule("DIF412", "field", severity="note")
-def special_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    old_ones, new_ones = _specials(pair.old), _specials(pair.new)
-    for (named, raw), old, new in differing(old_ones, new_ones, lambda special: (special.number, special.value)):
+def special_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
+    old_specials, new_specials = _specials(pair.old), _specials(pair.new)
+    for (named, raw), old, new in differing(
+        old_specials, new_specials, lambda special: (special.number, special.value)
+    ):
         value = named or raw
         was, now = old.meaning if old else "", new.meaning if new else ""
         code, text = "DIF210", f"the raw value {value} of {quote(pair.new.name)}"
@@ -116,7 +125,7 @@ def special_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
             code, text = "DIF412", f"what {value} of {quote(pair.new.name)} stands for is spelled otherwise"
         else:
             text += f" stands for {quote(now)}, stood for {quote(was)}"
-        yield Found(text, ("special",), was, now, code=code)
+        yield CheckResult(text, ("special",), was, now, code=code)
 
 
 def _limits(field: Line) -> str:
@@ -124,7 +133,7 @@ def _limits(field: Line) -> str:
 
 
 def is_wider(old: Limits | None, new: Limits | None) -> bool:
-    """Whether everything that was allowed still is."""
+    """Return whether the new limits permit all values that the old limits permitted."""
     old, new = old or Limits(), new or Limits()
     for key, sign in (("min", 1), ("above", 1), ("max", -1), ("below", -1)):
         before, after = getattr(old, key), getattr(new, key)
@@ -134,7 +143,7 @@ def is_wider(old: Limits | None, new: Limits | None) -> bool:
 
 
 @rule("DIF211", "field", severity="warning")
-def limits_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+def limits_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old.limits or Limits(), pair.new.limits or Limits()
     if old == new:
         return
@@ -145,4 +154,4 @@ def limits_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
         if is_wider(old, new)
         else "Values that were allowed no longer are."
     )
-    yield Found(text, KEYS, was, now, (detail,))
+    yield CheckResult(text, KEYS, was, now, (detail,))

@@ -1,4 +1,4 @@
-"""Names that say something else, answers, and what a node says of itself."""
+"""Rules about names with another meaning, acknowledges, and identification of a node."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ from collections.abc import Iterator
 
 from icdgen.diff.context import Context
 from icdgen.diff.pairs import FieldPair, MessagePair, NodePair
-from icdgen.diff.rule import Found, rule
+from icdgen.diff.rule import CheckResult, rule
 from icdgen.diff.similar import extends, same_sense
 from icdgen.icd.model import Message
 from icdgen.icd.rules.wording import quote
 
 
 @rule("DIF212", "message")
-def answer_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
+def answer_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
     old, new = _answer(pair.old), _answer(pair.new)
     if old != new:
         detail = "A program that waits for the acknowledge times out."
@@ -21,7 +21,7 @@ def answer_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
             detail = "No answer comes in either case, but the node restarts in one of them."
         elif pair.new.acknowledge:
             detail = "The device sends an acknowledge that old programs do not expect."
-        yield Found(f"{quote(pair.new.name)} is {new} now", ("acknowledge", "name"), old, new, (detail,))
+        yield CheckResult(f"{quote(pair.new.name)} is {new} now", ("acknowledge", "name"), old, new, (detail,))
 
 
 def _answer(message: Message) -> str:
@@ -31,18 +31,18 @@ def _answer(message: Message) -> str:
 
 
 @rule("DIF213", "field", "message", severity="warning")
-def name_says_otherwise(pair: FieldPair | MessagePair, ctx: Context) -> Iterator[Found]:
+def name_says_otherwise(pair: FieldPair | MessagePair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old.name, pair.new.name
     if old != new and not same_sense(old, new) and not extends(old, new):
         text = f"what was called {quote(old)} is called {quote(new)}: make sure that it is the same thing"
-        yield Found(text, ("name",), old, new)
+        yield CheckResult(text, ("name",), old, new)
 
 
 @rule("DIF215", "node", severity="warning")
-def node_says_otherwise(pair: NodePair, ctx: Context) -> Iterator[Found]:
+def node_says_otherwise(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
     for key in ("node_type", "interface_version"):
         old, new = getattr(pair.old, key), getattr(pair.new, key)
         if old != new:
             was, now = ("" if value is None else str(value) for value in (old, new))
             what = f"the {key.replace('_', ' ')} of `{pair.new.name}`"
-            yield Found(f"{what} is {now or 'not stated'}, was {was or 'not stated'}", (key,), was, now)
+            yield CheckResult(f"{what} is {now or 'not stated'}, was {was or 'not stated'}", (key,), was, now)

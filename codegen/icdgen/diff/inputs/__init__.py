@@ -1,4 +1,4 @@
-"""What a user names as old and new -> ICDs: files, folders, git revisions, output of ``icdgen show``."""
+"""Inputs of a comparison: files, folders, git revisions, and output of ``icdgen show``."""
 
 from __future__ import annotations
 
@@ -14,14 +14,21 @@ Input = Spec | list[Path] | str  # a git revision, paths, or `STDIN`
 
 
 def sides(arguments: list[str], usual: list[Path], unchecked: bool = False) -> tuple[Side, Side]:
-    """Old and new, loaded. ``usual`` are the ICDs that are meant where only a revision is given. Raises `UserError`."""
+    """Return the loaded old and new side.
+
+    ``usual``: default ICDs for an argument that is only a revision. Raises `UserError`.
+    """
     old, new = _resolve(arguments, usual)
     return _load(old, unchecked), _load(new, unchecked)
 
 
 def one_side(word: str, usual: list[Path]) -> Side:
-    """A single side, loaded: a file, a folder, a git revision, or the output of ``icdgen show``. Raises `UserError`."""
-    return _load(_one(Git(), word, usual), unchecked=False)
+    """Return a single loaded side: a file, a folder, a git revision, or output of
+    ``icdgen show``.
+
+    Raises `UserError`.
+    """
+    return _load(_input_of(Git(), word, usual), unchecked=False)
 
 
 def _resolve(arguments: list[str], usual: list[Path]) -> tuple[Input, Input]:
@@ -33,23 +40,25 @@ def _resolve(arguments: list[str], usual: list[Path]) -> tuple[Input, Input]:
         old, new = (Spec(revision, paths, revision, top=git.top) for revision in span)
         return old, new
     if len(arguments) == 1:
-        one = _one(git, first, usual)
-        if isinstance(one, Spec):
-            return one, [git.outside(path) for path in one.paths]
+        single_input = _input_of(git, first, usual)
+        if isinstance(single_input, Spec):
+            return single_input, [git.outside(path) for path in single_input.paths]
         raise UserError("name what to compare with", "`icdgen diff OLD NEW`, or a git revision such as HEAD~1")
     if len(arguments) > 2:
         text = f"{len(arguments)} arguments are given, OLD and NEW are enough"
         raise UserError(text, "name folders for several files")
     first, second = arguments
-    return _one(git, first, _beside(second, usual)), _one(git, second, _beside(first, usual))
+    return _input_of(git, first, _default_paths(second, usual)), _input_of(git, second, _default_paths(first, usual))
 
 
-def _beside(other: str, usual: list[Path]) -> list[Path]:
-    """The ICDs that a revision is asked for: those of the other side, if these are paths."""
+def _default_paths(other: str, usual: list[Path]) -> list[Path]:
+    """Return the ICDs to read from a revision: the paths of the other side, if it names
+    paths.
+    """
     return [Path(other)] if os.path.exists(other) else usual
 
 
-def _one(git: Git, word: str, usual: list[Path]) -> Input:
+def _input_of(git: Git, word: str, usual: list[Path]) -> Input:
     if word == STDIN:
         return word
     if os.path.exists(word):

@@ -1,4 +1,4 @@
-"""ICDs of git revisions, read out of the repository without touching the working tree."""
+"""Reader of ICDs in git revisions. It leaves the working tree unchanged."""
 
 from __future__ import annotations
 
@@ -11,13 +11,16 @@ from typing import NamedTuple
 
 from icdgen.errors import UserError
 
-USUAL = "icd"  # where a project has its ICDs if nothing says otherwise
+USUAL = "icd"  # default folder of the ICDs of a project
 _SUFFIX = ".yaml"
-_FILES = ("100644", "100755")  # modes of what is a plain file
+_FILES = ("100644", "100755")  # modes of regular files
 
 
 class Spec(NamedTuple):
-    """ICDs of a revision. ``paths`` are relative to the repository's top."""
+    """ICDs of a revision.
+
+    ``paths`` are relative to the top folder of the repository.
+    """
 
     revision: str
     paths: list[PurePosixPath]
@@ -25,33 +28,42 @@ class Spec(NamedTuple):
     top: str = "."
 
     def extract(self, folder: Path) -> list[Path]:
-        """Writes the ICDs, and what may lie beside and below them, into a folder; the paths to load."""
-        found = []
+        """Write the ICDs and other YAML files of their folders into a folder.
+
+        Return the paths to load.
+        """
+        extracted = []
         for path in self.paths:
             kind = _run("cat-file", "-t", f"{self.revision}:{_name(path)}", top=self.top).strip()
+            # Included ICDs are searched in the folder of a file, so the whole folder is
+            # needed.
             home = path if kind == "tree" else path.parent
             _export(self.revision, home, folder, self.top)
             if kind:
-                found.append(folder / path)
-        return found
+                extracted.append(folder / path)
+        return extracted
 
 
 class Git:
-    """The repository around the current folder, if there is one."""
+    """Repository of the current folder, if it exists."""
 
     @cached_property
     def top(self) -> str:
-        """Its top folder; empty where there is none, or no git."""
+        """Top folder; empty without a repository or without git."""
         return _run("rev-parse", "--show-toplevel").rstrip("\n")
 
     def commit(self, revision: str) -> str:
-        """The commit that a revision names; empty if it names none."""
+        """Return the commit of a revision; empty if it is invalid."""
+        # A leading dash would be an option of git.
         if not revision or revision.startswith("-") or not self.top:
             return ""
         return _run("rev-parse", "--verify", "--quiet", "--end-of-options", f"{revision}^{{commit}}").strip()
 
     def span(self, word: str) -> tuple[str, str] | None:
-        """Both ends of ``A..B`` or ``A...B`` (since B left A); either may be left out and is HEAD then."""
+        """Return both ends of ``A..B`` or ``A...B`` (changes since B branched off A).
+
+        A missing end is HEAD. None if the word is no range.
+        """
         first, dots, second = word.partition("..")
         if not dots or ":" in word or not self.top:
             return None
@@ -66,7 +78,9 @@ class Git:
         return ends[0], ends[1]
 
     def spec(self, word: str, usual: list[Path]) -> Spec | None:
-        """``REVISION`` or ``REVISION:PATH``; None if it is neither."""
+        """Return the ICDs of ``REVISION`` or ``REVISION:PATH``; None if the word is
+        neither.
+        """
         revision, colon, path = word.partition(":")
         if not self.commit(revision):
             return None
@@ -84,18 +98,24 @@ class Git:
         return Spec(revision, [inner], word, top=self.top)
 
     def inside(self, paths: Iterable[Path]) -> list[PurePosixPath]:
-        """The paths relative to the repository's top. Raises `UserError` for one that lies outside."""
-        found, top = [], os.path.realpath(self.top)
+        """Return the paths relative to the top folder of the repository.
+
+        Raises `UserError` for a path outside of it.
+        """
+        relative, top = [], os.path.realpath(self.top)
         for path in paths:
             full = os.path.realpath(path)
             if not self.top or os.path.commonpath([full, top]) != top:
                 help = "name the ICDs: REVISION:PATH, or `icds` in icdgen.toml"
                 raise UserError(f"{path} is not in this git repository", help)
-            found.append(PurePosixPath(os.path.relpath(full, top).replace(os.sep, "/")))
-        return found
+            relative.append(PurePosixPath(os.path.relpath(full, top).replace(os.sep, "/")))
+        return relative
 
     def usual(self, paths: Iterable[Path]) -> list[PurePosixPath]:
-        """The paths that are meant where none is named; the repository's folder ``icd`` if they are not in the repository."""
+        """Return the default paths in the repository.
+
+        If they are outside of it, return its folder ``icd``.
+        """
         try:
             return self.inside(paths)
         except UserError:
@@ -104,7 +124,7 @@ class Git:
             raise
 
     def outside(self, path: PurePosixPath) -> Path:
-        """The path in the working tree."""
+        """Return the path in the working tree."""
         return Path(os.path.relpath(os.path.join(self.top, path)))
 
 
@@ -114,40 +134,42 @@ def _name(path: PurePosixPath) -> str:
 
 def _export(revision: str, home: PurePosixPath, folder: Path, top: str) -> None:
     below = ["--", f"{_name(home)}/"] if _name(home) else []
-    wanted: list[tuple[str, str]] = []
+    blobs: list[tuple[str, str]] = []
     for line in _run("ls-tree", "-r", "-z", "--full-tree", revision, *below, top=top).split("\0"):
         head, _, path = line.partition("\t")
         if path.endswith(_SUFFIX):
             mode, _, blob = head.split(" ")
-            wanted += [(blob, path)] if mode in _FILES else []
-    for path, data in _contents(wanted, top):
+            blobs += [(blob, path)] if mode in _FILES else []
+    for path, data in _contents(blobs, top):
         target = folder / PurePosixPath(path)
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_bytes(data)
     (folder / home).mkdir(parents=True, exist_ok=True)
 
 
-def _contents(wanted: list[tuple[str, str]], top: str) -> Iterable[tuple[str, bytes]]:
-    """Path and content of each blob, in one run of git."""
-    if not wanted:
+def _contents(blobs: list[tuple[str, str]], top: str) -> Iterable[tuple[str, bytes]]:
+    """Yield path and content of each blob, in one run of git."""
+    if not blobs:
         return
-    asked = "".join(f"{blob}\n" for blob, _ in wanted).encode()
-    done = subprocess.run(["git", "-C", top, "cat-file", "--batch"], input=asked, capture_output=True, check=False)
-    rest = done.stdout
-    for _, path in wanted:
-        head, _, rest = rest.partition(b"\n")
+    request = "".join(f"{blob}\n" for blob, _ in blobs).encode()
+    completed = subprocess.run(
+        ["git", "-C", top, "cat-file", "--batch"], input=request, capture_output=True, check=False
+    )
+    output = completed.stdout
+    for _, path in blobs:
+        head, _, output = output.partition(b"\n")
         words = head.split()
         if len(words) != 3:
-            raise UserError(f"git cannot read {path}", done.stderr.decode("utf-8", "replace").strip())
+            raise UserError(f"git cannot read {path}", completed.stderr.decode("utf-8", "replace").strip())
         size = int(words[2])
-        yield path, rest[:size]
-        rest = rest[size + 1 :]
+        yield path, output[:size]
+        output = output[size + 1 :]
 
 
 def _run(*words: str, top: str = ".") -> str:
-    """What git says; nothing if it fails or is not there."""
+    """Return the output of git; empty if it fails or is not installed."""
     try:
-        done = subprocess.run(["git", "-C", top, *words], capture_output=True, check=False)
+        completed = subprocess.run(["git", "-C", top, *words], capture_output=True, check=False)
     except OSError:
         return ""
-    return done.stdout.decode("utf-8", "surrogateescape") if done.returncode == 0 else ""
+    return completed.stdout.decode("utf-8", "surrogateescape") if completed.returncode == 0 else ""

@@ -1,4 +1,4 @@
-"""The output of ``icdgen show --format json`` -> ICDs."""
+"""Reader of the output of ``icdgen show --format json``, into ICDs."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _MOST = 64_000_000  # bytes
 
 
 def is_shown(path: Path) -> bool:
-    """Whether the file holds JSON, by its first character."""
+    """Return whether the first character of the file is that of a JSON object."""
     try:
         with open(path, "rb") as file:
             return file.read(200).lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"{"
@@ -50,7 +50,10 @@ def is_shown(path: Path) -> bool:
 
 
 def from_file(path: Path) -> Side:
-    """Raises `UserError` or `Findings` for what is no such output."""
+    """Return the ICDs in a file.
+
+    Raises `UserError` or `Findings` if it is no valid output.
+    """
     try:
         with open(path, "rb") as file:
             data = file.read(_MOST + 1)
@@ -60,14 +63,17 @@ def from_file(path: Path) -> Side:
 
 
 def from_stdin() -> Side:
-    """As `from_file`."""
+    """Return the ICDs in standard input.
+
+    Raises `UserError` or `Findings` if it is no valid output.
+    """
     if sys.stdin is None:
         raise UserError("standard input is closed", "pipe the output of `icdgen show --format json` in, or name a file")
     return from_bytes(sys.stdin.buffer.read(_MOST + 1), "standard input")
 
 
 def from_bytes(data: bytes, name: str) -> Side:
-    """The ICDs that were shown, with places in that output."""
+    """Return the shown ICDs with places in this output."""
     if len(data) > _MOST:
         raise UserError(f"{name} has more than the {_MOST:,} bytes allowed", "show fewer ICDs")
     tree = _tree(data, name)
@@ -85,7 +91,7 @@ def from_bytes(data: bytes, name: str) -> Side:
 
 def _tree(data: bytes, name: str) -> Map:
     try:
-        return source.parse(data, name)  # JSON is YAML, and this reader knows where everything stands
+        return source.parse(data, name)  # JSON is valid YAML, and this reader records places
     except Findings:
         pass
     try:
@@ -102,13 +108,15 @@ _HELP = "this should be what `icdgen show --format json` prints"
 
 
 def _placed(value: Any, place: Place) -> Any:
-    """The tree without places, for what only a JSON reader reads."""
+    """Return the tree with one common place, for JSON that the YAML reader does not
+    accept.
+    """
     if isinstance(value, dict):
-        made = Map(place)
+        mapping = Map(place)
         for key, item in value.items():
-            made[key] = _placed(item, place)
-            made.spots[key] = place, place
-        return made
+            mapping[key] = _placed(item, place)
+            mapping.spots[key] = place, place
+        return mapping
     if isinstance(value, list):
         row = Seq(place)
         row.extend(_placed(item, place) for item in value)
@@ -129,7 +137,7 @@ def _check(tree: Any, name: str) -> None:
 
 
 class _Reader:
-    """One node, after those that it includes."""
+    """Reader of one node; included nodes are read before it."""
 
     def __init__(self, before: list[model.Node]) -> None:
         self.before = before
@@ -142,7 +150,7 @@ class _Reader:
         get = item.get
         for node in model.closure(self.before, item["includes"]):
             self.enums.update((enum.name, enum) for enum in node.enums)
-            self.structs.update((one.name, one) for one in node.structs)
+            self.structs.update((struct.name, struct) for struct in node.structs)
             self.units.update((unit.symbol, unit) for unit in node.units)
         units = tuple(Unit(u["symbol"], u["identifier"], u["quantity"], u.get("summary", "")) for u in get("units", ()))
         self.units.update((unit.symbol, unit) for unit in units)
@@ -150,11 +158,11 @@ class _Reader:
         enums = tuple(self.enum(enum, item["name"]) for enum in item["enums"])
         self.enums.update((enum.name, enum) for enum in enums)
         structs = []
-        for one in get("structs", ()):  # each stands after those that it has in it
-            structs.append(self.struct(one, item["name"]))
+        for struct in get("structs", ()):  # structs are sorted: nested structs come first
+            structs.append(self.struct(struct, item["name"]))
             self.structs[structs[-1].name] = structs[-1]
         return model.Node(
-            **{"summary": "", **_as_it_is(model.Node, item)},
+            **{"summary": "", **_plain_values(model.Node, item)},
             messages=tuple(self.message(m, item["name"]) for m in item["messages"]),
             enums=enums,
             structs=tuple(structs),
@@ -164,7 +172,7 @@ class _Reader:
             units=units,
             protocol=plain(get("protocol", {})),
             loggable=tuple(self.row(annex.Loggable, row) for row in item["loggable"]),
-            missing=tuple(annex.Missing(**_as_it_is(annex.Missing, one)) for one in get("missing", ())),
+            missing=tuple(annex.Missing(**_plain_values(annex.Missing, entry)) for entry in get("missing", ())),
             errata=tuple(self.errata.values()),
             file=item.place.file,
             source=item,
@@ -174,10 +182,12 @@ class _Reader:
         return tuple(self.errata[id] for key in ("errata", "notes") for id in item.get(key, ()) if id in self.errata)
 
     def row(self, kind: Callable[..., Thing], item: Map, /, **more: object) -> Thing:
-        """What has attributes that are shown as they are, and errata; ``more`` are the others."""
+        """Return an object with its plain attributes and errata; ``more``: other
+        attributes.
+        """
         if "aliases" in item:
             more["aliases"] = tuple(item["aliases"])
-        return kind(**_as_it_is(kind, item), errata=self.about(item), source=item, **more)
+        return kind(**_plain_values(kind, item), errata=self.about(item), source=item, **more)
 
     def enum(self, item: Map, node: str) -> model.Enum:
         members = tuple(self.row(model.Member, member) for member in item["members"])
@@ -191,8 +201,10 @@ class _Reader:
         layout = Layout(
             name=item["name"],
             length=item["length"] - sum(part["most"] * part["step"] for part in parts),
-            fixed=tuple(one for name, one in nodes.items() if name not in variable),
-            sequence=tuple(one for name in variable if not isinstance(one := nodes[name], StructRef | Overlay)),
+            fixed=tuple(layout_node for name, layout_node in nodes.items() if name not in variable),
+            sequence=tuple(
+                layout_node for name in variable if not isinstance(layout_node := nodes[name], StructRef | Overlay)
+            ),
             may_end_early="may_end_early" in item,
             owner=node,
         )
@@ -207,7 +219,7 @@ class _Reader:
         return layout
 
     def message(self, item: Map, node: str) -> model.Message:
-        made: model.Message = self.row(
+        message: model.Message = self.row(
             model.Message,
             item,
             layout=self.layout(item, node),
@@ -216,14 +228,17 @@ class _Reader:
             contains=tuple(model.Part(part["message"], part["offset"]) for part in item.get("contains", ())),
             node=node,
         )
-        return made
+        return message
 
     def struct(self, item: Map, node: str) -> model.Struct:
-        made: model.Struct = self.row(model.Struct, item, layout=self.layout(item, node), node=node)
-        return made
+        struct: model.Struct = self.row(model.Struct, item, layout=self.layout(item, node), node=node)
+        return struct
 
     def layout_node(self, item: Map, part: Map | None) -> FixedNode:
-        """Return the node of a field; `part` is what is shown of its size if that varies."""
+        """Return the node of a field.
+
+        ``part``: shown size of a variable-length field.
+        """
         is_array = "count" in item
         at = 0 if is_array else item["offset"]
         size: Size = item.get("count", 0)
@@ -247,7 +262,7 @@ class _Reader:
         return Rest(counter_of_rest(name, identifier, "count" in item, most, item), most)
 
     def scalar(self, item: Map, at: int, orders: Orders, length: Counted | Rest | None) -> Scalar:
-        """Return the scalar of a field, or of an element of an array."""
+        """Return the scalar of a field or of an array element."""
         limits = {key: Fraction(value) for key, value in item.get("limits", {}).items()}
         scalar = self.row(
             Scalar,
@@ -259,7 +274,9 @@ class _Reader:
             unit=self.units.get(item.get("unit", "")),
             scale=_scale(item),
             curve=_curve(item),
-            special=tuple(model.Special(**_as_it_is(model.Special, one)) for one in item.get("special", ())),
+            special=tuple(
+                model.Special(**_plain_values(model.Special, special)) for special in item.get("special", ())
+            ),
             display=display_of(item.get("display")),
             limits=model.Limits(**limits) if "limits" in item else None,
             present_if=tuple(model.Condition(name, tuple(values)) for name, values in item.get("when", {}).items()),
@@ -267,7 +284,7 @@ class _Reader:
         return scalar if length is None else replace(scalar, bits=8)
 
 
-def _as_it_is(kind: object, item: Map) -> dict[str, Any]:
+def _plain_values(kind: object, item: Map) -> dict[str, Any]:
     return {name: item[name] for name in machine.plain_attributes(kind) if name in item}
 
 
@@ -290,7 +307,7 @@ def _scale(item: Map) -> Scale | None:
 def _erratum(item: Map) -> model.Erratum:
     is_note = "what" in item
     return model.Erratum(
-        **{"confidence": "", **_as_it_is(model.Erratum, item)},
+        **{"confidence": "", **_plain_values(model.Erratum, item)},
         why=item["what" if is_note else "why"],
         tables=tuple(item.get("tables", ())),
         printed=tuple(item.get("printed", {}).items()),

@@ -1,4 +1,4 @@
-"""One side of a comparison: its ICDs, what it is called, and the texts that its places refer to."""
+"""Side of a comparison: its ICDs, its label, and the texts that its places refer to."""
 
 from __future__ import annotations
 
@@ -14,43 +14,52 @@ from icdgen.icd.loaded import Loaded
 from icdgen.icd.model import Icd
 from icdgen.loading import load
 
-_READING = ("ICD001", "ICD002", "ICD003", "ICD004", "ICD010")  # something of the ICD is not in the model
+_READING = ("ICD001", "ICD002", "ICD003", "ICD004", "ICD010")  # reading errors: the model of the ICD is incomplete
 
 
 @dataclass
 class Side:
-    """``label`` is what a user calls it. ``folder`` is where its files lay while they were read; places are told without it."""
+    """Side of a comparison.
+
+    ``label``: name as given by the user. ``folder``: temporary folder of the files;
+    reported places omit it.
+    """
 
     label: str
     icd: Icd
     findings: list[Finding] = field(default_factory=list)
     texts: dict[str, str] = field(default_factory=dict)
     folder: str = ""
-    prefix: str = ""  # what stands there instead: "v1.2:"
+    prefix: str = ""  # replacement of `folder` in places: "v1.2:"
 
-    def is_whole(self, unchecked: bool = False) -> bool:
-        """Whether the ICDs can be compared: without errors, or at least readable."""
+    def is_comparable(self, unchecked: bool = False) -> bool:
+        """Return whether the ICDs can be compared: valid, or with ``unchecked`` at
+        least readable.
+        """
         errors = [finding for finding in self.findings if finding.severity == "error"]
         return not any(not unchecked or finding.code in _READING for finding in errors)
 
     def place(self, place: Place | None) -> Place | None:
-        """The place as a user knows it."""
+        """Return the place in the file as the user named it."""
         if place is None or not place.file:
             return None
         return place if not self.folder else place._replace(file=self.name(place.file))
 
     def name(self, file: str) -> str:
-        """The file as a user knows it."""
+        """Return the name of the file as the user named it."""
         return self.prefix + file.removeprefix(self.folder) if self.folder and file.startswith(self.folder) else file
 
 
 def from_paths(paths: list[Path], unchecked: bool = False) -> Side:
-    """ICD files and folders."""
+    """Return the side of ICD files and folders."""
     return _side(", ".join(map(str, paths)), load(paths, check=not unchecked))
 
 
 def from_git(spec: Spec, unchecked: bool = False) -> Side:
-    """The ICDs of a revision, as git has them. Raises `UserError`."""
+    """Return the side of the ICDs of a git revision.
+
+    Raises `UserError`.
+    """
     with tempfile.TemporaryDirectory(prefix="icdgen-diff-") as name:
         folder = os.path.realpath(name)
         paths = spec.extract(Path(folder))
@@ -60,7 +69,7 @@ def from_git(spec: Spec, unchecked: bool = False) -> Side:
         loaded = load(paths, check=not unchecked)
     side = _side(spec.label, loaded)
     side.folder, side.prefix = folder + os.sep, f"{spec.revision}:"
-    side.findings = [_as_a_user_knows_it(side, finding) for finding in side.findings]
+    side.findings = [_with_user_places(side, finding) for finding in side.findings]
     side.texts = {side.name(file): text for file, text in side.texts.items()}
     return side
 
@@ -69,6 +78,6 @@ def _side(label: str, loaded: Loaded) -> Side:
     return Side(label, loaded.icd, loaded.findings, loaded.texts)
 
 
-def _as_a_user_knows_it(side: Side, finding: Finding) -> Finding:
+def _with_user_places(side: Side, finding: Finding) -> Finding:
     message, help = (text.replace(side.folder, side.prefix) for text in (finding.message, finding.help))
     return finding._replace(place=side.place(finding.place) or finding.place, message=message, help=help)

@@ -1,4 +1,7 @@
-"""A comparison -> text, for people and for machines. A format is one module with a function ``report``."""
+"""Report formats of a comparison, for readers and for programs.
+
+A format is one module with a function ``report``.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,6 @@ FORMATS = ("text", "markdown", "json", "sarif", "github", "html")
 
 
 def get(name: str) -> Callable[..., str]:
-    """The function ``report`` of a format, which is one of `FORMATS`."""
+    """Return the function ``report`` of a format, one of `FORMATS`."""
     report: Callable[..., str] = import_module(f"{__name__}.{name}").report
     return report

@@ -1,4 +1,4 @@
-"""Both bit layouts of a frame, the old above the new, as rectangles for an SVG."""
+"""Drawing of the old and new bit layout of a frame, as rectangles for an SVG."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from icdgen.diff.pairs import FieldPair, MessagePair, kind
 from icdgen.diff.wording import formula, span, type_of
 from icdgen.icd.lines import Line
 
-BITS = 64  # a row
-CELL = 14  # width of a bit
+BITS = 64  # bits of a row
+CELL = 14  # width of a bit in pixels
 HEIGHT = 26  # of a strip
 GAP = 16  # between the old strip and the new one
 LEFT = 44  # room for the words on the left
@@ -26,7 +26,7 @@ WIDTH = LEFT + BITS * CELL + 1
 
 
 class Box(NamedTuple):
-    """A run of a field within a row, or the frame behind the fields."""
+    """Part of a field within a row, or the frame behind the fields."""
 
     x: float
     y: int
@@ -38,7 +38,7 @@ class Box(NamedTuple):
 
 
 class Link(NamedTuple):
-    """From a field in the old strip to where it lies in the new one."""
+    """Connection between the positions of a field in the old and in the new frame."""
 
     points: str
     kind: str
@@ -47,7 +47,7 @@ class Link(NamedTuple):
 
 @dataclass
 class Row:
-    """``BITS`` bits of both frames."""
+    """Row with ``BITS`` bits of both frames."""
 
     frames: list[Box] = field(default_factory=list)
     boxes: list[Box] = field(default_factory=list)
@@ -56,13 +56,16 @@ class Row:
 
     @property
     def is_new(self) -> bool:
-        """Whether anything differs, be it only where the frame ends."""
+        """Whether anything differs in this row, including the end of the frame."""
         ends = {box.y: box.width for box in self.frames}
         return any(box.kind != "same" for box in self.boxes) or ends.get(OLD_Y) != ends.get(NEW_Y)
 
 
 class Drawing(NamedTuple):
-    """``parts`` are rows, and words that stand for rows that are as before."""
+    """Drawing of two layouts.
+
+    ``parts``: rows, and texts in place of unchanged rows.
+    """
 
     parts: list[Row | str]
     title: str
@@ -74,15 +77,18 @@ class Drawing(NamedTuple):
 
 
 def draw(pair: MessagePair, changes: list[Change]) -> Drawing | None:
-    """The layouts of a message; one strip is empty where it is only in one ICD. None where no bit changed place or sense."""
+    """Return the layouts of a message; None if no bit changed its position or meaning.
+
+    The frame is empty on a side without the message.
+    """
     sides = tuple(message.length * 8 if message is not None else 0 for message in (pair.before, pair.after))
     rows = [Row() for _ in range((max(*sides, 1) + BITS - 1) // BITS)]
     for size, y in zip(sides, (OLD_Y, NEW_Y), strict=True):
         _frame(rows, size, y)
-    for number, one in enumerate(sorted(pair.parts, key=lambda p: p.any.at)):
-        kind, key = _kind(one, changes), f"f{number}"
-        before = _boxes(rows, one.old, OLD_Y, kind, key) if one.before is not None else {}
-        after = _boxes(rows, one.new, NEW_Y, kind, key) if one.after is not None else {}
+    for number, part in enumerate(sorted(pair.parts, key=lambda p: p.any.at)):
+        kind, key = _kind(part, changes), f"f{number}"
+        before = _boxes(rows, part.old, OLD_Y, kind, key) if part.before is not None else {}
+        after = _boxes(rows, part.new, NEW_Y, kind, key) if part.after is not None else {}
         for index in before.keys() & after.keys():
             if kind != "same" or before[index].x != after[index].x:
                 rows[index].links.append(_link(before[index], after[index]))
@@ -93,14 +99,14 @@ def draw(pair: MessagePair, changes: list[Change]) -> Drawing | None:
     return Drawing(_folded(rows), f"Bit layouts of {pair.any.name}, old above new")
 
 
-def _kind(one: FieldPair, changes: list[Change]) -> str:
-    if not one.both:
-        return "gone" if one.after is None else "come"
-    if kind(one.old) != kind(one.new) or one.old.width != one.new.width:
+def _kind(pair: FieldPair, changes: list[Change]) -> str:
+    if not pair.both:
+        return "gone" if pair.after is None else "come"
+    if kind(pair.old) != kind(pair.new) or pair.old.width != pair.new.width:
         return "wire"
-    if not one.same_bits:
+    if not pair.same_bits:
         return "moved"
-    layers = {change.layer for change in changes if change.pair is one}
+    layers = {change.layer for change in changes if change.pair is pair}
     return "meaning" if MEANING in layers else "name" if SOURCE in layers else "same"
 
 
@@ -111,17 +117,17 @@ def _frame(rows: list[Row], size: int, y: int) -> None:
             row.frames.append(Box(LEFT, y, bits * CELL, "frame", "", "reserved", ""))
 
 
-def _boxes(rows: list[Row], one: Line, y: int, kind: str, key: str) -> dict[int, Box]:
-    """A box for each row that the field reaches into."""
-    found = {}
-    end = one.at + one.width
-    for number in range(one.at // BITS, min(-(-end // BITS), len(rows))):
-        start = max(one.at, number * BITS)
+def _boxes(rows: list[Row], line: Line, y: int, kind: str, key: str) -> dict[int, Box]:
+    """Return the boxes of a field by row; a field can reach into several rows."""
+    boxes_by_row = {}
+    end = line.at + line.width
+    for number in range(line.at // BITS, min(-(-end // BITS), len(rows))):
+        start = max(line.at, number * BITS)
         width = (min(end, (number + 1) * BITS) - start) * CELL
-        box = Box(LEFT + start % BITS * CELL, y, width, kind, _label(one.name, width), _title(one), key)
+        box = Box(LEFT + start % BITS * CELL, y, width, kind, _label(line.name, width), _title(line), key)
         rows[number].boxes.append(box)
-        found[number] = box
-    return found
+        boxes_by_row[number] = box
+    return boxes_by_row
 
 
 def _label(name: str, width: float) -> str:
@@ -131,12 +137,12 @@ def _label(name: str, width: float) -> str:
     return f"{name[: room - 1]}…" if room >= 4 else ""
 
 
-def _title(one: Line) -> str:
-    words = [one.name, span(one), type_of(one)]
-    if one.has_formula:
-        words.append(formula(one.curve or one.scale))
-    if one.unit is not None:
-        words.append(one.unit.symbol)
+def _title(line: Line) -> str:
+    words = [line.name, span(line), type_of(line)]
+    if line.has_formula:
+        words.append(formula(line.curve or line.scale))
+    if line.unit is not None:
+        words.append(line.unit.symbol)
     return ", ".join(words)
 
 
@@ -148,7 +154,7 @@ def _link(old: Box, new: Box) -> Link:
 
 def _folded(rows: list[Row]) -> list[Row | str]:
     parts: list[Row | str] = []
-    for is_new, group in groupby(enumerate(rows), key=lambda one: one[1].is_new):
+    for is_new, group in groupby(enumerate(rows), key=lambda numbered_row: numbered_row[1].is_new):
         run = list(group)
         if is_new or len(run) == 1:
             parts += [row for _, row in run]

@@ -1,4 +1,4 @@
-"""Changes as findings, for the formats that services know."""
+"""Changes as findings, for the formats of services."""
 
 from __future__ import annotations
 
@@ -11,13 +11,17 @@ from icdgen.diff.report import Report
 
 
 def of_change(change: Change) -> Finding:
-    """At its place in the new ICD, or in the old one where it is gone from the new."""
+    """Return the finding of a change, at its place in the new ICD, otherwise in the old
+    ICD.
+    """
     place = change.place or Place("icd")
     return Finding(change.code, f"{change.layer}: {change.message}", place, " ".join(change.notes), change.severity)
 
 
 def of_report(report: Report) -> Iterator[Finding]:
-    """Open changes, entries that no longer apply, and uses in a user's sources."""
+    """Yield findings about changes, unused entries of accepted changes, and uses in the
+    user's sources.
+    """
     yield from map(of_change, report.changes)
     yield from map(about_stale, report.stale)
     for use in report.uses or ():

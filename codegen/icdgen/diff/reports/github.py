@@ -1,4 +1,4 @@
-"""Changes as workflow commands: GitHub shows them beside the lines of a pull request."""
+"""Report as workflow commands, which GitHub displays in a pull request."""
 
 from __future__ import annotations
 
@@ -8,5 +8,5 @@ from icdgen.diff.reports.findings import of_report
 
 
 def report(report: Report, colour: bool = False, width: int | None = None, everything: bool = False) -> str:
-    """One command a change."""
+    """Return one command for each change."""
     return reports.get("github")(of_report(report), {})

@@ -1,4 +1,4 @@
-"""Changes by what they are about, in the order of the report."""
+"""Changes grouped by their subject, in the order of the report."""
 
 from __future__ import annotations
 
@@ -22,21 +22,21 @@ class Group(NamedTuple):
 
     @property
     def layers(self) -> list[str]:
-        """Those of its changes, the worst first."""
+        """Layers of the changes, most severe first."""
         return sorted({change.layer for change in self.changes}, key=LAYERS.index)
 
 
 def groups(changes: Iterable[Change]) -> list[Group]:
-    """In the order in which they first appear."""
-    found: dict[int, Group] = {}
+    """Return the groups in the order of their first changes."""
+    groups_by_owner: dict[int, Group] = {}
     for change in changes:
         pair = change.pair
         owner = pair.owner if isinstance(pair, FieldPair | MemberPair) else pair
-        group = found.get(id(owner))
+        group = groups_by_owner.get(id(owner))
         if group is None:
             about = "enumeration" if isinstance(owner, EnumPair) else "node"
             if isinstance(owner, MessagePair):
                 about = f"{owner.any.kind} {ids(owner.any.ids)}"
-            group = found[id(owner)] = Group(owner.any.name, about, owner.where().node, owner, [])
+            group = groups_by_owner[id(owner)] = Group(owner.any.name, about, owner.where().node, owner, [])
         group.changes.append(change)
-    return list(found.values())
+    return list(groups_by_owner.values())

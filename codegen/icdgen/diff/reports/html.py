@@ -1,4 +1,4 @@
-"""The report as one self-contained page: what changed, for whom it matters, and both bit layouts above each other."""
+"""Report as one self-contained HTML page: changes, compatibility, and both bit layouts."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ LEGEND = (
 
 
 def report(report: Report, colour: bool = False, width: int | None = None, everything: bool = False) -> str:
-    """The page."""
+    """Return the page."""
     import jinja2
 
     environment = jinja2.Environment(
@@ -39,26 +39,28 @@ def report(report: Report, colour: bool = False, width: int | None = None, every
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    found = groups(report.changes)
+    change_groups = groups(report.changes)
     return environment.get_template("page.html.j2").render(
         version=__version__,
-        sections=[group for group in found if group.layers != [TEXT]],
-        words_only=[group for group in found if group.layers == [TEXT]],
+        sections=[group for group in change_groups if group.layers != [TEXT]],
+        words_only=[group for group in change_groups if group.layers == [TEXT]],
         stale=[about_stale(entry) for entry in report.stale],
         **shared(report),
     )
 
 
 def shared(report: Report) -> dict[str, object]:
-    """What this page and the one of the site are filled with."""
+    """Return the template variables that this page and the page of the site share."""
     return {"report": report, "about": ABOUT, "legend": LEGEND, "coded": coded, "layouts_of": layouts}
 
 
 def coded(text: str) -> list[tuple[str, bool]]:
-    """The text split at its back-ticks: words, and whether they are code."""
+    """Return the parts of a text with back-ticks: text, and whether it is code."""
     return [(part, bool(number % 2)) for number, part in enumerate(_CODE.split(text)) if part]
 
 
 def layouts(group: Group) -> Drawing | None:
-    """Both layouts of a message, where any bit of them changed its place or its sense."""
+    """Return both layouts of a message, if any of its bits changed position or meaning;
+    None otherwise.
+    """
     return draw(group.owner, group.changes) if isinstance(group.owner, MessagePair) else None

@@ -1,4 +1,6 @@
-"""The report as one JSON object, the stable form for programs, described by ``diff.schema.json``."""
+"""Report as one JSON object, a stable format for programs; ``diff.schema.json`` defines
+it.
+"""
 
 from __future__ import annotations
 
@@ -18,45 +20,45 @@ SCHEMA = Path(__file__).parent.parent.with_name("diff.schema.json")
 
 
 def report(report: Report, colour: bool = False, width: int | None = None, everything: bool = False) -> str:
-    """Everything, accepted changes included."""
+    """Return all changes as JSON, accepted changes included."""
     return json.dumps(document(report), indent=1) + "\n"
 
 
 def document(report: Report) -> dict[str, object]:
-    """A tree for `json.dumps`."""
+    """Return the report as a tree for `json.dumps`."""
     reasons = {id(change): entry.reason for change, entry in report.accepted}
     names = report.comparison.context.generated.everything if report.comparison.changes else {}
-    found: dict[str, object] = {
+    result: dict[str, object] = {
         "format": FORMAT,
         "old": report.old.label,
         "new": report.new.label,
         "version": report.step._asdict(),
         "counts": report.counts(),
-        "compatibility": [_direction(one) for one in report.directions],
+        "compatibility": [_direction(direction) for direction in report.directions],
         "changes": [_change(c, reasons.get(id(c)), names.get(id(c.pair), ())) for c in report.comparison.changes],
         "stale": [_stale(entry) for entry in report.stale],
     }
     if report.uses is not None:
         numbers = {id(change): number for number, change in enumerate(report.comparison.changes)}
-        found["uses"] = [
-            one._asdict() | {"changes": sorted(numbers[id(c)] for c in one.changes)} for one in report.uses
+        result["uses"] = [
+            use._asdict() | {"changes": sorted(numbers[id(c)] for c in use.changes)} for use in report.uses
         ]
-    return found
+    return result
 
 
-def _direction(one: Direction) -> dict[str, object]:
+def _direction(direction: Direction) -> dict[str, object]:
     return {
-        "key": one.key,
-        "question": one.question,
-        "verdict": one.verdict,
-        "frames_total": one.total,
-        "general": one.general,
-        "frames": [frame._asdict() for frame in one.frames],
+        "key": direction.key,
+        "question": direction.question,
+        "verdict": direction.verdict,
+        "frames_total": direction.total,
+        "general": direction.general,
+        "frames": [frame._asdict() for frame in direction.frames],
     }
 
 
 def _change(change: Change, reason: str | None, names: tuple[Name, ...]) -> dict[str, object]:
-    found: dict[str, object] = {
+    row: dict[str, object] = {
         "code": change.code,
         "layer": change.layer,
         "severity": change.severity,
@@ -72,10 +74,10 @@ def _change(change: Change, reason: str | None, names: tuple[Name, ...]) -> dict
         "sure": round(change.sure, 3),
         "errata": change.errata,
         "generated": {
-            language: [n.text for n in some] for language, some in groupby(names, lambda name: name.language)
+            language: [n.text for n in group] for language, group in groupby(names, lambda name: name.language)
         },
     }
-    return found if reason is None else found | {"accepted": reason}
+    return row if reason is None else row | {"accepted": reason}
 
 
 def _place(place: Place | None) -> dict[str, object] | None:
@@ -83,4 +85,4 @@ def _place(place: Place | None) -> dict[str, object] | None:
 
 
 def _stale(entry: Acceptance) -> dict[str, object]:
-    return {"code": entry.code, **entry.said, "reason": entry.reason, "place": _place(entry.place)}
+    return {"code": entry.code, **entry.criteria, "reason": entry.reason, "place": _place(entry.place)}

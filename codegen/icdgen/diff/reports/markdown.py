@@ -1,4 +1,4 @@
-"""The report as Markdown, for a pull request."""
+"""Report as Markdown for a pull request."""
 
 from __future__ import annotations
 
@@ -18,20 +18,26 @@ _CODE = re.compile(r"`([^`]*)`")
 
 
 def report(report: Report, colour: bool = False, width: int | None = None, everything: bool = False) -> str:
-    """GitHub's Markdown. What is long is folded, nothing is left out."""
-    lines = [f"## ICD changes: {said(report.old.label)} → {said(report.new.label)}", ""]
+    """Return the report in GitHub's Markdown.
+
+    Long parts are folded; nothing is omitted.
+    """
+    lines = [f"## ICD changes: {escaped(report.old.label)} → {escaped(report.new.label)}", ""]
     if not report.comparison.changes:
         lines += ["No change.", ""]
     else:
         lines += [*_summary(report), ""]
         for layer in LAYERS:
             lines += _layer(report, layer)
-    lines += _rest(report)
+    lines += _uses_and_accepted(report)
     return "\n".join(lines).rstrip("\n") + "\n"
 
 
-def said(text: str) -> str:
-    """The text with nothing in it that Markdown would act upon; what stands in back-ticks stays code."""
+def escaped(text: str) -> str:
+    """Return the text with escaped Markdown characters.
+
+    Text in back-ticks remains code.
+    """
     parts = _CODE.split(shown(text))
     parts[::2] = [_MARKUP.sub(r"\\\1", words) for words in parts[::2]]
     parts[1::2] = ["`" + code.replace("|", "\\|") + "`" if code else "\\`\\`" for code in parts[1::2]]
@@ -39,7 +45,7 @@ def said(text: str) -> str:
 
 
 def _summary(report: Report) -> Iterator[str]:
-    yield f"Version of the generated packages: **{report.step.step}** – {said(report.step.reason)}."
+    yield f"Version of the generated packages: **{report.step.step}** – {escaped(report.step.reason)}."
     yield ""
     yield "| layer | changes | additions | |"
     yield "|---|---:|---:|---|"
@@ -48,21 +54,21 @@ def _summary(report: Report) -> Iterator[str]:
     yield ""
     yield "| | | frames as before |"
     yield "|---|---|---|"
-    for one in report.directions:
-        yield f"| {one.question} | **{one.verdict}** | {one.total - len(one.frames)} of {one.total} |"
-    for one in report.directions:
-        yield from _direction(one)
+    for direction in report.directions:
+        yield f"| {direction.question} | **{direction.verdict}** | {direction.total - len(direction.frames)} of {direction.total} |"
+    for direction in report.directions:
+        yield from _direction(direction)
 
 
-def _direction(one: Direction) -> Iterator[str]:
-    if one.frames or one.general:
+def _direction(direction: Direction) -> Iterator[str]:
+    if direction.frames or direction.general:
         yield ""
-        yield f"<details><summary>{one.question} <b>{one.verdict}</b></summary>"
+        yield f"<details><summary>{direction.question} <b>{direction.verdict}</b></summary>"
         yield ""
-        yield from (f"- {said(line)}" for line in one.general)
-        for frame in one.frames:
-            reasons = said("; ".join(frame.reasons))
-            yield f"- **{frame.verdict}** {said(frame.node)} {said(frame.message)} ({frame.id}): {reasons}"
+        yield from (f"- {escaped(line)}" for line in direction.general)
+        for frame in direction.frames:
+            reasons = escaped("; ".join(frame.reasons))
+            yield f"- **{frame.verdict}** {escaped(frame.node)} {escaped(frame.message)} ({frame.id}): {reasons}"
         yield ""
         yield "</details>"
 
@@ -77,33 +83,33 @@ def _layer(report: Report, layer: str) -> Iterator[str]:
         yield f"### {layer}: {ABOUT[layer]}"
     yield ""
     for group in groups(changes):
-        yield f"**{said(group.title)}** ({said(group.about)}, {said(group.node)})"
+        yield f"**{escaped(group.title)}** ({escaped(group.about)}, {escaped(group.node)})"
         yield ""
         for change in group.changes:
-            places = " → ".join(said(f"{place.file}:{place.line}") for place in change.places)
-            yield f"- {change.kind} `{change.code}` {said(change.message)} – {places}"
-            yield from (f"  - {said(note)}" for note in change.notes)
+            places = " → ".join(escaped(f"{place.file}:{place.line}") for place in change.places)
+            yield f"- {change.kind} `{change.code}` {escaped(change.message)} – {places}"
+            yield from (f"  - {escaped(note)}" for note in change.notes)
         yield ""
     if layer == TEXT:
         yield "</details>"
         yield ""
 
 
-def _rest(report: Report) -> Iterator[str]:
+def _uses_and_accepted(report: Report) -> Iterator[str]:
     if report.uses is not None:
         yield f"### Uses in your sources: {len(report.uses)}"
         yield ""
         for use in report.uses:
             codes = ", ".join(f"`{code}`" for code in use.codes)
-            yield f"- {said(f'{use.file}:{use.line}')} `{use.name}` ({codes})"
+            yield f"- {escaped(f'{use.file}:{use.line}')} `{use.name}` ({codes})"
         yield ""
     if report.accepted:
         yield f"<details><summary>accepted: {count(len(report.accepted), 'change')}</summary>"
         yield ""
         for change, entry in report.accepted:
-            yield f"- `{change.code}` {said(change.message)} – {said(entry.reason)}"
+            yield f"- `{change.code}` {escaped(change.message)} – {escaped(entry.reason)}"
         yield ""
         yield "</details>"
         yield ""
     for entry in report.stale:
-        yield f"> **warning** {said(about_stale(entry).message)} ({said(str(entry.place))})"
+        yield f"> **warning** {escaped(about_stale(entry).message)} ({escaped(str(entry.place))})"

@@ -1,4 +1,6 @@
-"""Changes as SARIF 2.1.0: each at its new place, with the old one beside it, accepted ones as suppressed."""
+"""Report as SARIF 2.1.0: changes at their new place, with the old place as related
+location; accepted changes are suppressed.
+"""
 
 from __future__ import annotations
 
@@ -14,27 +16,27 @@ from icdgen.reports import sarif
 
 
 def report(report: Report, colour: bool = False, width: int | None = None, everything: bool = False) -> str:
-    """One run of the tool, with the rules that apply."""
+    """Return one run of the tool with the applicable rules."""
     findings = list(of_report(report))
     accepted = [of_change(change) for change, _ in report.accepted]
     document = sarif.document([*findings, *accepted], _rule)
     results = document["runs"][0]["results"]
     for result, change in zip(results, report.changes, strict=False):
-        _beside(result, change)
+        _add_properties(result, change)
     for result, (change, entry) in zip(results[len(findings) :], report.accepted, strict=True):
-        _beside(result, change)
+        _add_properties(result, change)
         result["suppressions"] = [{"kind": "external", "status": "accepted", "justification": entry.reason}]
     return json.dumps(document, indent=2) + "\n"
 
 
 def _rule(code: str) -> dict[str, Any]:
-    one = RULES.get(code)
-    if one is None:
+    rule_of_code = RULES.get(code)
+    if rule_of_code is None:
         return {"id": code, "shortDescription": {"text": "an accepted change that does not happen"}}
-    return sarif.described(code, one, rule.explain(code))
+    return sarif.described(code, rule_of_code, rule.explain(code))
 
 
-def _beside(result: dict[str, Any], change: Change) -> None:
+def _add_properties(result: dict[str, Any], change: Change) -> None:
     result["properties"] = {"layer": change.layer, "addition": change.addition, "sure": round(change.sure, 3)}
     if change.old is not None and change.new is not None:
         where = {"id": 1, "physicalLocation": sarif.physical(change.old), "message": {"text": "as it was"}}

@@ -1,4 +1,4 @@
-"""The report for people at a terminal: what matters first, on one page where that is possible."""
+"""Report for a terminal: the most severe changes first, on one page if possible."""
 
 from __future__ import annotations
 
@@ -20,15 +20,18 @@ COLOURS = {
     "partly": "\x1b[33m", "no": "\x1b[31m", "wire": "\x1b[1;31m", "meaning": "\x1b[1;35m", "source": "\x1b[1;33m",
     "text": "\x1b[1;36m",
 }  # fmt: skip
-MOST_WORDS = 10  # changes of words that are listed
-MOST_FRAMES = 12  # frames that are listed of one direction
+MOST_WORDS = 10  # maximum number of listed changes of text
+MOST_FRAMES = 12  # maximum number of listed frames of a direction
 _INDENT = " " * 4
 
 Paint = Callable[[str, str], str]
 
 
 def report(report: Report, colour: bool = False, width: int | None = None, everything: bool = False) -> str:
-    """``width`` wraps explanations; ``everything`` leaves nothing out."""
+    """Return the report.
+
+    ``width`` wraps explanations; ``everything`` omits nothing.
+    """
     paint: Paint = (lambda role, text: f"{COLOURS[role]}{text}{RESET}") if colour else (lambda role, text: text)
     lines = [paint("head", f"{printable(report.old.label)} -> {printable(report.new.label)}")]
     if not report.comparison.changes:
@@ -89,9 +92,9 @@ def _layer(report: Report, layer: str, paint: Paint, width: int | None, everythi
 
 def _change(change: Change, paint: Paint, width: int | None, explained: bool) -> Iterator[str]:
     label = f"{change.kind}[{change.code}]"
-    first, *rest = _wrapped(shown(change.message), width, _INDENT + " " * (len(label) + 1))
+    first, *following_lines = _wrapped(shown(change.message), width, _INDENT + " " * (len(label) + 1))
     yield f"{_INDENT}{paint('note' if change.addition else change.severity, label)} {first.lstrip()}"
-    yield from rest
+    yield from following_lines
     for note in change.notes if explained else ():
         yield from _wrapped(shown(note), width, _INDENT * 2)
     places = " -> ".join(map(str, change.places)) or "no file"
@@ -115,7 +118,7 @@ def _uses(report: Report, paint: Paint) -> Iterator[str]:
         yield f"  {place}: {use.name} ({', '.join(use.codes)})"
         yield f"{_INDENT}{shown(use.text.strip())}"
         for message in use.messages:
-            if message not in shown_before:  # once is enough
+            if message not in shown_before:  # each message once
                 shown_before.add(message)
                 yield f"{_INDENT}  {shown(message)}"
 
