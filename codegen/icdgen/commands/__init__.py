@@ -1,1 +1,4 @@
-"""The commands of ``icdgen``: options, one call into the library, printing. No logic."""
+"""Commands of ``icdgen``: options, a call into the library, and output.
+
+They contain no logic.
+"""

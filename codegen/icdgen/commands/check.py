@@ -1,4 +1,4 @@
-"""``icdgen check``"""
+"""Command ``icdgen check``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What several commands share: which ICDs are meant, and how findings are printed."""
+"""Shared parts of the commands: selection of the ICDs, options, and output of findings."""
 
 from __future__ import annotations
 
@@ -23,7 +23,11 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 
 
 class _Path(click.Path):
-    """A path; an empty one, such as an unset variable gives, is not the current folder."""
+    """Path argument.
+
+    An empty path, for instance of an unset variable, is an error and not the current
+    folder.
+    """
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         if value == "":
@@ -31,12 +35,15 @@ class _Path(click.Path):
         return super().convert(value, param, ctx)
 
 
-_MEANT = "icdgen.meant"  # of a click context: the `Config` that says whose nodes are meant, as no ICD was given
+_CONFIG_KEY = "icdgen.config"  # key in a click context: `Config` that selected the ICDs, if the user gave none
 PATH = _Path(path_type=Path)
 
 
 class _Seconds(click.FloatRange):
-    """Seconds, up to a day. That neither `nan` nor `inf` is a time, click's range does not notice."""
+    """Duration in seconds, up to a day.
+
+    The range check of click accepts `nan`, so the comparison is repeated here.
+    """
 
     name = "seconds"
 
@@ -51,46 +58,52 @@ SECONDS = _Seconds(0, 86400)
 
 
 def known_languages() -> str:
-    """The words for ``--lang``: ours, then those of plug-ins with their packages."""
+    """Return the values of ``--lang``: built-in languages, then plug-ins with their
+    packages.
+    """
     from icdgen import backends
 
     named = ", ".join(backends.names())
-    others = []
+    plug_in_names = []
     for name, points in backends.plug_ins().items():
         packages = dict.fromkeys(point.dist.name for point in points if point.dist)
-        others.append(f"{name} ({', '.join(packages)})")
-    return f"{named}, and of other packages {', '.join(others)}" if others else named
+        plug_in_names.append(f"{name} ({', '.join(packages)})")
+    return f"{named}, and of other packages {', '.join(plug_in_names)}" if plug_in_names else named
 
 
 def say(text: str, err: bool = False) -> None:
-    """Prints lines in which a name may stand, so that no name can act upon a terminal."""
+    """Print lines that may contain names from an ICD, without their control characters."""
+    # A name with escape sequences could otherwise control the terminal.
     click.echo("\n".join(printable(line) for line in text.split("\n")), err=err)
 
 
 def icd_arguments(command: Command) -> Command:
-    """``[ICD]...``: files or folders; without them what ``icdgen.toml`` names, else the shipped ones."""
+    """Argument ``[ICD]...``: files or folders.
+
+    The default is the ICDs in ``icdgen.toml``, otherwise the shipped ICDs.
+    """
     return click.argument("icds", nargs=-1, metavar="[ICD]...", type=PATH)(command)
 
 
 def icd_option(command: Command) -> Command:
-    """``--icd FILE`` (repeatable), for commands whose arguments are something else."""
+    """Option ``--icd FILE`` (repeatable) of commands with other arguments."""
     text = "ICD file or folder (default: the ICDs in icdgen.toml, or the shipped ones)."
     return click.option("--icd", "icds", multiple=True, type=PATH, help=text)(command)
 
 
 def kind_option(command: Command) -> Command:
-    """``--kind``, for commands that take the id of a message."""
+    """Option ``--kind`` of commands that take the id of a message."""
     kinds = click.Choice(["telecommand", "telemetry", "configuration"])
     return click.option("--kind", type=kinds, help="Kind of the message, if an id is ambiguous.")(command)
 
 
 def format_option(*forms: str) -> Callable[[Command], Command]:
-    """``--format``, the first unless another is asked for."""
+    """Option ``--format``; the first format is the default."""
     return click.option("--format", "form", type=click.Choice(forms), default=forms[0], show_default=True)
 
 
 def print_frame(frame: Frame) -> None:
-    """Prints it as a table."""
+    """Print a frame as a table."""
     from icdgen import tables
     from icdgen.values.text import to_text
 
@@ -98,30 +111,32 @@ def print_frame(frame: Frame) -> None:
 
 
 def chosen(icds: tuple[Path, ...]) -> tuple[list[Path], config.Config]:
-    """The ICDs to work on, relative to the current folder where they lie in it, and the configuration."""
+    """Return the selected ICDs, relative to the current folder if possible, and the
+    configuration.
+    """
     try:
-        found = config.find(Path.cwd())
+        configuration = config.find(Path.cwd())
     except FileNotFoundError:
         raise UserError("the current folder is no longer there", "change to another one") from None
-    paths = list(icds) or found.icds or [shipped.icds()]
+    paths = list(icds) or configuration.icds or [shipped.icds()]
     context = click.get_current_context(silent=True)
     if context is not None and not icds:
-        context.meta[_MEANT] = found
-    return [_short(path) for path in paths], found
+        context.meta[_CONFIG_KEY] = configuration
+    return [_short(path) for path in paths], configuration
 
 
 def beside_shipped(error: UserError, context: click.Context) -> UserError:
-    """The error; if it is about a node, and those of the ICDs that were not meant are looked at, one that says so."""
+    """Return the error, with additional help if its node exists in the shipped ICDs."""
     from icdgen.values.errors import NotFound
 
-    found = context.meta.get(_MEANT)
-    if found is None or not isinstance(error, NotFound):
+    configuration = context.meta.get(_CONFIG_KEY)
+    if configuration is None or not isinstance(error, NotFound):
         return error
-    if not found.icds:
+    if not configuration.icds:
         if not error.help.startswith("nodes: "):
             return error
         return NotFound(str(error), f"{error.help}, which come with icdgen; name yours with --icd, or in icdgen.toml")
-    path = found.path
+    path = configuration.path
     for file in sorted(shipped.icds().glob("*.yaml")):
         if f"`{file.stem}`" in str(error).lower():
             return NotFound(
@@ -137,9 +152,11 @@ def _short(path: Path) -> Path:
 
 
 def load_or_exit(icds: tuple[Path, ...]) -> Loaded:
-    """Return the checked ICDs; print the findings and exit with 1 if one is an error.
+    """Return the checked ICDs. Print the findings and exit with status 1 if one of them
+    is an error.
 
-    For commands that generate no code: names that clash in a language are not looked for.
+    For commands that generate no code: name conflicts in generated code are not
+    checked.
     """
     from icdgen.model_cache import load_checked
 
@@ -147,7 +164,10 @@ def load_or_exit(icds: tuple[Path, ...]) -> Loaded:
 
 
 def right_or_exit(loaded: Loaded) -> Loaded:
-    """What was loaded; prints what is wrong and exits with 1 if anything is."""
+    """Return the loaded ICDs.
+
+    Print the findings and exit with status 1 if one of them is an error.
+    """
     if not loaded.ok:
         print_findings(loaded.findings, loaded.texts, "text", err=True)
         sys.exit(1)
@@ -155,12 +175,16 @@ def right_or_exit(loaded: Loaded) -> Loaded:
 
 
 def in_colour(stream: TextIO | None) -> bool:
-    """Whether whoever reads the stream sees colours."""
+    """Return whether the output is a terminal with colors."""
+    # See https://no-color.org
     return stream is not None and stream.isatty() and "NO_COLOR" not in os.environ
 
 
 def write_file(path: Path, text: str, help: str) -> None:
-    """Writes a whole file or nothing; a link stays one. Raises `UserError`."""
+    """Write a file completely or not at all; a symbolic link is preserved.
+
+    Raises `UserError`.
+    """
     from icdgen.generation.write import replace
 
     try:
@@ -170,7 +194,7 @@ def write_file(path: Path, text: str, help: str) -> None:
 
 
 def print_findings(findings: list[Finding], texts: dict[str, str], form: str, err: bool = False) -> None:
-    """Prints a report in one of ``reports.FORMATS``."""
+    """Print findings in one of ``reports.FORMATS``."""
     from icdgen import reports
 
     stream = sys.stderr if err else sys.stdout
@@ -182,18 +206,22 @@ def print_findings(findings: list[Finding], texts: dict[str, str], form: str, er
 
 
 def _where_named(findings: list[Finding], texts: dict[str, str]) -> tuple[list[Finding], dict[str, str]]:
-    """The findings and texts; of ICDs that ``icdgen.toml`` names and that could not be read, the place is that in it."""
+    """Return findings and texts.
+
+    For an unreadable ICD that ``icdgen.toml`` names, the place is the entry in
+    ``icdgen.toml``.
+    """
     context = click.get_current_context(silent=True)
-    found: config.Config | None = context.meta.get(_MEANT) if context is not None else None
-    if found is None or found.path is None:
+    configuration: config.Config | None = context.meta.get(_CONFIG_KEY) if context is not None else None
+    if configuration is None or configuration.path is None:
         return findings, texts
-    file = str(_short(found.path))
-    places = {str(_short(icd)): found.place_of(icd)._replace(file=file) for icd in found.icds}
-    told = []
-    for one in findings:
-        name = one.place.file
+    file = str(_short(configuration.path))
+    places = {str(_short(icd)): configuration.place_of(icd)._replace(file=file) for icd in configuration.icds}
+    placed_findings = []
+    for finding in findings:
+        name = finding.place.file
         if name in places and name not in texts:
-            one = one._replace(message=f"`{name}`: {one.message}", place=places[name])
-            texts = {**texts, file: found.text}
-        told.append(one)
-    return told, texts
+            finding = finding._replace(message=f"`{name}`: {finding.message}", place=places[name])
+            texts = {**texts, file: configuration.text}
+        placed_findings.append(finding)
+    return placed_findings, texts

@@ -1,4 +1,4 @@
-"""``icdgen decode``: any frame that a person can copy."""
+"""Command ``icdgen decode``, for frames in any notation."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from icdgen.icd.model import Icd, Message
     from icdgen.recognize import Reading
 
-_LONGEST_ID, _OF_BYTE = 10, (1, 2, 3)  # digits: of an id of 32 bits; of a byte, in decimals or not
-_MOST = 1_000_000  # bytes that are read for frames
+_LONGEST_ID, _OF_BYTE = 10, (1, 2, 3)  # digits of a 32-bit id, and of a byte in hexadecimal or decimal notation
+_MOST = 1_000_000  # maximum size of an input in bytes
 _CSV = ("frame", "node", "message", "direction", "id", "field", "raw", "value", "unit", "remarks", "time")
 
 
@@ -40,24 +40,29 @@ def decode(arguments: tuple[str, ...], icds: tuple[Path, ...], kind: str | None,
     from icdgen import recognize
 
     icd = load_or_exit(icds).icd
-    node, message, frame = _taken_apart(icd, list(arguments), kind)
-    found = recognize.recognize(icd, frame, node, message, kind)
+    node, message, frame = _split_arguments(icd, list(arguments), kind)
+    readings = recognize.recognize(icd, frame, node, message, kind)
     if node is not None and message is None and arguments[0].lower() == node and arguments[1].isdecimal():
-        found = [one if one.id is not None else one.noted(_no_id(arguments[1], node)) for one in found]
-    {"text": _print_text, "json": _print_json, "csv": _print_csv}[form](found)
-    left = [text for one in found for text in one.left_out]
+        readings = [
+            reading if reading.id is not None else reading.noted(_no_id(arguments[1], node)) for reading in readings
+        ]
+    {"text": _print_text, "json": _print_json, "csv": _print_csv}[form](readings)
+    left_out = [text for reading in readings for text in reading.left_out]
     if form == "csv":  # the other forms have it among the remarks
-        for text in left:
+        for text in left_out:
             say(f"left out: {text}", err=True)
-    sys.exit(1 if left or any(one.has_wrong_constant for one in found) else 0)
+    sys.exit(1 if left_out or any(reading.has_wrong_constant for reading in readings) else 0)
 
 
 def _no_id(word: str, node: str) -> str:
     return f"{node} has no message {word}: it is taken for the first byte of the frame"
 
 
-def _taken_apart(icd: Icd, words: list[str], kind: str | None) -> tuple[str | None, str | None, str | bytes]:
-    """Node, message and frame: a word is the node or the message if there is one of that name."""
+def _split_arguments(icd: Icd, words: list[str], kind: str | None) -> tuple[str | None, str | None, str | bytes]:
+    """Return node, message and frame.
+
+    A word is a node or a message if one of that name exists.
+    """
     from icdgen.values.errors import Ambiguous, NotFound
     from icdgen.values.find import find_message, find_node, find_sharing, only_node
 
@@ -80,6 +85,8 @@ def _taken_apart(icd: Icd, words: list[str], kind: str | None) -> tuple[str | No
         except NotFound as error:
             if not _is_frame(words):
                 raise
+            # A hexadecimal word such as 146 can be an unknown id or the first byte of
+            # the frame.
             if _is_id(words):
                 raise NotFound(str(error), f"{error.help}; a frame that begins so is given as one word") from None
         except Ambiguous:
@@ -92,7 +99,9 @@ def _taken_apart(icd: Icd, words: list[str], kind: str | None) -> tuple[str | No
 
 
 def _is_message(messages: Sequence[Message], words: list[str], vocabulary: tuple[str, ...]) -> bool:
-    """Whether the first word is the name of a message or its id, and no part of the frame."""
+    """Return whether the first word is the name or id of a message, and not part of the
+    frame.
+    """
     from icdgen.values.find import by_name
 
     if not _is_bytes(words[0]) and by_name(messages, words[0], vocabulary):
@@ -101,7 +110,9 @@ def _is_message(messages: Sequence[Message], words: list[str], vocabulary: tuple
 
 
 def _refuse_lack(icd: Icd, node: str, words: list[str], kind: str | None) -> None:
-    """A last word that names a message, or is no frame, is one for which a frame is lacking. Raises `UserError`."""
+    """Raise `UserError` for a missing frame, if the last word names a message or is no
+    frame.
+    """
     from icdgen.values.errors import NotFound
     from icdgen.values.find import find_message
 
@@ -116,10 +127,12 @@ def _refuse_lack(icd: Icd, node: str, words: list[str], kind: str | None) -> Non
 
 
 def _is_id(words: list[str]) -> bool:
-    """Whether the first word is a number as ids are, and no part of the frame, for the others are no single bytes."""
-    first, *others = words
-    may_be_one = first.isdecimal() and len(first) <= _LONGEST_ID
-    return may_be_one and any(len(one) not in (len(first), *_OF_BYTE) for one in others)
+    """Return whether the first word is an id and not part of the frame: the other words
+    are no single bytes of equal notation.
+    """
+    first, *following_words = words
+    may_be_id = first.isdecimal() and len(first) <= _LONGEST_ID
+    return may_be_id and any(len(word) not in (len(first), *_OF_BYTE) for word in following_words)
 
 
 def _is_frame(words: list[str]) -> bool:
@@ -136,7 +149,7 @@ def _is_frame(words: list[str]) -> bool:
 
 
 def _content(words: list[str]) -> str | bytes:
-    """The frame itself, or what stands in the file that is named."""
+    """Return the frame itself, or the content of the named file."""
     name = words[0]
     if len(words) > 1 or (name != "-" and not name.startswith("@") and (_is_bytes(name) or not _is_file(name))):
         return " ".join(words)
@@ -170,7 +183,7 @@ def _is_file(name: str) -> bool:
 
 
 def _frames_in(file: BinaryIO, name: str) -> str | bytes:
-    """Text if it is that; a file that is no text holds the bytes themselves."""
+    """Return the content of a file as text if it is ASCII, otherwise as bytes."""
     data = file.read(_MOST + 1)
     if len(data) > _MOST:
         help = "give fewer frames; `icdgen log` takes recordings of any size"
@@ -180,33 +193,41 @@ def _frames_in(file: BinaryIO, name: str) -> str | bytes:
     return data
 
 
-def _print_text(found: Sequence[Reading]) -> None:
-    for number, one in enumerate(found):
+def _print_text(readings: Sequence[Reading]) -> None:
+    for number, reading in enumerate(readings):
         if number:
             click.echo("")
-        if one.time:
-            say(f"time {one.time}")
-        if one.frame is not None:
-            print_frame(one.frame)
+        if reading.time:
+            say(f"time {reading.time}")
+        if reading.frame is not None:
+            print_frame(reading.frame)
         else:
-            say("\n\nnote: ".join((one.title, *one.remarks)))
+            say("\n\nnote: ".join((reading.title, *reading.remarks)))
 
 
-def _print_json(found: Sequence[Reading]) -> None:
-    objects = [one.to_json() for one in found]
+def _print_json(readings: Sequence[Reading]) -> None:
+    objects = [reading.to_json() for reading in readings]
     click.echo(json.dumps(objects if len(objects) > 1 else objects[0], indent=1))
 
 
-def _print_csv(found: Sequence[Reading]) -> None:
-    """A line a field; a frame without fields has one line."""
+def _print_csv(readings: Sequence[Reading]) -> None:
+    """Print one line per field; a frame without fields has one line."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(_CSV)
-    for number, one in enumerate(found):
-        start = (number, one.speaker.node.name, one.message.name, one.what, "" if one.id is None else one.id)
-        if one.frame is None or not one.frame.rows:
-            writer.writerow((*start, "", "", "", "", "; ".join(one.remarks), one.time))
-        for row in one.frame.rows if one.frame else ():
+    for number, reading in enumerate(readings):
+        start = (
+            number,
+            reading.speaker.node.name,
+            reading.message.name,
+            reading.what,
+            "" if reading.id is None else reading.id,
+        )
+        if reading.frame is None or not reading.frame.rows:
+            writer.writerow((*start, "", "", "", "", "; ".join(reading.remarks), reading.time))
+        for row in reading.frame.rows if reading.frame else ():
             unit = row.field.unit_symbol
-            writer.writerow((*start, row.field.name, row.raw_text, row.text, unit, "; ".join(row.remarks), one.time))
+            writer.writerow(
+                (*start, row.field.name, row.raw_text, row.text, unit, "; ".join(row.remarks), reading.time)
+            )
     click.echo(out.getvalue(), nl=False)

@@ -1,4 +1,4 @@
-"""``icdgen diff``"""
+"""Command ``icdgen diff``."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _LAYERS = ("wire", "meaning", "source", "text", "additions")
 
 
-def _asked(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) -> tuple[str, ...]:
+def _layers(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) -> tuple[str, ...]:
     words = tuple(word.strip() for item in value for word in item.split(",") if word.strip())
     for word in words:
         if word not in _LAYERS:
@@ -36,9 +36,9 @@ def _asked(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) -
 @click.option("--out", "-o", type=PATH, help="File to write the report to (default: standard output).")
 @click.option(
     "--fail-on",
-    "asked",
+    "layers",
     multiple=True,
-    callback=_asked,
+    callback=_layers,
     metavar="LAYERS",
     help="Exit with 1 for changes of these layers: wire, meaning, source, text. Additions count only with `additions`.",
 )
@@ -56,7 +56,7 @@ def diff(
     sides: tuple[str, ...],
     form: str,
     out: Path | None,
-    asked: tuple[str, ...],
+    layers: tuple[str, ...],
     accepted: Path | None,
     sources: tuple[Path, ...],
     unchecked: bool,
@@ -82,36 +82,36 @@ def diff(
     if not (old.is_comparable(unchecked) and new.is_comparable(unchecked)):
         help = "correct them; --unchecked passes over what can be read and only breaks a rule"
         raise UserError("ICDs with errors are not compared", help)
-    made = report.make(old, new, _acceptances(accepted))
+    comparison_report = report.make(old, new, _acceptances(accepted))
     if sources:
-        made.uses = uses.uses(made.comparison, made.changes, sources)
-    _write(made, form, out, everything)
-    sys.exit(1 if made.fails(asked) else 0)
+        comparison_report.uses = uses.uses(comparison_report.comparison, comparison_report.changes, sources)
+    _write(comparison_report, form, out, everything)
+    sys.exit(1 if comparison_report.fails(layers) else 0)
 
 
 def _acceptances(path: Path | None) -> list[Acceptance]:
     from icdgen.diff import accepted
 
-    found = path or accepted.find_file(Path.cwd())
-    if found is None:
+    file = path or accepted.find_file(Path.cwd())
+    if file is None:
         return []
-    name = os.path.relpath(found) if path is None else str(found)
+    name = os.path.relpath(file) if path is None else str(file)
     try:
-        return accepted.read_file(found, name)[0]
+        return accepted.read_file(file, name)[0]
     except Findings as error:
         texts = {}
         with suppress(OSError):
-            texts[name] = found.read_text(encoding="utf-8", errors="replace")
+            texts[name] = file.read_text(encoding="utf-8", errors="replace")
         print_findings(error.findings, texts, "text", err=True)
         sys.exit(2)
 
 
-def _write(made: Report, form: str, out: Path | None, everything: bool) -> None:
+def _write(comparison_report: Report, form: str, out: Path | None, everything: bool) -> None:
     from icdgen import tables
 
     stream = sys.stdout if out is None else None
     colour = form == "text" and in_colour(stream)
-    text = reports.get(form)(made, colour, tables.width_of(stream), everything)
+    text = reports.get(form)(comparison_report, colour, tables.width_of(stream), everything)
     if out is None:
         click.echo(text, nl=False, color=colour or None)
     else:

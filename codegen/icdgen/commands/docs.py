@@ -1,4 +1,4 @@
-"""``icdgen docs``"""
+"""Command ``icdgen docs``."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ def docs(icds: tuple[Path, ...], out: Path, previous: str | None, serve: bool, p
         site.serve(paths, previous, config.templates, packages, port, say)
         return
     with progress.items("documentation", "files") as watch:
-        made = site.make(paths, previous, config.templates, packages, watch)
-    if made.findings:
-        print_findings(made.findings, made.texts, "text", err=True)
-    if not made.ok:
+        built_site = site.make(paths, previous, config.templates, packages, watch)
+    if built_site.findings:
+        print_findings(built_site.findings, built_site.texts, "text", err=True)
+    if not built_site.ok:
         sys.exit(1)
     out = out or Path("site")
-    plan = site.write(made, out, check)
+    plan = site.write(built_site, out, check)
     if check and plan.changes:
         say(f"{out}: {len(plan.write)} files are not current, {len(plan.remove)} are stale")
         sys.exit(1)

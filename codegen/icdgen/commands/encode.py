@@ -1,4 +1,4 @@
-"""``icdgen encode``, by the reference codec."""
+"""Command ``icdgen encode``, with the reference codec."""
 
 from __future__ import annotations
 

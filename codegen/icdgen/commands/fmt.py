@@ -1,4 +1,4 @@
-"""``icdgen fmt``"""
+"""Command ``icdgen fmt``."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from icdgen.errors import UserError
     "--check", is_flag=True, help="Write nothing; name the files that are not in the canonical layout and exit with 1."
 )
 def fmt(icds: tuple[Path, ...], check: bool) -> None:
-    """Write ICDs and errata files in the canonical layout; comments are kept."""
+    """Write ICDs and errata files in the canonical layout; comments are preserved."""
     from icdgen.icd import source
     from icdgen.icd.fmt import format_text
 
@@ -30,7 +30,7 @@ def fmt(icds: tuple[Path, ...], check: bool) -> None:
             data = source.contents(path, str(path))
             text = data.decode("utf-8", "replace")
             if text.encode("utf-8") != data:
-                source.parse(data, str(path))  # says which byte is no UTF-8
+                source.parse(data, str(path))  # raises a finding that shows the invalid byte
             formatted = format_text(text, str(path))
         except Findings as error:
             print_findings(error.findings, {str(path): text} if text else {}, "text", err=True)
@@ -59,19 +59,19 @@ def _summary(changed: int, unchanged: int, check: bool) -> str:
 
 
 def _files(paths: list[Path]) -> list[Path]:
-    """The files that are named, and of folders the ICDs with their errata overlays."""
+    """Return the named files; for a folder, its ICDs with their errata overlays."""
     from icdgen.icd import folders
 
-    found: list[Path] = []
+    files_to_format: list[Path] = []
     for path in paths:
         if not os.path.isdir(path):
-            found.append(path)
+            files_to_format.append(path)
             continue
         result = folders.search(path)
         homes = {icd.parent for icd in result.icds}
-        beside = [overlay for home in homes for overlay in home.glob("errata/*.yaml")]
-        files = sorted({*result.icds, *result.overlays, *beside})
+        errata = [overlay for home in homes for overlay in home.glob("errata/*.yaml")]
+        files = sorted({*result.icds, *result.overlays, *errata})
         if not files:
             raise UserError(f"{path} has no ICD", "name another folder, or a file")
-        found += files
-    return found
+        files_to_format += files
+    return files_to_format

@@ -1,4 +1,4 @@
-"""``icdgen generate``, which is also what ``icdgen --lang ...`` means."""
+"""Command ``icdgen generate``, also available as ``icdgen --lang ...``."""
 
 from __future__ import annotations
 
@@ -15,9 +15,10 @@ from icdgen.generation.generate import Job, Outcome, remember, run
 
 
 class _Languages(click.Option):
-    """Looks for plug-ins only when somebody asks what there is."""
+    """Option ``--lang``. It searches plug-ins only when the help is displayed."""
 
     def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
+        # The search imports the entry points of all installed packages.
         self.help = f"What to generate: {known_languages()}. Repeatable."
         return super().get_help_record(ctx)
 
@@ -46,15 +47,15 @@ def generate(
     """Generate code from ICDs: files or folders; by default those in icdgen.toml, or the shipped ones."""
     paths, config = chosen(icds)
     packages = of_project(config)
-    asked = list(languages) or config.lang
-    if not asked:
+    languages_to_generate = list(languages) or config.lang
+    if not languages_to_generate:
         raise UserError("no language to generate", "for instance `icdgen --lang c`; or set `lang` in icdgen.toml")
     if out is None:
         base = config.out or Path("generated")
-        out = base / asked[0] if len(set(asked)) == 1 else base
-    with progress.items(", ".join(dict.fromkeys(asked)), "files") as watch:
+        out = base / languages_to_generate[0] if len(set(languages_to_generate)) == 1 else base
+    with progress.items(", ".join(dict.fromkeys(languages_to_generate)), "files") as watch:
         job = Job(
-            asked,
+            languages_to_generate,
             out,
             paths,
             templates or config.templates,

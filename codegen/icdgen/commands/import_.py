@@ -1,4 +1,4 @@
-"""``icdgen import``"""
+"""Command ``icdgen import``."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class _Pages(click.ParamType):  # type: ignore[type-arg]  # older versions of click know no argument
-    """``12``, ``20-35``"""
+    """Range of pages: ``12`` or ``20-35``."""
 
     name = "pages"
 
@@ -144,7 +144,7 @@ def import_(
         sys.exit(1)
     invalid = False
     if folder is not None and not vocabulary.rules and not explore:
-        sys.exit(0)  # the tables were what was asked for
+        sys.exit(0)  # only the tables were requested
     if explore:
         _explore(result, form)
     else:
@@ -164,33 +164,41 @@ def import_(
 
 
 def _definitions(files: tuple[Path, ...], kind: str | None) -> list[tuple[Path, Reader]]:
-    """The definitions among files and below folders; none for a manual. Raises `UserError` for what cannot be read together."""
+    """Return the definitions in files and folders with their readers; empty for a
+    manual.
+
+    Raises `UserError` for files that cannot be imported together.
+    """
     from icdgen.definitions import kinds
 
-    given = kinds.get(kind) if kind is not None else None
-    found: dict[Path, tuple[Path, Reader]] = {}
+    requested = kinds.get(kind) if kind is not None else None
+    definitions: dict[Path, tuple[Path, Reader]] = {}
     for path in files:
         if path.is_dir():
-            inside = [one for one in kinds.within(path) if given is None or one[1].name == given.name]
+            inside = [
+                definition
+                for definition in kinds.within(path)
+                if requested is None or definition[1].name == requested.name
+            ]
             if not inside:
-                of_kind = f" of the kind {given.name}" if given else ""
+                of_kind = f" of the kind {requested.name}" if requested else ""
                 help = f"kinds are {', '.join(kinds.names())}; import a manual, or a file that --kind names, by its own name"
                 raise UserError(f"there is no definition{of_kind} in the folder {path}", help)
         else:
-            reader = given or kinds.of(path)
+            reader = requested or kinds.of(path)
             if reader is None and len(files) == 1:
                 return []
             if reader is None:
                 reason = "is not a known definition" if path.exists() else "does not exist"
                 raise UserError(f"{path} {reason}", "import manuals one by one; --kind names the kind of definitions")
             inside = [(path, reader)]
-        for one in inside:
-            found.setdefault(one[0].resolve(), one)
-    return list(found.values())
+        for definition in inside:
+            definitions.setdefault(definition[0].resolve(), definition)
+    return list(definitions.values())
 
 
 def _define(files: list[tuple[Path, Reader]], out: Path, update: bool, dry_run: bool, form: str) -> None:
-    """Imports definitions: one, or several that may refer to each other."""
+    """Import one definition, or several that may refer to each other."""
     from icdgen.definitions import console, run
     from icdgen.import_results import targets
 
@@ -219,7 +227,10 @@ def _define(files: list[tuple[Path, Reader]], out: Path, update: bool, dry_run: 
 def _workbench(
     manual: Path, words: str | None, out: Path, pages: tuple[int, int] | None, jobs: int | None, form: str
 ) -> None:
-    """Serve the workbench until it is interrupted. Raises `UserError` for a profile that is shipped, or has no rules."""
+    """Serve the workbench until it is interrupted.
+
+    Raises `UserError` for a shipped profile or a profile without rules.
+    """
     from icdgen.importer import profile, sources
     from icdgen.importer.workbench import server
     from icdgen.importer.workbench.session import Session
@@ -239,7 +250,10 @@ def _workbench(
 
 
 def _explanation(result: Result, number: int) -> str:
-    """Return what `--explain` prints. Raises `UserError` if there is no such table."""
+    """Return the output of `--explain`.
+
+    Raises `UserError` if the table does not exist.
+    """
     from icdgen.importer.rules import explain
 
     if not 1 <= number <= len(result.tables):
@@ -275,7 +289,11 @@ def _say_files(targets: list[Target], checked: list[Finding], dry_run: bool) -> 
 
 
 def _refuse(error: Findings, manual: Path, form: str) -> None:
-    """Says why nothing can be imported: about the manual as a whole, or about lines of a profile or an ICD."""
+    """Report why nothing can be imported.
+
+    Findings about a whole file have no excerpt; findings about lines of a profile or an
+    ICD do.
+    """
     if form == "json":
         from icdgen.importer import console
 
@@ -296,7 +314,9 @@ def _refuse(error: Findings, manual: Path, form: str) -> None:
 
 
 def _next_step(targets: list[Target], checked: list[Finding], dry_run: bool) -> str:
-    """Return how many errors and warnings `icdgen check` has for the files: the import ends where the check begins."""
+    """Return the next step: the `icdgen check` command with the number of its errors
+    and warnings.
+    """
     command = f"`icdgen check {' '.join(str(target.path) for target in targets)}`"
     counts = Counter(finding.severity for finding in checked)
     shown = " and ".join(f"{n} {severity}{'s' if n != 1 else ''}" for severity, n in sorted(counts.items()))

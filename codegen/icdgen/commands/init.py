@@ -1,4 +1,4 @@
-"""``icdgen init``"""
+"""Command ``icdgen init``."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def _style(origin: str, icds: tuple[Path, ...]) -> Style:
 
     paths = chosen(icds)[0]
     if not icds and not all(path.exists() for path in paths):
-        paths = [shipped.icds()]  # icdgen.toml was written before its ICDs
+        paths = [shipped.icds()]  # icdgen.toml exists before its ICDs
     loaded = right_or_exit(load(paths))
     try:
         node = find_node(loaded.icd, origin)

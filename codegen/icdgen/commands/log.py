@@ -1,4 +1,4 @@
-"""``icdgen log``"""
+"""Command ``icdgen log``."""
 
 from __future__ import annotations
 
@@ -60,26 +60,26 @@ def log(
 
     form = form or _form_of(out)
     icd = load_or_exit(icds).icd
-    node, file, messages = _taken_apart(icd, words, name)
-    found = open_log(icd, node, file, direction, messages)
+    node, file, messages = _split_arguments(icd, words, name)
+    recording = open_log(icd, node, file, direction, messages)
     if form is None:
         from icdgen import tables
 
         if head is not None:
             raise click.UsageError("--head needs --format or --out")
-        with progress.bytes_of(file.name, found.steps(None)) as done:
-            text = found.listing(tables.width_of(sys.stdout), done)
+        with progress.bytes_of(file.name, recording.steps(None)) as done:
+            text = recording.listing(tables.width_of(sys.stdout), done)
         click.echo(text, nl=False)
-        sys.exit(found.is_damaged(None))
-    with progress.bytes_of(file.name, found.steps(head)) as done:
-        for note in found.prepare(head, done):
+        sys.exit(recording.is_damaged(None))
+    with progress.bytes_of(file.name, recording.steps(head)) as done:
+        for note in recording.prepare(head, done):
             click.echo(f"icdgen: {file}: {note}", err=True)
-        _convert(found, form, out, head, done)
-    sys.exit(found.is_damaged(head))
+        _convert(recording, form, out, head, done)
+    sys.exit(recording.is_damaged(head))
 
 
-def _taken_apart(icd: Icd, words: Sequence[str], name: str | None) -> tuple[Node, Path, list[Message]]:
-    """Node, file and messages."""
+def _split_arguments(icd: Icd, words: Sequence[str], name: str | None) -> tuple[Node, Path, list[Message]]:
+    """Return node, file and messages."""
     from icdgen.logfile.source import node_of
     from icdgen.values.find import find_message
 
@@ -99,28 +99,33 @@ def _form_of(out: Path | None) -> str | None:
     return _SUFFIXES[out.suffix.lower()]
 
 
-def _convert(found: Log, form: str, out: Path | None, head: int | None, done: Callable[[int], None]) -> None:
+def _convert(recording: Log, form: str, out: Path | None, head: int | None, done: Callable[[int], None]) -> None:
     from icdgen.logfile import text
 
     if form == "parquet":
         if out is None:
             raise UserError("Parquet does not go to standard output", "--out FILE.parquet")
-        with _whole(out) as partial:
-            found.to_parquet(partial, head, done)
+        with _written_completely(out) as partial:
+            recording.to_parquet(partial, head, done)
         return
     convert = {"csv": text.to_csv, "jsonl": text.to_json_lines}[form]
     if out is None:
         if sys.stdout is None:
             raise UserError("standard output is closed", "--out FILE")
-        convert(found.names, found.rows(head, done), sys.stdout)
+        convert(recording.names, recording.rows(head, done), sys.stdout)
         return
-    with _whole(out) as partial, open(partial, "w", encoding="utf-8", newline="", buffering=1 << 20) as stream:
-        convert(found.names, found.rows(head, done), stream)
+    with (
+        _written_completely(out) as partial,
+        open(partial, "w", encoding="utf-8", newline="", buffering=1 << 20) as stream,
+    ):
+        convert(recording.names, recording.rows(head, done), stream)
 
 
 @contextmanager
-def _whole(out: Path) -> Iterator[Path]:
-    """A file beside it that takes its place when it is complete, and is gone if it never is."""
+def _written_completely(out: Path) -> Iterator[Path]:
+    """Context with a temporary file, which replaces ``out`` when it is complete and is
+    deleted on an error.
+    """
     partial = out.with_name(f".{out.name}.partial")
     try:
         yield partial

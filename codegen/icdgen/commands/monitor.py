@@ -1,4 +1,4 @@
-"""``icdgen monitor``"""
+"""Command ``icdgen monitor``."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from icdgen.link.live import Monitor
     from icdgen.link.screen import Screen
 
-_SHORTEST_PAUSE = 0.1  # s between two attempts to reach a line that is gone
+_SHORTEST_PAUSE = 0.1  # seconds between two attempts to reopen a lost connection
 
 
 @click.command(epilog="Example: icdgen monitor wheels 146 --port tcp://127.0.0.1:4000")
@@ -83,7 +83,7 @@ def monitor(
 
 
 class _Rounds:
-    """One after the other, each printed at its end."""
+    """Rounds of a monitor. Each round is printed at its end."""
 
     def __init__(self, watched: Monitor, last: int | None, every: float, form: str) -> None:
         self.watched, self.last, self.every, self.form = watched, last, every, form
@@ -94,7 +94,10 @@ class _Rounds:
         return self.number == self.last
 
     def run(self, session: BusSession, screen: Screen) -> None:
-        """Asks for every message, then waits for the next round. Raises `icdgen.link.ports.PortError`."""
+        """Request all messages, then wait for the next round.
+
+        Raises `icdgen.link.ports.PortError`.
+        """
         from icdgen_runtime.wire.client import Request
 
         end = time.monotonic() + self.every
@@ -114,7 +117,7 @@ class _Rounds:
             self._print(screen)
 
     def miss(self, screen: Screen) -> None:
-        """A round without a line, and the pause after it."""
+        """Process a round without connection, and wait for the next one."""
         self.watched.miss()
         screen.show()
         self._print(screen)

@@ -1,4 +1,7 @@
-"""Progress of long commands, on standard error if that is a terminal. In a pipe and in CI nothing is printed."""
+"""Progress of long commands on standard error, if it is a terminal.
+
+A pipe and CI get no output.
+"""
 
 from __future__ import annotations
 
@@ -15,6 +18,7 @@ DELAY = 1.0  # seconds before progress is shown: most commands end earlier, and 
 LEAST_BYTES = 10_000_000  # of a log whose conversion takes longer than that
 
 T = TypeVar("T")
+# Commands without a terminal never import rich, which takes longer than most commands.
 
 
 @contextmanager
@@ -47,7 +51,10 @@ def pages(name: str) -> Iterator[Callable[[int, int, int], None]]:
 
 @contextmanager
 def bytes_of(name: str, total: int) -> Iterator[Callable[[int], None]]:
-    """Count the bytes of a log. Yields a function of the number of further bytes."""
+    """Count the bytes of a log.
+
+    Yields a function that adds a number of processed bytes.
+    """
     with _bar(name, "bar", "download", "speed", "remaining", is_shown=total >= LEAST_BYTES) as bar:
         bar.update(total=total)
         yield lambda size: bar.update(completed=bar.values.get("completed", 0) + size)
@@ -63,7 +70,7 @@ class _Bar:
         self._progress: Progress | None = None
 
     def update(self, **values: Any) -> None:
-        """Change values of the task: ``completed``, ``total``, or those that a column shows."""
+        """Change values of the task: ``completed``, ``total``, or values that a column shows."""
         self.values |= values
         if self._progress is not None:
             self._progress.update(self._progress.task_ids[0], **self.values)
@@ -81,7 +88,7 @@ class _Bar:
             "elapsed": progress.TimeElapsedColumn,
             "remaining": progress.TimeRemainingColumn,
         }
-        columns = [kinds[one]() if one in kinds else progress.TextColumn(one) for one in self._columns]
+        columns = [kinds[column]() if column in kinds else progress.TextColumn(column) for column in self._columns]
         name = progress.TextColumn("{task.description}", markup=False)
         shown = progress.Progress(name, *columns, console=Console(stderr=True), transient=True)
         shown.add_task(self._name, **{"total": None} | self.values)

@@ -1,4 +1,4 @@
-"""``icdgen rule``"""
+"""Command ``icdgen rule``."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ def rule(code: str | None) -> None:
     from icdgen.importer import findings
 
     if code is None:
-        titles = [(one.code, one.title) for one in rules.ALL.values()]
-        titles += [(one.code, one.title) for one in RULES.values()]
+        titles = [(icd_rule.code, icd_rule.title) for icd_rule in rules.ALL.values()]
+        titles += [(diff_rule.code, diff_rule.title) for diff_rule in RULES.values()]
         titles += [(name, page.title) for name, page in findings.pages().items()]
-        for found, title in titles:
-            click.echo(f"{found}  {title}")
+        for rule_code, title in titles:
+            click.echo(f"{rule_code}  {title}")
         return
     code = code.upper()
     if code in rules.ALL:

@@ -1,4 +1,4 @@
-"""``icdgen schema``"""
+"""Command ``icdgen schema``."""
 
 from __future__ import annotations
 

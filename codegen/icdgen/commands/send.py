@@ -1,4 +1,4 @@
-"""``icdgen send``"""
+"""Command ``icdgen send``."""
 
 from __future__ import annotations
 
@@ -48,35 +48,38 @@ def send(words: tuple[str, ...], icds: tuple[Path, ...], raw: bool, yes: bool, f
     from icdgen.values.text import to_text
 
     icd = load_or_exit(icds).icd
-    found, message, assignments = find_frame(icd, words)
-    frame = encode(icd, found.name, message, assignments, raw=raw, kind="telecommand")
+    node, message, assignments = find_frame(icd, words)
+    frame = encode(icd, node.name, message, assignments, raw=raw, kind="telecommand")
     assert frame.message.telecommand_id is not None
-    if frame.message.hazard and not yes and not _is_meant(frame):
+    if frame.message.hazard and not yes and not _is_confirmed(frame):
         say(f"{frame.message.name}: not sent", err=True)
         sys.exit(1)
-    heard, known = Heard(icd, found), facts.of(icd, found)
-    with open_session(icd, known, **options, on_event=heard.event) as session:
+    heard, protocol_facts = Heard(icd, node), facts.of(icd, node)
+    with open_session(icd, protocol_facts, **options, on_event=heard.event) as session:
         outcome = session.start(Request("telecommand", frame.message.telecommand_id, frame.data))
     ok = isinstance(outcome, Done)
-    reply = _reply(icd, found, known, frame, heard, outcome.data) if isinstance(outcome, Done) else None
+    reply = _reply(icd, node, protocol_facts, frame, heard, outcome.data) if isinstance(outcome, Done) else None
     if form == "json":
-        told = {key: getattr(outcome, key, None) for key in ("code", "reason", "attempts")}
-        told["reply"] = reply.to_json() if reply else None
-        answer = {key: value for key, value in told.items() if value is not None}
-        click.echo(json.dumps({"message": frame.message.name, "event": type(outcome).__name__.lower(), **answer}))
+        response = {key: getattr(outcome, key, None) for key in ("code", "reason", "attempts")}
+        response["reply"] = reply.to_json() if reply else None
+        known_values = {key: value for key, value in response.items() if value is not None}
+        click.echo(json.dumps({"message": frame.message.name, "event": type(outcome).__name__.lower(), **known_values}))
     elif isinstance(outcome, Done):
-        say(f"{_sent(frame)}: {_done(frame, known, reply)}")
+        say(f"{_sent(frame)}: {_done(frame, protocol_facts, reply)}")
         if reply:
             say(to_text(reply, tables.width_of(sys.stdout)).rstrip())
     else:
-        say(f"{_sent(frame)}: {_failed(icd, found, outcome)}", err=True)
+        say(f"{_sent(frame)}: {_failed(icd, node, outcome)}", err=True)
     if what := heard.text():
         say(f"icdgen: {what}", err=True)
     sys.exit(0 if ok else 1)
 
 
-def _is_meant(frame: Frame) -> bool:
-    """Shows what is dangerous and asks. Raises `UserError` where nobody can answer."""
+def _is_confirmed(frame: Frame) -> bool:
+    """Show a dangerous telecommand and ask for confirmation.
+
+    Raises `UserError` without a terminal.
+    """
     from icdgen import tables
     from icdgen.values.text import to_text
 
@@ -88,27 +91,29 @@ def _is_meant(frame: Frame) -> bool:
 
 
 def _sent(frame: Frame) -> str:
-    """The message, with the constants that nobody typed: magic numbers."""
+    """Return the message with its constants, such as magic numbers, which the user did
+    not enter.
+    """
     from icdgen.describe.numbers import value_text
 
     constants = [(row.field, row.raw) for row in frame.rows if row.field.const is not None]
-    said = ", ".join(f"{field.name} {value_text(raw)}" for field, raw in constants if isinstance(raw, int))
-    return f"{frame.message.name} with {said}" if said else frame.message.name
+    constant_texts = ", ".join(f"{field.name} {value_text(raw)}" for field, raw in constants if isinstance(raw, int))
+    return f"{frame.message.name} with {constant_texts}" if constant_texts else frame.message.name
 
 
-def _reply(icd: Icd, node: Node, known: Facts, sent: Frame, heard: Heard, data: bytes) -> Frame | None:
-    """The telemetry that answered the telecommand; None where nothing does."""
+def _reply(icd: Icd, node: Node, protocol_facts: Facts, sent: Frame, heard: Heard, data: bytes) -> Frame | None:
+    """Return the telemetry that responds to the telecommand; None without a response."""
     from icdgen.values.frame import frame
 
-    rows = known.stream.telecommands if known.stream else ()
+    rows = protocol_facts.stream.telecommands if protocol_facts.stream else ()
     id = next((row.reply for row in rows if row.id == sent.message.telecommand_id), None)
     message = heard.message_of(id, data) if id is not None else None
     return frame(icd, node, message, data) if message else None
 
 
-def _done(frame: Frame, known: Facts, reply: Frame | None) -> str:
+def _done(frame: Frame, protocol_facts: Facts, reply: Frame | None) -> str:
     message = frame.message
-    if known.stream:
+    if protocol_facts.stream:
         return f"answered with {reply.message.name}" if reply else "sent; the ICD names no reply to it"
     if message.acknowledge:
         return "acknowledged"

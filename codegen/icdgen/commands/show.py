@@ -1,4 +1,4 @@
-"""``icdgen show``"""
+"""Command ``icdgen show``."""
 
 from __future__ import annotations
 

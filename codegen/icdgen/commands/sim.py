@@ -1,4 +1,4 @@
-"""``icdgen sim``"""
+"""Command ``icdgen sim``."""
 
 from __future__ import annotations
 
@@ -15,10 +15,14 @@ _PORT = click.IntRange(0, 65535)
 
 
 class _Sim(click.Command):
-    """``--set MESSAGE A=1 B=2`` is ``--set MESSAGE A=1 --set MESSAGE B=2``, for click's options have as many words each time."""
+    """Command line of ``icdgen sim``, in which ``--set MESSAGE A=1 B=2`` stands for
+    ``--set MESSAGE A=1 --set MESSAGE B=2``.
+
+    Options of click have a fixed number of values.
+    """
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        spread: list[str] = []
+        expanded: list[str] = []
         message = ""
         for index, word in enumerate(args):
             if index > 1 and args[index - 2] == "--set":
@@ -26,9 +30,9 @@ class _Sim(click.Command):
             elif word.startswith("-"):
                 message = ""
             elif message:
-                spread += ["--set", message]
-            spread.append(word)
-        return super().parse_args(ctx, spread)
+                expanded += ["--set", message]
+            expanded.append(word)
+        return super().parse_args(ctx, expanded)
 
 
 @click.command(cls=_Sim, epilog="Example: icdgen sim --node wheels --tcp 4000")
@@ -115,7 +119,10 @@ def sim(
 
 
 def _place(text: str) -> tuple[str, str, int]:
-    """Kind, host and port. Raises `UserError`."""
+    """Return kind, host and port.
+
+    Raises `UserError`.
+    """
     from icdgen.link.ports import address
 
     kind = text.partition("://")[0]
@@ -127,4 +134,4 @@ def _place(text: str) -> tuple[str, str, int]:
 def _print(text: str) -> None:
     say(text)
     if sys.stdout is not None:
-        sys.stdout.flush()  # whoever started it waits for the line
+        sys.stdout.flush()  # a parent process may wait for this line

@@ -1,4 +1,4 @@
-"""``icdgen units``"""
+"""Command ``icdgen units``."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ def units() -> None:
     from icdgen import tables
     from icdgen.icd.units import SPELLINGS, STANDARD
 
-    meant: dict[str, list[str]] = {}
+    spellings: dict[str, list[str]] = {}
     for spelling, symbol in SPELLINGS.items():
-        meant.setdefault(symbol, []).append(spelling)
+        spellings.setdefault(symbol, []).append(spelling)
     columns = [tables.Column(title) for title in ("unit", "in names", "quantity", "not")]
-    rows = [(u.symbol, u.identifier, u.quantity, ", ".join(meant.get(u.symbol, []))) for u in STANDARD.values()]
+    rows = [(u.symbol, u.identifier, u.quantity, ", ".join(spellings.get(u.symbol, []))) for u in STANDARD.values()]
     click.echo(tables.render(columns, rows, tables.width_of(sys.stdout)), nl=False)
