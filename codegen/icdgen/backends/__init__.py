@@ -1,7 +1,8 @@
-"""The registry of backends. A backend is one class and one folder of templates, and touches nothing else.
+"""Registry of backends. A backend is a class and a folder of templates; adding one
+changes no other module.
 
-A backend of another package, a plug-in, is found through the entry point group ``icdgen.backends``:
-see docs/guides/add-a-language.md.
+A backend in another package (plug-in) is found by the entry point group
+``icdgen.backends``: see docs/guides/add-a-language.md.
 """
 
 from __future__ import annotations
@@ -39,69 +40,88 @@ _BUILT_IN = {
 
 
 TITLES = {"c": "C", "python": "Python", "rust": "Rust"}
-"""How people write the languages that programs are generated for."""
+"""Spelling of the languages of generated programs in texts."""
 
 
 class Backend(Language, Protocol):
-    """What a backend offers: its ``name`` is as in ``--lang``, and that of its template folder."""
+    """Interface of a backend.
 
-    # Optional: `named_in`, the languages whose names its output contains, if not those of the backend itself alone.
-    # Not of ours, but of plug-ins: `templates` and `runtime`, the folders (`Path`) of what it renders and of what it copies.
-    # Files of `--templates` go before those of either.
+    Its ``name`` is the value of ``--lang`` and the name of its template folder.
+    """
+
+    # Optional: `named_in`, the languages whose declared names its output contains (default: its own language).
+    # Plug-ins only: `templates` and `runtime`, the folders (`Path`) of its templates and of files to copy.
+    # Files of `--templates` have precedence over both.
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str | bytes]]:
-        """Every file as relative path and content, a text or bytes, in a fixed order."""
+        """Yield each file as relative path and content (text or bytes), in a fixed
+        order.
+        """
 
 
 class UnknownBackend(UserError):
-    """No backend of that name; the message lists those there are."""
+    """No backend has this name. The message lists the existing ones."""
 
 
 _registered: dict[str, str] = {}
 
 
 def register(name: str, target: str) -> None:
-    """Makes a backend known to this process, but not to users: ``target`` is ``module:Class``, as in an entry point."""
+    """Register a backend in this process only, for tests.
+
+    ``target``: ``module:Class``, as in an entry point.
+    """
     _registered[name] = target
 
 
 def names() -> tuple[str, ...]:
-    """Names of the built-in backends."""
+    """Return the names of the built-in backends."""
     return tuple(_BUILT_IN)
 
 
 def plug_ins() -> dict[str, list[EntryPoint]]:
-    """The entry points of backends in other packages by name, in order; one that is named like ours is never asked."""
+    """Return the entry points of backends in other packages by name, in order.
+
+    Entry points with the name of a built-in backend are ignored.
+    """
     from importlib.metadata import entry_points
 
-    found: dict[str, list[EntryPoint]] = {}
+    points_by_name: dict[str, list[EntryPoint]] = {}
     for point in sorted(entry_points(group=GROUP), key=lambda point: (point.name, point.value)):
-        if point.name not in _BUILT_IN and point not in found.setdefault(point.name, []):
-            found[point.name].append(point)
-    return found
+        if point.name not in _BUILT_IN and point not in points_by_name.setdefault(point.name, []):
+            points_by_name[point.name].append(point)
+    return points_by_name
 
 
 def get(name: str) -> Backend:
-    """The backend called ``name``. Raises `UnknownBackend`, and `UserError` for a plug-in that can't be used."""
-    known = _registered | _BUILT_IN
-    if name in known:
-        return _load(known[name])
-    found = plug_ins()
-    if name not in found:
-        there = sorted({*_BUILT_IN, *found})
-        close = close_words(name, there, 1) or [one for one in there if one.startswith(name.lower())]
+    """Return the backend ``name``.
+
+    Raises `UnknownBackend`, and `UserError` for an unusable plug-in.
+    """
+    targets = _registered | _BUILT_IN
+    if name in targets:
+        return _load(targets[name])
+    points_by_name = plug_ins()
+    if name not in points_by_name:
+        available = sorted({*_BUILT_IN, *points_by_name})
+        close = close_words(name, available, 1) or [
+            candidate for candidate in available if candidate.startswith(name.lower())
+        ]
         help = "install the package of the backend in the environment of icdgen"
         raise UnknownBackend(
-            f"there is no backend `{name}`; there are: {', '.join(there)}",
+            f"there is no backend `{name}`; there are: {', '.join(available)}",
             f"did you mean `{close[0]}`?" if close else help,
         )
     from icdgen.backends.plug_in import PlugIn
 
-    return PlugIn.of(found[name])
+    return PlugIn.of(points_by_name[name])
 
 
 def not_ours(languages: Iterable[str]) -> list[Backend]:
-    """Those of the languages that are not built in. Raises like `get`."""
+    """Return the backends of languages that are not built in.
+
+    Raises the errors of `get`.
+    """
     return [get(name) for name in dict.fromkeys(languages) if name not in _BUILT_IN]
 
 
@@ -113,5 +133,5 @@ def named_in(chosen: Iterable[Backend]) -> tuple[str, ...]:
 
 def _load(target: str) -> Backend:
     module, _, attribute = target.partition(":")
-    made: Backend = getattr(import_module(module), attribute)()
-    return made
+    backend: Backend = getattr(import_module(module), attribute)()
+    return backend

@@ -1,6 +1,7 @@
-"""How the code that is made from an ICD is laid out, in every language: what fits stays on its line, the rest goes one item a line.
+"""Line layout of generated code in all languages: text that fits stays on one line,
+otherwise each item has its own line.
 
-The files say that they are laid out by icdgen, so that no formatter need agree.
+Generated files declare that icdgen formats them, so that formatters skip them.
 """
 
 from __future__ import annotations
@@ -11,20 +12,22 @@ from collections.abc import Iterable, Sequence
 from icdgen.describe.comments import one_line
 
 STEP = "    "
-_BLOCK = re.compile(r"(\d*)([-+*=#]+\Z|[.)]\Z|>)")  # what begins a list, a heading or a quotation
+_BLOCK = re.compile(r"(\d*)([-+*=#]+\Z|[.)]\Z|>)")  # start of a list, heading or quotation
 
 
 def bracketed(head: str, items: Sequence[str], tail: str, width: int, indent: str = "", last: str = ",") -> str:
-    """``head`` (which opens a bracket), ``items`` and ``tail`` (which closes it); ``last`` follows the last item on its own line.
+    """Return ``head`` (with an opening bracket), ``items`` and ``tail`` (with the
+    closing bracket), on one line if they fit.
 
-    ``indent`` is that of the line it begins on; the first line stands without.
+    ``last`` follows the last item if each has its own line. ``indent``: indentation of
+    the line; the first line is returned without it.
     """
     line = f"{head}{', '.join(items)}{tail}"
     return line if len(indent) + len(line) <= width and "\n" not in line else exploded(head, items, tail, indent, last)
 
 
 def exploded(head: str, items: Sequence[str], tail: str, indent: str = "", last: str = ",") -> str:
-    """One item a line."""
+    """Return the items with one line each."""
     if not items:
         return f"{head}{tail}"
     rows = f",\n{indent}{STEP}".join(items)
@@ -32,27 +35,35 @@ def exploded(head: str, items: Sequence[str], tail: str, indent: str = "", last:
 
 
 def wrapped(text: str, width: int) -> list[str]:
-    """The words of a text, one blank apart, on lines of at most ``width`` characters, as far as words allow."""
-    rest, lines = text, []
-    while len(rest) > width:
-        end = rest.rfind(" ", 0, width + 1)
+    """Return the words of a text on lines of at most ``width`` characters.
+
+    A longer word has its own line.
+    """
+    remaining, lines = text, []
+    while len(remaining) > width:
+        end = remaining.rfind(" ", 0, width + 1)
         if end < 0:
-            end = rest.find(" ")  # behind a word that is longer than a line
+            end = remaining.find(" ")  # after a word that is longer than a line
         if end < 0:
             break
-        lines.append(rest[:end])
-        rest = rest[end + 1 :]
-    return [*lines, rest]
+        lines.append(remaining[:end])
+        remaining = remaining[end + 1 :]
+    return [*lines, remaining]
 
 
 def plain(text: str) -> str:
-    """One line without control, invisible or direction-changing characters."""
+    """Return the text as one line without control, invisible and direction-changing
+    characters.
+    """
     text = one_line(text)
     return text if text.isprintable() else "".join(c if c.isprintable() else f"U+{ord(c):04X}" for c in text)
 
 
 def commented(paragraphs: Iterable[str], width: int, start: str, is_spaced: bool = False) -> list[str]:
-    """The lines of a comment, each after ``start``; ``is_spaced``: with an empty one between two paragraphs."""
+    """Return the lines of a comment, each after ``start``.
+
+    ``is_spaced``: separate paragraphs by an empty line.
+    """
     lines: list[str] = []
     for paragraph in filter(None, paragraphs):
         lines += [start.rstrip()] if lines and is_spaced else []
@@ -61,14 +72,16 @@ def commented(paragraphs: Iterable[str], width: int, start: str, is_spaced: bool
 
 
 def tamed(line: str) -> str:
-    """A line that begins no list, heading or quotation of Markdown."""
+    """Return a line with an escaped start, if Markdown would read it as list, heading
+    or quotation.
+    """
     if line[:1].isalpha():
         return line
-    word, space, rest = line.partition(" ")
-    return _BLOCK.sub(r"\1\\\2", word, count=1) + space + rest if _BLOCK.match(word) else line
+    word, space, following = line.partition(" ")
+    return _BLOCK.sub(r"\1\\\2", word, count=1) + space + following if _BLOCK.match(word) else line
 
 
 def in_rows(items: Iterable[str], count: int) -> list[str]:
-    """``count`` items a line, each with a comma behind it."""
-    found = [f"{item}," for item in items]
-    return [" ".join(found[first : first + count]) for first in range(0, len(found), count)]
+    """Return rows of ``count`` items, each item with a trailing comma."""
+    items_with_commas = [f"{item}," for item in items]
+    return [" ".join(items_with_commas[first : first + count]) for first in range(0, len(items_with_commas), count)]

@@ -1,4 +1,8 @@
-"""Nested literals: brackets with one item a line, or all of them on one line where a backend says so. No column is counted."""
+"""Nested literals of generated code: brackets with one item per line, or on one line if
+a backend requests it.
+
+Line lengths are not considered.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +15,10 @@ from icdgen.backends.lines import STEP
 
 @dataclass(frozen=True, slots=True)
 class Brackets:
-    """Items between two brackets; ``is_flat``: on one line."""
+    """Items between two brackets.
+
+    ``is_flat``: all on one line.
+    """
 
     opening: str
     items: tuple[Item, ...]
@@ -19,12 +26,12 @@ class Brackets:
     is_flat: bool = False
 
     def within(self, before: str, after: str) -> Brackets:
-        """The same with more around it."""
+        """Return the brackets with additional text before and after."""
         return replace(self, opening=before + self.opening, closing=self.closing + after)
 
 
 class Item(NamedTuple):
-    """Something in brackets, with what stands before it on its line, and notes above it."""
+    """Item in brackets, with text before it on its line, and notes above it."""
 
     value: str | Brackets
     head: str = ""
@@ -32,7 +39,10 @@ class Item(NamedTuple):
 
 
 def written(value: str | Brackets, note: Callable[[str, str], str], indent: str = "") -> str:
-    """The text of a literal that begins on a line of that indentation. ``note`` makes a comment of a text and its indentation."""
+    """Return the text of a literal whose first line has the indentation ``indent``.
+
+    ``note``: function that returns a comment for a text and its indentation.
+    """
     if isinstance(value, str):
         return value
     if not value.items:
@@ -43,6 +53,6 @@ def written(value: str | Brackets, note: Callable[[str, str], str], indent: str 
         return f"{value.opening}{', '.join(items)}{value.closing}"
     lines = [value.opening.rstrip()]
     for item, text in zip(value.items, items, strict=True):
-        lines += [note(one, inner) for one in item.notes]
+        lines += [note(text_of_note, inner) for text_of_note in item.notes]
         lines.append(f"{inner}{text},")
     return "\n".join([*lines, indent + value.closing.lstrip()])

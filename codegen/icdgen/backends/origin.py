@@ -1,4 +1,4 @@
-"""The first line of what is generated."""
+"""First line of generated files."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ from icdgen.icd.model import Node
 
 
 def origin(node: Node | None = None, with_digest: bool = False) -> str:
-    """Who made the file, of which node if it is of one; to be put into a comment of the language.
+    """Return the origin of a generated file, as text for a comment: generator version
+    and, if given, node.
 
-    The digest is for one file a node: it changes with every change of the ICD, and the others need not.
+    ``with_digest``: add the digest of the ICD. It changes with each change of the ICD,
+    so it belongs only into files of one node.
     """
     of_node = f" from node {node.name}" if node else ""
     of_icd = f", ICD {node.digest[:16]}" if node and with_digest else ""

@@ -1,4 +1,4 @@
-"""Names of the packages that are generated: the Python package, the Rust crate, the prefix of C."""
+"""Names of generated packages: Python package, Rust crate, prefix of C names."""
 
 from __future__ import annotations
 
@@ -12,28 +12,32 @@ from icdgen.frozen import dataclass
 
 _LOWER = re.compile(r"[a-z][a-z0-9_]*")
 _PROJECT = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
-_LONGEST = 40  # characters: a name of C is told from others by its first 63
+_LONGEST = 40  # characters: C compilers distinguish at least the first 63 of a name (C11 5.2.4.1)
 _FORM = "lower-case letters, digits and _, a letter first"
 _OURS = ("icdgen", "icdgen_runtime")
-_CRATES = ("alloc", "core", "proc_macro", "std", "test")  # what comes with the compiler
+_CRATES = ("alloc", "core", "proc_macro", "std", "test")  # crates that are part of the compiler
 
 
 @dataclass(frozen=True)
 class Packages:
-    """The names in use; the defaults are those of ICDs without a project's name."""
+    """Names of the packages; the defaults apply to ICDs without a project name."""
 
     python: str = "icdgen_messages"
     rust: str = "icd"
-    c: str = ""  # before the name of each node, with `_` between
+    c: str = ""  # prefix of each node's name, joined by `_`
 
     @property
     def c_prefix(self) -> str:
-        """What stands before the name of a node in C."""
+        """Prefix of a node's name in C."""
         return f"{self.c}_" if self.c else ""
 
 
 def of_project(config: Config) -> Packages:
-    """The names that ``icdgen.toml`` gives: each its own, or for Python and Rust the project's. Raises `UserError`."""
+    """Return the names in ``icdgen.toml``: explicit ones, or for Python and Rust the
+    project name.
+
+    Raises `UserError`.
+    """
     names = dict(config.packages)
     for section, name in names.items():
         if problem := _problem(section, name):
@@ -60,7 +64,7 @@ def _refused(config: Config, section: str, key: str, name: str, problem: str) ->
 
 
 def _problem(section: str, name: str) -> str:
-    """Why the name cannot be used in a language; empty if it can."""
+    """Return the reason why a name is invalid in a language; empty if it is valid."""
     if not _LOWER.fullmatch(name):
         return f"takes {_FORM}"
     if len(name) > _LONGEST:

@@ -1,4 +1,4 @@
-"""A backend of another package: whatever goes wrong in it is said in a user's words, with its name and entry point."""
+"""Backend of another package. Its errors are reported with its name and entry point."""
 
 from __future__ import annotations
 
@@ -15,7 +15,11 @@ from icdgen.icd.model import Icd
 
 
 class PlugIn:
-    """The backend behind an entry point. Raises `UserError` for whatever it raises, except a `UserError` of its own."""
+    """Backend of an entry point.
+
+    Raises `UserError` for each exception of the backend; its own `UserError` is passed
+    on.
+    """
 
     def __init__(self, point: EntryPoint) -> None:
         self._point = point
@@ -34,14 +38,17 @@ class PlugIn:
 
     @classmethod
     def of(cls, points: list[EntryPoint]) -> PlugIn:
-        """The backend of that name. Raises `UserError` if several packages have one."""
+        """Return the backend of the entry points of one name.
+
+        Raises `UserError` if several packages define it.
+        """
         if len(points) > 1:
             each = " and ".join(f"`{point.value}`{_package(point)}" for point in points)
             raise UserError(f"there are {len(points)} backends `{points[0].name}`: {each}", "uninstall all but one")
         return cls(points[0])
 
     def files(self, icd: Icd, render: Any) -> Iterator[tuple[PurePosixPath, str | bytes]]:
-        """Those of the backend."""
+        """Yield the files of the backend."""
         with self._named("failed"):
             for file in self._files(icd, render):
                 path, text = file
@@ -50,7 +57,7 @@ class PlugIn:
                 yield PurePosixPath(path), text
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
-        """Those of the backend."""
+        """Yield the identifiers of the backend."""
         with self._named("failed"):
             yield from self._identifiers(icd)
 
@@ -62,9 +69,9 @@ class PlugIn:
             raise
         except Exception as error:
             last = traceback.extract_tb(error.__traceback__)[-1]
-            said = f"{type(error).__name__}: {error}".rstrip(": ")
+            reason = f"{type(error).__name__}: {error}".rstrip(": ")
             raise UserError(
-                f"the backend `{self._point.name}`{_package(self._point)} (entry point `{self._point.value}`) {what}: {said}",
+                f"the backend `{self._point.name}`{_package(self._point)} (entry point `{self._point.value}`) {what}: {reason}",
                 f"it is a fault of that package, in {last.filename}, line {last.lineno}: report it to its makers",
             ) from error
 

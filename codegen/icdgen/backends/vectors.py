@@ -1,4 +1,7 @@
-"""The golden vectors: one JSON file a node and one for the protocol. Data, so without a template: see `icdgen.vectors`."""
+"""Backend of the golden vectors: one JSON file per node and one for the protocol.
+
+The files are data without templates; see `icdgen.vectors`.
+"""
 
 from __future__ import annotations
 
@@ -8,29 +11,34 @@ from pathlib import PurePosixPath
 from icdgen.backends import Identifier
 from icdgen.icd.model import Icd
 
-FILE = "protocol"  # the file of the protocol's vectors, without its ending
+FILE = "protocol"  # name of the vector file of the protocol, without extension
 
 
 class VectorsBackend:
-    """``icdgen --lang vectors``"""
+    """Backend of ``icdgen --lang vectors``."""
 
     name = "vectors"
     reserved: frozenset[str] = frozenset()
 
     def files(self, icd: Icd, render: object) -> Iterator[tuple[PurePosixPath, str]]:
-        """``<node>.json`` for each node, in their order, and ``protocol.json`` if a node has a protocol."""
+        """Yield ``<node>.json`` for each node in order, and ``protocol.json`` if a node
+        has a protocol.
+        """
         from icdgen.vectors import protocol
         from icdgen.vectors.make import make
         from icdgen.vectors.write import text
 
         for node in icd.nodes:
             yield PurePosixPath(f"{node.name}.json"), text(make(icd, node))
-        asked = protocol.text(icd)
-        if asked:
-            yield PurePosixPath(f"{FILE}.json"), asked
+        protocol_text = protocol.text(icd)
+        if protocol_text:
+            yield PurePosixPath(f"{FILE}.json"), protocol_text
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
-        """Only those of the files: JSON strings may hold any name."""
+        """Yield the file names.
+
+        JSON strings can contain any name, so only file names can conflict.
+        """
         if any(icd.protocol_of(node) for node in icd.nodes):
             yield Identifier("the files of the vectors", FILE, "vectors of the protocol", None)
         for node in icd.nodes:

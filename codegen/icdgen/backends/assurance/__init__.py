@@ -1,4 +1,6 @@
-"""The papers that a review of flight software asks for: trace, errata and assumptions, and what was measured."""
+"""Verification package for reviews of flight software: traceability, errata,
+assumptions and measurements.
+"""
 
 from __future__ import annotations
 
@@ -14,22 +16,25 @@ if TYPE_CHECKING:
 
 
 class AssuranceBackend:
-    """``icdgen --lang assurance``. ``measured`` is the folder of measurements that go into the pack."""
+    """Backend of ``icdgen --lang assurance``.
+
+    ``measured``: folder of measurements to include.
+    """
 
     name = "assurance"
     reserved: frozenset[str] = frozenset()
     named_in = ("c", "python", "rust")
-    needs_lines = True  # of the ICDs: a model that was remembered has none
+    needs_lines = True  # line numbers of the ICDs, which a cached model lacks
 
     def __init__(self) -> None:
         self.measured: Path | None = None
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
-        """Every page and table, in a fixed order."""
+        """Yield each page and table, in a fixed order."""
         from icdgen.backends.assurance import pack
 
         return pack.files(icd, render, self.measured)
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
-        """None: what is made of an ICD's names is text."""
+        """Return no identifiers: the package contains text only."""
         return iter(())

@@ -1,4 +1,6 @@
-"""Every single change of what the lines of an ICD say: numbers one more and one less, types, formulas, references."""
+"""Single changes (mutations) of the content of an ICD: numbers plus and minus one,
+types, formulas and references.
+"""
 
 from __future__ import annotations
 
@@ -44,17 +46,19 @@ OTHER_TYPES = {
     "bytes": ("uint", "int"),
     "text": ("uint", "int", "bytes"),
 }
-"""Types that a field of the same width could be instead."""
+"""Other types that a field of the same width can have."""
 
 T = TypeVar("T", Message, Node, Member)
 _OTHER_ORDER = {"little": "big", "big": "little", "lsb0": "msb0", "msb0": "lsb0"}
 _WIDER = {**dict.fromkeys(("uint", "int", "enum"), (-1, 1)), **dict.fromkeys(("bytes", "text"), (-8, 8))}
 _LIMITS = ("min", "max", "above", "below")
-_OF_SCALED = ("formula", "const", "special", *_LIMITS)  # what only numbers have
+_OF_SCALED = ("formula", "const", "special", *_LIMITS)  # keys of numbers only
 
 
 class Change(NamedTuple):
-    """The value of ``key`` of ``source`` (what was read of a line) would be ``now`` instead of ``old``."""
+    """Change of one value in a line of an ICD: ``key`` of ``source`` has the value
+    ``now`` instead of ``old``.
+    """
 
     kind: str  # "offset", "width", "type" ...
     source: Map
@@ -64,10 +68,10 @@ class Change(NamedTuple):
 
 
 def of_line(node: LayoutNode, layout: Layout, orders: Orders) -> Iterator[tuple[Change, LayoutNode]]:
-    """List the changes of a line of a message or struct, each with the node that it gives.
+    """Yield the changes of a line of a message or struct, each with the resulting node.
 
-    Left out are changes that no field of such a type, or no frame of such a length, can have. `orders` are those of the
-    ICD node.
+    Changes that are impossible for the type of the field or the length of the frame are
+    omitted. ``orders``: orders of the ICD node.
     """
     scalar = scalar_of(node)
     if isinstance(node, Derived):
@@ -103,10 +107,10 @@ def of_line(node: LayoutNode, layout: Layout, orders: Orders) -> Iterator[tuple[
 
 
 def _derived(node: Derived) -> Iterator[tuple[Change, LayoutNode]]:
-    """List the changes of the formula of a derived value."""
+    """Yield the changes of the formula of a derived value."""
     old, formula = node.derivation, node.scalar.formula
     for text in formulas(formula):
-        with suppress(FormulaError):  # not a formula any more, or the number is part of a name
+        with suppress(FormulaError):  # no formula after the change, or the number is part of a name
             new = parse(text, old.fields)
             if new.sense({}) != old.sense({}):
                 change = Change("formula", node.source, "formula", formula, text)
@@ -114,7 +118,9 @@ def _derived(node: Derived) -> Iterator[tuple[Change, LayoutNode]]:
 
 
 def _of_conditions(node: LayoutNode, layout: Layout) -> Iterator[tuple[Change, LayoutNode]]:
-    """List the changes of a value that another field must have, if the ICD states it as a number."""
+    """Yield the changes of a required value of another field, if the ICD states it as a
+    number.
+    """
     scalars = {other.name: scalar for other in layout.nodes if (scalar := scalar_of(other)) is not None}
     for place, condition in enumerate(node.present_if):
         value, other = node.source["when"].get(condition.field), scalars[condition.field]
@@ -128,13 +134,17 @@ def _of_conditions(node: LayoutNode, layout: Layout) -> Iterator[tuple[Change, L
 
 
 def _of_orders(node: LayoutNode, around: Orders) -> Iterator[tuple[Change, LayoutNode]]:
-    """List the changes of the orders of a line; `around` are those in effect around it."""
+    """Yield the changes of the orders of a line.
+
+    ``around``: orders in effect outside of the line.
+    """
     own, scalar = node.orders.within(around), scalar_of(node)
     if scalar is not None and scalar.is_bytes:
         return
     for key, name in (("byte_order", "byte"), ("bit_order", "bit")):
         order = getattr(own, name)
         other = replace(own, **{name: _OTHER_ORDER[order]})
+        # Different orders can result in the same bits, for example of a single byte.
         places = (pieces_at(node.at, stride(node), orders.byte, orders.bit) for orders in (own, other))
         if key in node.source and next(places) != next(places):
             change = Change(key.replace("_", " "), node.source, key, order, _OTHER_ORDER[order])
@@ -153,13 +163,13 @@ def _types(node: LayoutNode, scalar: Scalar) -> Iterator[tuple[Change, LayoutNod
 
 
 def _formulas(node: LayoutNode, scalar: Scalar) -> Iterator[tuple[Change, LayoutNode]]:
-    """List the changes of the calibration."""
+    """Yield the changes of the calibration."""
     if scalar.curve is not None and scalar.curve.points:
         yield from _tables(node, scalar, scalar.curve)
         return
     for text in formulas(scalar.formula) if scalar.has_formula else ():
         scale, curve = calibration(text, scalar.type)
-        if scale is not None or curve is not None:  # else its factor would be 0
+        if scale is not None or curve is not None:  # None for a factor of 0
             change = Change("formula", node.source, "formula", scalar.formula, text)
             yield change, with_attributes(node, scale=scale, curve=curve)
 
@@ -171,14 +181,14 @@ def _tables(node: LayoutNode, scalar: Scalar, old: Curve) -> Iterator[tuple[Chan
         words = (word for word in OUTSIDE if word != outside)
         variants += [(Change("outside", source, "outside", outside, word), printed, word) for word in words]
     for change, points, beyond in variants:
-        with suppress(FormulaError):  # not a lookup table any more
+        with suppress(FormulaError):  # no lookup table after the change
             new = table(doubles(points), beyond)
             if new != old:
                 yield change, with_attributes(node, curve=new)
 
 
 def tables(points: list[list[Any]]) -> Iterator[list[list[Any]]]:
-    """Each number of a table one more and one less."""
+    """Yield the table with each of its numbers increased and decreased by one."""
     for index, (place, step) in product(range(len(points)), product((0, 1), (-1, 1))):
         number = points[index][place]
         point = list(points[index])
@@ -187,7 +197,7 @@ def tables(points: list[list[Any]]) -> Iterator[list[list[Any]]]:
 
 
 def _values(node: LayoutNode, scalar: Scalar) -> Iterator[tuple[Change, LayoutNode]]:
-    """List the changes of values that have a meaning."""
+    """Yield the changes of constants, special values and limits."""
     if scalar.const is not None:
         for step in (-1, 1):
             change = _step("const", node.source, "const", scalar.const, step)
@@ -212,7 +222,7 @@ def _values(node: LayoutNode, scalar: Scalar) -> Iterator[tuple[Change, LayoutNo
 
 
 def of_message(message: Message, node: Node) -> Iterator[tuple[Change, Message]]:
-    """The changes of what a message says of itself."""
+    """Yield the changes of the attributes of a message."""
     source = message.source
     for key in ("id", "set_id", "get_id", "length"):
         value = getattr(message, key)
@@ -235,7 +245,7 @@ def of_message(message: Message, node: Node) -> Iterator[tuple[Change, Message]]
 
 
 def of_node(node: Node) -> Iterator[tuple[Change, Node]]:
-    """The changes of what a node says of itself."""
+    """Yield the changes of the attributes of a node."""
     source = node.source.get("node", node.source)
     for key in ("node_type", "interface_version"):
         value = getattr(node, key)
@@ -250,7 +260,7 @@ def of_node(node: Node) -> Iterator[tuple[Change, Node]]:
 
 
 def of_enum(enum: Enum) -> Iterator[tuple[Change, Enum]]:
-    """The changes of the members of an enumeration."""
+    """Yield the changes of the members of an enumeration."""
     for index, member in enumerate(enum.members):
         for key, step in product(("value", "to"), (-1, 1)):
             value = getattr(member, key)
@@ -260,14 +270,19 @@ def of_enum(enum: Enum) -> Iterator[tuple[Change, Enum]]:
 
 
 def _is_taken(value: int, member: Member, enum: Enum) -> bool:
-    """Whether another member has what a range would get too: no ICD says so, and which name holds is not defined."""
+    """Return whether a changed range would overlap another member.
+
+    The ICD format excludes overlaps, so the resulting name is undefined.
+    """
     return member.to is not None and any(
         other.value <= value <= other.last for other in enum.members if other is not member
     )
 
 
 def formulas(text: str) -> Iterator[str]:
-    """Each number of the formula one more and one less in its last digit, ten times and a tenth; the sign turned."""
+    """Yield the formula with each number changed in its last digit, multiplied and
+    divided by ten; with inverted sign; and with an added offset.
+    """
     for match in re.finditer(r"[0-9]+(?:\.[0-9]+)?", text):
         number = Decimal(match.group())
         last = Decimal(1).scaleb(int(number.as_tuple().exponent))
@@ -282,14 +297,20 @@ def _with(thing: T, key: str, value: Any) -> T:
 
 
 def _step(kind: str, source: Map, key: str, value: float, step: int) -> Change:
-    """``value`` is that of the model; where the line gives another, as a part of a field does its place, that is changed."""
+    """Return the change of a value by ``step``.
+
+    ``value``: value of the model. If the line has another value, such as a position
+    within a struct, that value is changed.
+    """
     printed = source.get(key, value)
     old = printed if type(printed) in (int, float) else value
     return Change(kind, source, key, old, old + step)
 
 
 def _can_be(node: LayoutNode, scalar: Scalar, kind: str) -> bool:
-    """Return whether a scalar of this width, with the other keys of its line, can have a type."""
+    """Return whether a scalar of this width, with the other keys of its line, can have
+    a type.
+    """
     if scalar.type == "float" and scalar.special:
         return False
     if kind in ("uint", "int"):
@@ -304,7 +325,7 @@ def _can_be(node: LayoutNode, scalar: Scalar, kind: str) -> bool:
 
 
 def _places(layout: Layout, orders: Orders) -> list[tuple[Piece, ...]]:
-    """Return the bits of the longest frame that each number has."""
+    """Return the bits of each number in the longest frame."""
     fields = frame_fields(layout, orders)
     numbers = (field for field in fields if field.role in ("field", "overlay") and not field.scalar.is_bytes)
     return [pieces_at(field.at, field.bits, field.byte_order, field.bit_order) for field in numbers]

@@ -1,4 +1,6 @@
-"""The paper of what is not simply the manual's: decisions about its faults, notes, assumptions, and what it leaves out."""
+"""Report on decisions: errata, notes, assumptions, and messages that the manual does
+not describe.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +29,7 @@ _OF_MISSING = ("Messages that the manual mentions and does not describe. No code
 def papers(
     icd: Icd, elements: Sequence[Element], files: Files
 ) -> Iterator[tuple[Page, list[list[Cell]], tuple[str, ...]]]:
-    """Each paper that has something to say: its page, and the rows and columns of its table."""
+    """Yield each report with content: its page, the rows of its table, and its columns."""
     errata_rows = list(errata(icd, elements, files))
     if errata_rows:
         groups = [
@@ -42,19 +44,30 @@ def papers(
         ("missing", "Not described", _OF_MISSING, MISSING, list(missing(icd))),
     )
     for name, title, says, keys, rows in tables:
-        if rows:  # the page shows what the table has
+        if rows:  # page and table have the same columns
             shown = tuple(map(str.capitalize, keys))
             yield Page(f"{name}.html", title, says, shown, [Group([*rows])], data=(f"{name}.csv",)), rows, keys
 
 
 def _folded(row: list[Cell]) -> list[Cell]:
-    """A row of the page: the reason stands below the title."""
-    id, kind, _, title, confidence, tables, decided, touches, printed, held, why, evidence = row
-    return [id, kind, [*lines_of(title), *lines_of(why)], confidence, tables, decided, touches, printed, held, evidence]
+    """Return a row of the page, with the reason below the title."""
+    id, kind, _, title, confidence, tables, decided, touches, printed, corrected, why, evidence = row
+    return [
+        id,
+        kind,
+        [*lines_of(title), *lines_of(why)],
+        confidence,
+        tables,
+        decided,
+        touches,
+        printed,
+        corrected,
+        evidence,
+    ]
 
 
 def errata(icd: Icd, elements: Sequence[Element], files: Files) -> Iterator[list[Cell]]:
-    """A row each, in the order of the overlays."""
+    """Yield a row for each erratum, in the order of the overlays."""
     touched: dict[int, list[str]] = {}
     for element in elements:
         for erratum in element.errata:
@@ -73,7 +86,7 @@ def errata(icd: Icd, elements: Sequence[Element], files: Files) -> Iterator[list
 
 
 def assumptions(icd: Icd, files: Files) -> Iterator[list[Cell]]:
-    """A row for each key of a section or a message that is said to be assumed."""
+    """Yield a row for each assumed key of a section or message."""
     for node in icd.nodes:
         for path, owner in _owners(node.source):
             for key, why in owner["assumptions"].items():
@@ -83,14 +96,14 @@ def assumptions(icd: Icd, files: Files) -> Iterator[list[Cell]]:
 
 
 def missing(icd: Icd) -> Iterator[list[Cell]]:
-    """A row for each message that the manual mentions and does not describe."""
+    """Yield a row for each message that the manual mentions but does not describe."""
     for node in icd.nodes:
         for entry in node.missing:
             yield [node.name, entry.kind, str(entry.id), entry.name, entry.why]
 
 
 def _sections(node: Node, erratum: Erratum) -> Iterator[Map]:
-    """The sections of the ICD that an erratum is about."""
+    """Yield the sections of the ICD that an erratum concerns."""
     where = erratum.source.get("where")
     for place in where if isinstance(where, Seq) else [where]:
         if isinstance(place, Map) and "section" in place:
@@ -98,7 +111,7 @@ def _sections(node: Node, erratum: Erratum) -> Iterator[Map]:
 
 
 def _owners(tree: object, path: str = "") -> Iterator[tuple[str, Map]]:
-    """Whatever has assumptions, with its name or its path."""
+    """Yield each section or message with assumptions, with its name or path."""
     if isinstance(tree, Map):
         if isinstance(tree.get("assumptions"), Map):
             yield str(tree.get("name", path)), tree

@@ -1,7 +1,9 @@
-"""Measurements that go into a pack: made by commands that run compilers and testers, read here from files.
+"""Measurements of a verification package, read from JSON files. Commands that run
+compilers and tests write them.
 
-A measurement is a JSON file. Its ``icd`` is the digest of the set of ICDs that it was made of, ``code`` that of the generated
-code that was measured, language by language: a pack takes it only if both are those of what it is itself made of.
+``icd`` is the digest of the measured set of ICDs, and ``code`` the digest of the
+measured code for each language. The package accepts a measurement only if both match
+its own ICDs and code.
 """
 
 from __future__ import annotations
@@ -25,12 +27,15 @@ _AGAIN = "measure again, or leave it out: docs/guides/verification-package.md sa
 
 @dataclass(frozen=True, slots=True)
 class Measurement:
-    """What one file says. ``name`` is that of its papers, ``made_by`` the command and the tools."""
+    """Content of one measurement file.
+
+    ``name``: name of its report. ``made_by``: command and tools.
+    """
 
     name: str
     title: str
     says: tuple[str, ...]
-    code: dict[str, str]  # language -> digest of what was measured
+    code: dict[str, str]  # language -> digest of the measured code
     made_by: tuple[str, ...]
     facts: tuple[tuple[str, str], ...]
     columns: tuple[str, ...]
@@ -38,21 +43,25 @@ class Measurement:
 
 
 def icd_digest(icd: Icd) -> str:
-    """The digest of a set of ICDs: over those of its nodes, errata included."""
+    """Return the digest of a set of ICDs, computed from the digests of its nodes,
+    errata included.
+    """
     return sha256("".join(f"{node.name} {node.digest}\n" for node in icd.nodes).encode()).hexdigest()
 
 
 def code_digest(files: Iterable[tuple[PurePosixPath, str | bytes]]) -> str:
-    """The digest of generated files, by their names and contents."""
-    contents = ((path, made.encode() if isinstance(made, str) else made) for path, made in files)
+    """Return the digest of generated files, computed from their names and contents."""
+    contents = ((path, content.encode() if isinstance(content, str) else content) for path, content in files)
     lines = sorted(f"{path} {sha256(data).hexdigest()}\n" for path, data in contents)
     return sha256("".join(lines).encode()).hexdigest()
 
 
 def read(folder: Path, icd: Icd, code_of: Callable[[str], str]) -> list[Measurement]:
-    """The measurements of a folder by name. ``code_of``: the digest of what is generated now for a language.
+    """Return the measurements of a folder, sorted by name.
 
-    Raises `UserError` for one that can't be read, or that is of other ICDs or of other code.
+    ``code_of``: function that returns the current digest of the code of a language.
+    Raises `UserError` for an unreadable measurement and for a measurement of other ICDs
+    or code.
     """
     try:
         paths = sorted(path for path in folder.iterdir() if path.suffix == ".json" and not path.name.startswith("."))
@@ -63,10 +72,15 @@ def read(folder: Path, icd: Icd, code_of: Callable[[str], str]) -> list[Measurem
     for path in paths:
         data = _data(path)
         ours = ("ICDs: the digest", data["icd"], icd_digest(icd))
-        code = ((f"code: the digest of `{name}`", there, code_of(name)) for name, there in data["code"].items())
-        for what, there, here in chain([ours], code):
-            if there != here:
-                text = f"{path}: it measures other {what} is {there[:16]} there and {here[:16]} here"
+        code = (
+            (f"code: the digest of `{name}`", measured_digest, code_of(name))
+            for name, measured_digest in data["code"].items()
+        )
+        for what, measured_digest, current_digest in chain([ours], code):
+            if measured_digest != current_digest:
+                text = (
+                    f"{path}: it measures other {what} is {measured_digest[:16]} there and {current_digest[:16]} here"
+                )
                 raise UserError(text, _AGAIN)
         rows = [[str(cell) for cell in row] for row in data["rows"]]
         facts = tuple((str(key), str(value)) for key, value in data["facts"])
@@ -76,7 +90,10 @@ def read(folder: Path, icd: Icd, code_of: Callable[[str], str]) -> list[Measurem
 
 
 def _data(path: Path) -> dict[str, Any]:
-    """What a file holds. Raises `UserError` unless it is a measurement."""
+    """Return the content of a file.
+
+    Raises `UserError` if it is no measurement.
+    """
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError) as error:

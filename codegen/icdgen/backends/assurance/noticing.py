@@ -1,7 +1,10 @@
-"""Which golden vectors notice a change of the ICD: what the reference codec would then answer is not what they demand.
+"""Detection of a change of the ICD by golden vectors: a vector detects it if the
+reference codec responds differently.
 
-A vector is named by its line. A row demands what its frame is decoded to and what that is encoded to, raw and physical; the
-line of a field its fresh, special and least values, the numbers that it refuses and what setting its physical value gives.
+A line number identifies a vector. The line of a row states the values that its frame
+decodes to, raw and physical, and the frame that they encode to. The line of a field
+states its initial, special and limit values, refused raw values, and results of its
+setter.
 """
 
 from __future__ import annotations
@@ -27,27 +30,31 @@ _REFUSED = object()
 
 
 class LongRow(NamedTuple):
-    """A row of the vectors with its frames in the form of the longest frame, zeros for the elements that they lack."""
+    """Row of the vectors with its frames extended to the longest frame; missing
+    elements are zeros.
+    """
 
     row: Row
     frame: bytes
     encoded: bytes
-    sent: int  # bits of the longest frame that the encoded frame has
+    sent: int  # mask of the bits that the encoded frame contains
 
 
 class MessageWatch:
-    """The vectors of a message that ``node`` declares."""
+    """Golden vectors of a message that ``node`` declares, with detection of changes."""
 
     def __init__(self, node: Node, vectors: MessageVectors, lines: MessageLines) -> None:
         self.node, self.message, self.vectors, self.lines = node, vectors.message, vectors, lines
 
     def layout(self, now: Message) -> list[int]:
-        """Return the lines that notice another layout of the message."""
+        """Return the lines that detect another layout of the message."""
         olds, news = scalars_in(self.message.layout), scalars_in(now.layout)
         if [old.name for old in olds] != [new.name for new in news]:
             return self.places(now, self.node)
         pairs = enumerate(zip(olds, news, strict=True))
         changed = [(index, old, new) for index, (old, new) in pairs if _content(old) != _content(new)]
+        # With several moved fields, decode the whole message; otherwise one field at a
+        # time, which is faster.
         if len(changed) > 1 and any(_place(old) != _place(new) for _, old, new in changed):
             # A field can take bits that another one leaves.
             lines = [self.lines.fields[old.name] for _, old, new in changed if self._line_notices(old, new)]
@@ -55,7 +62,10 @@ class MessageWatch:
         return [line for index, _, new in changed for line in self.field(index, new, now)]
 
     def field(self, index: int, now: NodePlace, message: Message) -> list[int]:
-        """Return the lines that notice another field at an index of the message, which then is ``message``."""
+        """Return the lines that detect another field at an index of the message.
+
+        ``message``: changed message.
+        """
         old = scalars_in(self.message.layout)[index]
         if now.derived is not None:
             pairs = zip(self.lines.rows, self.vectors.rows, strict=True)
@@ -64,24 +74,30 @@ class MessageWatch:
             ]
         lines = [self.lines.fields[old.name]] if self._line_notices(old, now) else []
         needed = {condition.field for condition in (*old.when, *now.when)}
-        alone = self._alone(now, *(place for place in scalars_in(message.layout) if place.name in needed))
+        reduced_message = self._message_of(
+            now, *(place for place in scalars_in(message.layout) if place.name in needed)
+        )
         rows = zip(self.lines.rows, self._long_rows, self._of_others[index], strict=True)
         return lines + [
-            number for number, row, other_bits in rows if _notices(row, old, now, self.node, alone, other_bits)
+            number
+            for number, row, other_bits in rows
+            if _notices(row, old, now, self.node, reduced_message, other_bits)
         ]
 
     def enum(self, old: Enum, new: Enum) -> list[int]:
-        """Return the lines that notice that an enumeration is another."""
+        """Return the lines that detect a changed enumeration."""
         layout = with_enum(self.message.layout, old, new)
         return [] if layout is self.message.layout else self.layout(replace(self.message, layout=layout))
 
     def places(self, now: Message, node: Node) -> list[int]:
-        """Return the lines that notice that bits lie elsewhere, by the layout of the message or the orders of its node."""
+        """Return the lines that detect other positions of bits, by the layout of the
+        message or the orders of its node.
+        """
         pairs = zip(self.lines.rows, self.vectors.rows, strict=True)
         return [number for number, row in pairs if _answer(node, now, row.frame) != (row.raw, row.encoded)]
 
-    def _alone(self, *fields: NodePlace) -> Message:
-        """Return the message with the longest frame in which only these fields are."""
+    def _message_of(self, *fields: NodePlace) -> Message:
+        """Return the message in its longest form, reduced to the given fields."""
         fixed: list[FixedNode] = []
         for field in fields:
             scalar = replace(
@@ -94,16 +110,19 @@ class MessageWatch:
         )
 
     def id(self, key: str) -> list[int]:
-        """Lines that notice another id: frames are asked for by the id, by the set id where there are two."""
+        """Return the lines that detect another id.
+
+        Frames are requested by the set id if a message has two ids.
+        """
         rows = self.lines.rows[:1] if key == "get_id" else self.lines.rows
         return [self.lines.head, *rows]
 
     def length(self) -> list[int]:
-        """Lines that notice another length."""
+        """Return the lines that detect another length."""
         return [self.lines.head, self.lines.lengths, *self.lines.rows]
 
     def _line_notices(self, old: NodePlace, now: NodePlace) -> bool:
-        if self._is_fresh(old) and _shown(old, old.initial_value) != _shown(now, now.initial_value):
+        if self._is_in_new_message(old) and _shown(old, old.initial_value) != _shown(now, now.initial_value):
             return True
         if [special.value for special in old.special] != [
             special.value for special in now.special
@@ -114,16 +133,18 @@ class MessageWatch:
             unfit = [value for value in unfit if not old.raw_min <= value <= old.raw_max]
         if any(_attempt(codec.check_raw, now, value) is not _REFUSED for value in unfit):
             return True
-        given = self.vectors.settings.get(old.name, [])
-        if not given or old.type == "text":
-            return any(_attempt(codec.raw_from_text, now, text) != _given(raw) for text, raw in given)
+        assignments = self.vectors.settings.get(old.name, [])
+        if not assignments or old.type == "text":
+            return any(_attempt(codec.raw_from_text, now, text) != _expected(raw) for text, raw in assignments)
         if not (now.has_formula and now.is_invertible):
             return True
-        attempts = [*given, *((bits, None) for bits in NEVER if old.type != "float")]
-        return any(_attempt(codec.raw_from_physical, now, float_of(bits)) != _given(raw) for bits, raw in attempts)
+        attempts = [*assignments, *((bits, None) for bits in NEVER if old.type != "float")]
+        return any(_attempt(codec.raw_from_physical, now, float_of(bits)) != _expected(raw) for bits, raw in attempts)
 
-    def _is_fresh(self, field: NodePlace) -> bool:
-        """Return whether a new message has a field: it has no elements of a variable-length array."""
+    def _is_in_new_message(self, field: NodePlace) -> bool:
+        """Return whether a new message contains a field: its variable-length arrays are
+        empty.
+        """
         if field.when and field.name not in self._initial:
             return False
         return field.is_count or field.at < 8 * self._initial_length
@@ -139,7 +160,7 @@ class MessageWatch:
 
     @cached_property
     def _long_rows(self) -> list[LongRow]:
-        """The rows of the vectors, in the form of the longest frame."""
+        """Rows of the vectors, extended to the longest frame."""
         return [
             LongRow(
                 row,
@@ -151,7 +172,11 @@ class MessageWatch:
         ]
 
     def _in_longest(self, frame: bytes, raw: Raw) -> bytes:
-        """Return the longest frame, with the bytes of a frame of these values where they stand in it."""
+        """Return the longest frame with the bytes of a shorter frame at their
+        positions.
+
+        ``raw``: values of the frame.
+        """
         layout = self.message.layout
         longest, remaining = frame[: layout.length].ljust(layout.length, b"\0"), frame[layout.length :]
         for part in layout.parts:
@@ -163,17 +188,20 @@ class MessageWatch:
 
     @cached_property
     def _of_others(self) -> list[list[int]]:
-        """Of each field, the bits that all other fields set in each row's frame."""
+        """For each field, the bits that all other fields set in the frame of each row."""
         columns = []
         for field in scalars_in(self.message.layout):
             if field.view or field.is_count:
                 columns.append([0] * len(self.vectors.rows))
                 continue
-            alone = self._alone(replace(field, scalar=replace(field.scalar, present_if=())))
+            reduced_message = self._message_of(replace(field, scalar=replace(field.scalar, present_if=())))
             raws = (row.raw.get(field.name) for row in self.vectors.rows)
-            frames = (b"" if raw is None else codec.encode(self.node, alone, {field.name: raw}) for raw in raws)
+            frames = (
+                b"" if raw is None else codec.encode(self.node, reduced_message, {field.name: raw}) for raw in raws
+            )
             columns.append([_number(frame) for frame in frames])
         by_row = []
+        # Prefix and suffix OR: linear in the number of fields instead of quadratic.
         for row in zip(*columns, strict=True):
             before = accumulate(row[:-1], or_, initial=0)
             after = list(accumulate(row[:0:-1], or_, initial=0))[::-1]
@@ -181,19 +209,22 @@ class MessageWatch:
         return [list(column) for column in zip(*by_row, strict=True)]
 
 
-def _notices(long: LongRow, old: NodePlace, now: NodePlace, node: Node, alone: Message, other_bits: int) -> bool:
+def _notices(
+    long: LongRow, old: NodePlace, now: NodePlace, node: Node, reduced_message: Message, other_bits: int
+) -> bool:
     """Return whether a row of the vectors fails with another field.
 
-    `alone` is the message with this field only; `other_bits` are the bits that all other fields set.
+    ``reduced_message``: message with this field only. ``other_bits``: bits that all
+    other fields set.
     """
-    answer = _answer(node, alone, long.frame)
+    answer = _answer(node, reduced_message, long.frame)
     if answer is None:
         return True
     raw, read, frame = long.row.raw.get(old.name), answer[0].get(now.name), answer[1]
     if raw is None or read is None:
         return raw is not read
-    # a view is read from what the others are encoded to, too
-    if now.view and codec.decode(node, alone, long.encoded)[now.name] != raw:
+    # An overlay must have the value in the encoded frame too.
+    if now.view and codec.decode(node, reduced_message, long.encoded)[now.name] != raw:
         return True
     if _shown(now, read) != _shown(old, raw) or _name(now, read) != _name(old, raw):
         return True
@@ -201,22 +232,24 @@ def _notices(long: LongRow, old: NodePlace, now: NodePlace, node: Node, alone: M
         if _physical(now, read) != _physical(old, raw):
             return True
         if old.is_invertible and (not now.is_invertible or _set_back(now, read) != _set_back(old, raw)):
-            return True  # what does not lead back is not asked to
+            return True  # a non-invertible calibration has no setter
     return (_number(frame) | other_bits) & long.sent != _number(long.encoded)
 
 
 def _place(field: NodePlace) -> tuple[object, ...]:
-    """Return what gives the bits of a field."""
+    """Return the attributes that determine the bits of a field."""
     return field.at, field.bits, field.declared_orders
 
 
 def _content(field: NodePlace) -> tuple[object, ...]:
-    """Return all that the ICD says about a field."""
+    """Return all attributes of a field in the ICD."""
     return field.scalar, field.derived, *_place(field)
 
 
 def _answer(node: Node, message: Message, frame: bytes) -> tuple[Raw, bytes] | None:
-    """What a frame is decoded to, and that encoded; None if it is refused."""
+    """Return the decoded values of a frame and their encoding; None if the codec
+    refuses it.
+    """
     try:
         raw = codec.decode(node, message, frame)
         return raw, codec.encode(node, message, raw)
@@ -225,14 +258,14 @@ def _answer(node: Node, message: Message, frame: bytes) -> tuple[Raw, bytes] | N
 
 
 def _attempt(call: Callable[..., object], *arguments: object) -> object:
-    """What the codec answers, which may be that it refuses."""
+    """Return the result of the codec, or `_REFUSED` if it refuses the arguments."""
     try:
         return call(*arguments)
     except (ValueError, OverflowError):
         return _REFUSED
 
 
-def _given(raw: object) -> object:
+def _expected(raw: object) -> object:
     return _REFUSED if raw is None else raw
 
 
@@ -241,12 +274,14 @@ def _number(frame: bytes) -> int:
 
 
 def _shown(field: NodePlace, raw: Any) -> object:
-    """A raw value in the form in which a language answers: a truth value is no number."""
+    """Return a raw value as languages represent it: a boolean differs from a number."""
     return (field.type == "bool", raw_json(field, raw))
 
 
 def _name(field: NodePlace, raw: Any) -> object:
-    """Name of the member; whether there are names at all."""
+    """Return the name of the member, empty for an unknown value, and None without an
+    enumeration.
+    """
     if field.enum is None:
         return None
     member = field.enum.member_of(raw)
@@ -261,7 +296,7 @@ def _physical(field: NodePlace, raw: Any) -> object:
 
 
 def _set_back(field: NodePlace, raw: Any) -> object:
-    """What setting the physical value of the raw value gives."""
+    """Return the raw value that results from setting the physical value of a raw value."""
     double = None if field.view else codec.physical_double(field, raw)
     return None if double is None else _attempt(codec.raw_from_physical, field, double)
 

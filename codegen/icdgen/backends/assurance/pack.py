@@ -1,4 +1,4 @@
-"""All files of the pack."""
+"""Files of the verification package."""
 
 from __future__ import annotations
 
@@ -27,7 +27,11 @@ _HOME = (
 
 
 def files(icd: Icd, render: Renderer, folder: Path | None) -> Iterator[tuple[PurePosixPath, str]]:
-    """Path and text of each; ``folder`` is that of measurements. Raises `UserError` for one that is of something else."""
+    """Yield path and text of each file.
+
+    ``folder``: folder of measurements. Raises `UserError` for a measurement of other
+    ICDs or code.
+    """
     measurements = measured.read(folder, icd, lambda language: code_now(icd, language)) if folder is not None else []
     digests = tuple((f"{node.title} ({node.name})", node.digest) for node in icd.nodes)
     of_errata = (erratum.source.place.file for node in icd.nodes for erratum in node.errata)
@@ -46,7 +50,7 @@ def files(icd: Icd, render: Renderer, folder: Path | None) -> Iterator[tuple[Pur
         pages.append(page)
         tables[page.data[0]] = csv_text(columns, rows)
     for measurement in measurements:
-        pages.append(_measured(measurement))
+        pages.append(_page_of_measurement(measurement))
         tables[f"{measurement.name}.csv"] = csv_text(measurement.columns, measurement.rows)
 
     home = Page("index.html", "Assurance pack", _HOME, _COLUMNS, [Group(_counts(icd, elements))], digests, ())
@@ -62,7 +66,7 @@ _COLUMNS = ("Node", "Messages", "Fields", "Enumerations", "Members", "Changes tr
 
 
 def _counts(icd: Icd, elements: dict[str, list[Element]]) -> list[Sequence[Cell]]:
-    """A row a node, and one for all."""
+    """Return a row for each node, and one for all nodes."""
     rows: list[tuple[str, list[int]]] = []
     for node in icd.nodes:
         kinds = [element.kind for element in elements[node.name]]
@@ -73,7 +77,7 @@ def _counts(icd: Icd, elements: dict[str, list[Element]]) -> list[Sequence[Cell]
     return [[name, *(f"{number:,}" for number in numbers)] for name, numbers in (*rows, ("All", total))]
 
 
-def _measured(measurement: Measurement) -> Page:
+def _page_of_measurement(measurement: Measurement) -> Page:
     facts = (
         *measurement.facts,
         *(("Measured with", tool) for tool in measurement.made_by),
@@ -92,6 +96,9 @@ def _measured(measurement: Measurement) -> Page:
 
 
 def code_now(icd: Icd, language: str) -> str:
-    """The digest of what is generated now. Raises `UserError` for a language that there is not."""
+    """Return the digest of the code that icdgen generates now.
+
+    Raises `UserError` for an unknown language.
+    """
     backend = backends.get(language)
     return measured.code_digest(backend.files(icd, Renderer.of(backend)))

@@ -1,5 +1,8 @@
-"""A paper of the pack: a table with what it says, as a page to print and as CSV (RFC 4180). Files are named in it by where they
-lie below the folder that holds them all, and not on somebody's machine."""
+"""Reports of the verification package: tables as printable pages and as CSV (RFC 4180).
+
+Files are named relative to their common folder, so that reports do not depend on a
+machine.
+"""
 
 from __future__ import annotations
 
@@ -12,12 +15,12 @@ from dataclasses import dataclass
 from icdgen.diagnostics import Place
 
 Cell = str | Sequence[str]
-"""A text, or several, each in a line of its own."""
+"""A text, or several texts with one line each."""
 
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """Rows under a heading; without a title they stand alone."""
+    """Rows under a heading; without a title, rows only."""
 
     rows: list[Sequence[Cell]]
     title: str = ""
@@ -26,7 +29,11 @@ class Group:
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """``file`` is its name, ``facts`` what it is about in short, ``says`` what it shows and does not prove, in paragraphs."""
+    """Page of a report.
+
+    ``file``: its name. ``facts``: summary. ``says``: paragraphs on what it shows and
+    what it does not prove.
+    """
 
     file: str
     title: str
@@ -34,16 +41,18 @@ class Page:
     columns: tuple[str, ...]
     groups: list[Group]
     facts: tuple[tuple[str, str], ...] = ()
-    data: tuple[str, ...] = ()  # names of the CSV files of the same
+    data: tuple[str, ...] = ()  # names of the CSV files with this content
 
 
 def lines_of(cell: Cell) -> list[str]:
-    """The lines of a cell."""
+    """Return the lines of a cell."""
     return [cell] if isinstance(cell, str) else list(cell)
 
 
 def csv_text(columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
-    """A table with a header; several texts in a cell are parted by semicolons."""
+    """Return a table with header as CSV; several texts in a cell are separated by
+    semicolons.
+    """
     file = io.StringIO()
     writer = csv.writer(file)
     writer.writerow(columns)
@@ -52,7 +61,7 @@ def csv_text(columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
 
 
 class Files:
-    """The files that the ICDs were read from."""
+    """Files of the ICDs, named relative to their common folder."""
 
     def __init__(self, files: Iterable[str]) -> None:
         folders = {os.path.dirname(os.path.abspath(file)) for file in files}
@@ -62,5 +71,5 @@ class Files:
         return os.path.relpath(os.path.abspath(file), self._top).replace(os.sep, "/") if file else ""
 
     def line(self, place: Place) -> str:
-        """``errata/demo.yaml:12``; nothing of what was not read from a file."""
+        """Return the place as ``errata/demo.yaml:12``; empty without a file."""
         return f"{self.name(place.file)}:{place.line}" if place.file else ""

@@ -1,4 +1,4 @@
-"""Which vectors of ids that several messages share notice a change of one of these, or of its node."""
+"""Detection of changes of messages and nodes by the vectors of shared ids."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from icdgen.vectors.shared import SharedRow, ids
 
 
 class SharedIds:
-    """The frames of shared ids of all nodes, each the vector of a line."""
+    """Frames of shared ids of all nodes. Each is a vector with a line number."""
 
     def __init__(self, icd: Icd, vectors: dict[str, NodeVectors], lines: dict[str, NodeLines]) -> None:
         self._icd = icd
@@ -26,7 +26,7 @@ class SharedIds:
                 self._rows[node.name] = shared_rows
 
     def of_message(self, message: Message, now: Message) -> dict[str, list[int]]:
-        """By node, the lines that notice that a message is another."""
+        """Return the lines that detect a changed message, by node."""
         return self._noticing(
             self._icd,
             lambda other: now if other is message else other,
@@ -34,7 +34,7 @@ class SharedIds:
         )
 
     def of_node(self, node: Node, now: Node) -> dict[str, list[int]]:
-        """Those that notice that a node is another, whose messages are the same."""
+        """Return the lines that detect a changed node with unchanged messages, by node."""
         nodes = tuple(now if other is node else other for other in self._icd.nodes)
         icd = replace(self._icd, nodes=nodes)
         return self._noticing(
@@ -47,16 +47,20 @@ class SharedIds:
         noticed: dict[str, list[int]] = {}
         for name, rows in self._rows.items():
             for number, row, messages in rows:
-                demanded = row.message if row.expected is None else row.expected
-                if concerns(messages) and _answer(icd, row, [now(message) for message in messages]) != demanded:
+                expected = row.message if row.expected is None else row.expected
+                if concerns(messages) and _answer(icd, row, [now(message) for message in messages]) != expected:
                     noticed.setdefault(name, []).append(number)
         return noticed
 
 
 def _answer(icd: Icd, row: SharedRow, messages: Sequence[Message]) -> object:
-    """The name of the message that the frame is, the length that it should have, or None."""
+    """Return the name of the message that the frame belongs to, its expected length, or
+    None.
+
+    An empty tuple stands for any other response.
+    """
     candidates = [message for message in messages if getattr(message, f"{row.direction}_id") == row.id]
-    if len(candidates) == 1:  # the id alone tells: frames are answered with all values
+    if len(candidates) == 1:  # the id identifies the message: the dispatcher decodes all frames
         return () if len(row.frame) in candidates[0].layout.lengths else candidates[0].layout.longest
     try:
         message = codec.message_of_frame(icd, candidates, row.frame) if candidates else None

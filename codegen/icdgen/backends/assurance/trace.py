@@ -1,4 +1,4 @@
-"""From a line of the ICD to the golden vectors that notice that it is changed."""
+"""Traceability from a line of the ICD to the golden vectors that detect a change of it."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from icdgen.vectors.make import NodeVectors, make
 from icdgen.vectors.write import text
 
 Noticed = dict[str, list[int]]
-"""Node -> lines of its file of vectors."""
+"""Node -> lines of its vector file."""
 
 
 @dataclass(frozen=True, slots=True)
 class Traced:
-    """A change, and the vectors that notice it."""
+    """Change with the vectors that detect it."""
 
     change: Change
     noticed: Noticed
@@ -32,11 +32,14 @@ class Traced:
 
 @dataclass(frozen=True, slots=True)
 class Element:
-    """Something that a line of the ICD describes. ``row`` counts the lines of its message or enumeration from 1."""
+    """Object that a line of the ICD describes.
+
+    ``row``: number of its line within the message or enumeration, from 1.
+    """
 
     kind: str  # "node" | "message" | "struct" | "field" | "enumeration" | "member"
     node: Node
-    owner: Message | Struct | Enum | None  # of a field, its message; of a member, its enumeration
+    owner: Message | Struct | Enum | None  # message of a field, enumeration of a member
     model: Node | Message | Struct | LayoutNode | Enum | Member
     row: int | None
     changes: tuple[Traced, ...]
@@ -47,40 +50,40 @@ class Element:
 
     @property
     def part_of(self) -> str:
-        """The name of its owner."""
+        """Name of its owner."""
         return self.owner.name if self.owner else ""
 
     @property
     def source(self) -> Map:
-        """What was read of it."""
+        """YAML content of its line."""
         source = self.model.source
         return source.get("node", source) if self.kind == "node" else source
 
     @property
     def errata(self) -> tuple[Erratum, ...]:
-        """The decisions and the notes that concern it."""
+        """Errata and notes that concern it."""
         return () if self.kind == "node" else self.model.errata
 
     @property
     def table(self) -> int | None:
-        """The manual's table that has it."""
+        """Number of its table in the manual."""
         thing = self.owner or self.model
         return thing.table if isinstance(thing, Message | Struct | Enum) else None
 
     @property
     def page(self) -> int | None:
-        """The manual's page, of a message and its fields, where the ICD says it."""
+        """Page of a message and its fields in the manual, if the ICD states it."""
         thing = self.owner or self.model
         return thing.page if isinstance(thing, Message) else None
 
     @property
     def noticed(self) -> Noticed:
-        """The vectors that notice any of the changes."""
-        return together(traced.noticed for traced in self.changes)
+        """Vectors that detect any of the changes."""
+        return merged(traced.noticed for traced in self.changes)
 
 
 class Trace:
-    """That of a set of ICDs, node by node, in the order of the ICDs."""
+    """Traceability of a set of ICDs, by node, in the order of the ICDs."""
 
     def __init__(self, icd: Icd) -> None:
         self.icd = icd
@@ -96,7 +99,9 @@ class Trace:
         self._shared = SharedIds(icd, self._vectors, self._lines)
 
     def elements(self, node: Node) -> Iterator[Element]:
-        """Those of a node that the ICD has lines for: itself, its enumerations with members, its messages with fields."""
+        """Yield the elements of a node that have a line in the ICD: the node,
+        enumerations with members, structs and messages with fields.
+        """
         yield Element("node", node, None, node, None, tuple(self._of_node(node)))
         for enum in node.enums:
             traced = list(self._of_enum(enum))
@@ -114,15 +119,17 @@ class Trace:
                 yield Element("field", node, message, line, row, tuple(self._of_line(message, line, node)))
 
     def _of_line(self, message: Message, line: LayoutNode, node: Node) -> Iterator[Traced]:
-        """The changes of a line of a message."""
+        """Yield the changes of a line of a message."""
         watch = self._watches[node.name, message.name]
         for change, new in changes.of_line(line, message.layout, node.orders):
             now = replace(message, layout=with_node(message.layout, line, new))
             shared = self._shared.of_message(message, now)
-            yield Traced(change, together([_noticed(node, watch.layout(now)), shared]))
+            yield Traced(change, merged([_noticed(node, watch.layout(now)), shared]))
 
     def _of_struct(self, struct: Struct, line: LayoutNode, node: Node) -> Iterator[Traced]:
-        """The changes of a line of a struct, noticed wherever the struct stands."""
+        """Yield the changes of a line of a struct, with the vectors of all messages
+        that use the struct.
+        """
         for change, new in changes.of_line(line, struct.layout, node.orders):
             changed = with_node(struct.layout, line, new)
             results: list[Noticed] = []
@@ -131,7 +138,7 @@ class Trace:
                 if layout is not watch.message.layout:
                     now = replace(watch.message, layout=layout)
                     results += (_noticed(watch.node, watch.layout(now)), self._shared.of_message(watch.message, now))
-            yield Traced(change, together(results))
+            yield Traced(change, merged(results))
 
     def _of_node(self, node: Node) -> Iterator[Traced]:
         for change, now in changes.of_node(node):
@@ -140,42 +147,44 @@ class Trace:
             else:
                 watches = (self._watches[node.name, message.name] for message in node.messages)
                 rows = [line for watch in watches for line in watch.places(watch.message, now)]
-                yield Traced(change, together([_noticed(node, rows), self._shared.of_node(node, now)]))
+                yield Traced(change, merged([_noticed(node, rows), self._shared.of_node(node, now)]))
 
     def _of_enum(self, enum: Enum) -> Iterator[Traced]:
         for change, now in changes.of_enum(enum):
             results = [{enum.node: [self._lines[enum.node].enums[enum.name]]}]
             results += (_noticed(watch.node, watch.enum(enum, now)) for watch in self._watches.values())
-            yield Traced(change, together(results))
+            yield Traced(change, merged(results))
 
     def _of_message(self, message: Message, node: Node) -> Iterator[Traced]:
         watch = self._watches[node.name, message.name]
         for change, now in changes.of_message(message, node):
             if change.kind == "id":
-                noticed = together([self._ids(message, now), _noticed(node, watch.id(change.key))])
+                noticed = merged([self._lines_of_ids(message, now), _noticed(node, watch.id(change.key))])
             elif change.kind == "length":
                 noticed = _noticed(node, watch.length())
             else:
                 noticed = _noticed(node, watch.places(now, node))
-            yield Traced(change, together([noticed, self._shared.of_message(message, now)]))
+            yield Traced(change, merged([noticed, self._shared.of_message(message, now)]))
 
-    def _ids(self, message: Message, now: Message) -> Noticed:
-        """The lists of ids, of each node that speaks the message, in which one is no longer its own."""
+    def _lines_of_ids(self, message: Message, now: Message) -> Noticed:
+        """Return the lines with lists of ids that detect a lost id, for each node that
+        uses the message.
+        """
         noticed: Noticed = {}
         for node in self.icd.nodes:
             if all(message is not other for other in self.icd.messages_of(node)):
                 continue
             for direction, names_by_id in self._vectors[node.name].ids.items():
-                mine = {id for id, names in names_by_id.items() if message.name in names}
-                if mine & (set(message.ids) - set(now.ids)):
+                own_ids = {id for id, names in names_by_id.items() if message.name in names}
+                if own_ids & (set(message.ids) - set(now.ids)):
                     noticed.setdefault(node.name, []).append(self._lines[node.name].ids[direction])
         return noticed
 
 
-def together(several: Iterator[Noticed] | list[Noticed]) -> Noticed:
-    """The lines of all, in order, each once."""
+def merged(results: Iterator[Noticed] | list[Noticed]) -> Noticed:
+    """Return the union of lines by node, in ascending order."""
     lines_by_node: dict[str, set[int]] = {}
-    for noticed in several:
+    for noticed in results:
         for node, numbers in noticed.items():
             lines_by_node.setdefault(node, set()).update(numbers)
     return {node: sorted(numbers) for node, numbers in lines_by_node.items() if numbers}

@@ -1,4 +1,6 @@
-"""The papers of the trace: a page a node, a table of all that is traced, and a table of each single change."""
+"""Reports of the traceability: a page per node, a table of all elements, and a table of
+all single changes.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,7 @@ _SHOWN = (
     "id", "set_id", "get_id", "length", "node_type", "interface_version", "at", "bits", "type", "enum", "value", "unit", "formula",
     "points", "outside", "const", "min", "max", "above", "below", "byte_order", "bit_order",
 )  # fmt: skip
-"""Keys of what is printed in a row of the manual, in the order of a sentence."""
+"""Keys of values that a manual prints in a row, in display order."""
 _SAYS = (
     "Each row is a line of the ICD: its row in the manual's table, its content, its names in the generated code of each "
     "language, and the golden vectors that detect a change of it, by their lines in the files of vectors.",
@@ -34,7 +36,7 @@ CHANGES = ("kind", "node", "part of", "name", "key", "file", "line", "column", "
 
 
 class Symbol(NamedTuple):
-    """A name, and where it is one: "members of demo_estimated_roll_t"."""
+    """Generated name and its scope, for example "members of demo_estimated_roll_t"."""
 
     scope: str
     name: str
@@ -44,39 +46,42 @@ class Symbol(NamedTuple):
 
 
 class Symbols:
-    """What backends say they declare for what was read in a line: those of our languages, and plug-ins that are installed.
+    """Names that backends declare for each line of an ICD: built-in languages and
+    installed plug-ins.
 
-    Raises `UserError` for a plug-in that can't be used.
+    Raises `UserError` for an unusable plug-in.
     """
 
     def __init__(self, icd: Icd) -> None:
         self.languages = (*backends.TITLES, *backends.plug_ins())
-        self._known: dict[str, dict[int, list[Symbol]]] = {}
+        self._symbols: dict[str, dict[int, list[Symbol]]] = {}
         for language in self.languages:
-            by_source = self._known[language] = {}
+            by_source = self._symbols[language] = {}
             for identifier in backends.get(language).identifiers(icd):
                 if identifier.source is not None:
                     by_source.setdefault(id(identifier.source), []).append(Symbol(identifier.scope, identifier.text))
 
     def of(self, language: str, source: Map) -> list[Symbol]:
-        """Each once, in the order in which the backend tells them."""
-        return list(dict.fromkeys(self._known[language].get(id(source), ())))
+        """Return the names of a line in a language, without duplicates, in the order of
+        the backend.
+        """
+        return list(dict.fromkeys(self._symbols[language].get(id(source), ())))
 
 
 @dataclass(frozen=True, slots=True)
 class Tracing:
-    """What the tables are made from."""
+    """Tables of the traceability."""
 
     files: Files
     symbols: Symbols
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Those of the table of all that is traced, with one for each language."""
+        """Columns of the table of all elements, one for each language included."""
         return (*TRACE, *(title(language) for language in self.symbols.languages))
 
     def rows(self, elements: Sequence[Element]) -> Iterator[list[Cell]]:
-        """The rows of that table."""
+        """Yield the rows of the table of all elements."""
         for element in elements:
             place = element.source.place
             yield [
@@ -101,7 +106,9 @@ class Tracing:
             ]
 
     def changes(self, elements: Sequence[Element]) -> Iterator[list[Cell]]:
-        """A row for each single change: in this file, line and column the value would be another."""
+        """Yield a row for each single change, with file, line and column of the changed
+        value.
+        """
         for element in elements:
             for traced in element.changes:
                 change = traced.change
@@ -121,7 +128,7 @@ class Tracing:
                 ]
 
     def page(self, node: Node, elements: Sequence[Element], facts: tuple[tuple[str, str], ...]) -> Page:
-        """The trace of a node, message by message."""
+        """Return the page of a node, grouped by message."""
         groups: list[Group] = []
         for element in elements:
             if element.owner is None:
@@ -152,12 +159,12 @@ class Tracing:
 
 
 def title(language: str) -> str:
-    """What a language is called; a plug-in's by its word for ``--lang``."""
+    """Return the name of a language; for a plug-in, its value of ``--lang``."""
     return backends.TITLES.get(language, language)
 
 
 def printed_numbers(element: Element) -> str:
-    """The numbers of the line, as they stand there."""
+    """Return the printed values of the line, as in the ICD."""
     return ", ".join(f"{key} {element.source[key]}" for key in _SHOWN if key in element.source)
 
 
@@ -179,12 +186,12 @@ def _text(value: int | None) -> str:
 
 
 def vectors(noticed: Noticed) -> list[str]:
-    """Files of vectors and lines of these: ``demo.json 31-38 40``."""
+    """Return vector files with line numbers: ``demo.json 31-38 40``."""
     return [f"{node}.json {_ranges(numbers)}" for node, numbers in noticed.items()]
 
 
 def _ranges(numbers: Iterable[int]) -> str:
-    """Rising numbers in short: ``31-38 40``."""
+    """Return ascending numbers as ranges: ``31-38 40``."""
     runs: list[list[int]] = []
     for number in numbers:
         if runs and number == runs[-1][1] + 1:

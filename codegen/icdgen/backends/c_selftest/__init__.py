@@ -1,4 +1,7 @@
-"""The C self-test: the golden vectors as tables, for boards. It includes the headers of ``c`` and takes all names from its plan."""
+"""Backend of the C self-test: golden vectors as tables for target boards.
+
+It includes the headers of the ``c`` backend and uses their names.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +19,9 @@ if TYPE_CHECKING:
 
 
 class CSelftestBackend:
-    """``icdgen --lang c-selftest``: the golden vectors as C source; needs no file system, no heap and no output."""
+    """Backend of ``icdgen --lang c-selftest``: golden vectors as C source that needs no
+    file system, heap or output.
+    """
 
     name = "c-selftest"
     reserved: frozenset[str] = frozenset()
@@ -26,7 +31,7 @@ class CSelftestBackend:
         self.packages = Packages()
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
-        """The engine, the list of nodes, and one file of vectors a node."""
+        """Yield the engine, the list of nodes, and one file of vectors per node."""
         from icdgen.backends.c.declared_names import declared_names
         from icdgen.backends.c.short_names import with_short_names
         from icdgen.backends.c_selftest import rows
@@ -36,5 +41,5 @@ class CSelftestBackend:
         return with_short_names(rows.files(prefixed, render), lambda: declared_names(describe(prefixed)))
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
-        """None of its own: all are made from those of the ``c`` backend."""
+        """Return no identifiers: all names derive from names of the ``c`` backend."""
         return iter(())

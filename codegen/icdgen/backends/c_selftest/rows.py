@@ -1,4 +1,4 @@
-"""The self-test's files: the golden vectors as rows of tables."""
+"""Files of the C self-test: golden vectors as table rows."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ TYPES = {"bool": "BOOL", "bytes": "BYTES", "text": "BYTES"}
 
 
 class Accessors(NamedTuple):
-    """Getter and setter of a physical value, and rows of values for them."""
+    """Getter and setter of a physical value, with rows of test values."""
 
     get: str
     set: str
@@ -39,25 +39,25 @@ class Accessors(NamedTuple):
 
 
 class FieldRow(NamedTuple):
-    """A field, with what the table of a message's fields says of it."""
+    """Field with its entries in the table of a message's fields."""
 
     field: FieldDescription
     stem: str
-    tables: str  # of the names of its tables: elements of an array have the same
-    element: str  # the index of an element of an array, and a comma
-    size: int  # bytes of the member
-    packed: int  # bytes in a vector
+    tables: str  # stem of its tables, which the elements of an array share
+    element: str  # index of an array element with a comma
+    size: int  # size of the member in bytes
+    packed: int  # size in a vector in bytes
     type: str
     fresh: str
-    view: str  # the type of its getter, where it is one
+    view: str  # type of the getter of an overlay
     unfit: list[str]
-    whole: Accessors | None
+    integer: Accessors | None
     scaled: Accessors | None
     text: Accessors | None
 
 
 def files(icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
-    """The engine, the list of nodes, and one file of vectors a node."""
+    """Yield the engine, the list of nodes, and one file of vectors per node."""
     for name in render.runtime_files():
         yield PurePosixPath(name), f"/* {origin()} */\n{render.source(name)}"
     nodes = [node.name for node in icd.nodes]
@@ -68,7 +68,7 @@ def files(icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
 
 
 class _Rows:
-    """The finished values of one node's file."""
+    """Template values of the file of one node."""
 
     def __init__(self, icd: Icd, node: NodeDescription) -> None:
         self.icd, self.node = icd, node
@@ -80,40 +80,48 @@ class _Rows:
             "node": node.name,
             "enums": [names.stem(enum) for enum in node.enums],
             "names": list(self.names()),
-            "messages": [self.message(*both) for both in zip(node.messages, self.vectors.messages, strict=True)],
-            "dispatchers": [self.dispatcher(one, id_bits) for one in node.directions],
+            "messages": [
+                self.message(*message_and_vectors)
+                for message_and_vectors in zip(node.messages, self.vectors.messages, strict=True)
+            ],
+            "dispatchers": [self.dispatcher(direction, id_bits) for direction in node.directions],
             "id_type": f"uint{id_bits}_t",
-            "longest": max((one.model.length for one in node.all_messages), default=0),
+            "longest": max((message.model.length for message in node.all_messages), default=0),
             "constant": names.constant,
             "literal": literal,
             "plain": plain,
         }
 
     def names(self) -> Iterator[tuple[str, str, str]]:
-        """Enumeration, value and its name."""
+        """Yield enumeration, value and name."""
         for enum, (_, unknown) in zip(self.node.enums, self.vectors.enums, strict=True):
             stem = names.stem(enum)
-            for one in enum.members:
-                yield stem, _unsigned(one.model.value), literal(one.model.name)
+            for member in enum.members:
+                yield stem, _unsigned(member.model.value), literal(member.model.name)
             if unknown is not None:
                 yield stem, _unsigned(unknown), "NULL"
 
     def dispatcher(self, direction: Direction, id_bits: int) -> tuple[str, list[str], bool, list[str]]:
-        """Its name; some ids and the lengths of their messages, -1 where there is none; the frames of ids that are shared."""
-        known = self.node.ids(direction.kind)
-        lengths = {one.id: one.first.message.model for one in known if not one.is_shared}
-        shared = {one.id for one in known if one.is_shared}
-        asked = (id for id in test_ids((*lengths, *shared), id_bits) if id not in shared)
-        rows = [_id(id, lengths.get(id)) for id in asked]
+        """Return the name of a dispatcher, rows of ids with message lengths (-1 for
+        unknown ids), whether ids are shared, and frames of shared ids.
+        """
+        ids = self.node.ids(direction.kind)
+        lengths = {entry.id: entry.first.message.model for entry in ids if not entry.is_shared}
+        shared = {entry.id for entry in ids if entry.is_shared}
+        unshared_ids = (id for id in test_ids((*lengths, *shared), id_bits) if id not in shared)
+        rows = [_id(id, lengths.get(id)) for id in unshared_ids]
         frames = [_frame(row) for row in self.vectors.shared if row.direction == direction.kind]
         return f"{self.node.name}_{direction.kind}", rows, bool(shared), frames
 
     def message(self, message: MessageDescription, vectors: MessageVectors) -> dict[str, object]:
-        """A message with its vectors: the reason for each, and its bytes, which are the frame, then the packed raw values."""
-        kept = bytes(message.model.length)
+        """Return a message with its vectors.
+
+        Each has a reason and bytes: the frame, then the packed raw values.
+        """
+        used_bits = bytes(message.model.length)
         vectors = _plain(message, vectors)
-        for row in vectors.rows:  # reserved bits are those that no vector keeps
-            kept = bytes(a | b for a, b in zip(kept, row.encoded.ljust(len(kept), b"\0"), strict=True))
+        for row in vectors.rows:  # a bit that no encoded frame sets is reserved
+            used_bits = bytes(a | b for a, b in zip(used_bits, row.encoded.ljust(len(used_bits), b"\0"), strict=True))
         tables: dict[tuple[int, ...], str] = {}
         fields = [self.field(field, vectors, tables) for field in _scalars(message)]
         doubles = (f"UINT64_C(0x{double})" for row in vectors.rows for double in row.doubles.values())
@@ -123,7 +131,7 @@ class _Rows:
             "stem": names.stem(message),
             "vectors": [(plain(row.why), self.vector(row, fields)) for row in vectors.rows],
             "vector_size": message.model.length + sum(field.packed for field in fields),
-            "kept": _bytes(kept),
+            "kept": _bytes(used_bits),
             "doubles": in_rows(doubles, NUMBERS_IN_ROW),
             "texts": [f"{_text(text)}," for row in vectors.rows for text in row.texts.values()],
             "fields": fields,
@@ -140,16 +148,21 @@ class _Rows:
             data += value if isinstance(value, bytes) else (value & bits).to_bytes(field.packed, "little")
         return _bytes(bytes(data))
 
-    def field(self, one: FieldDescription, vectors: MessageVectors, known: dict[tuple[int, ...], str]) -> FieldRow:
-        """``known``: of each line of the ICD the field that has its tables."""
-        field, storage = one.model, one.storage
+    def field(
+        self, description: FieldDescription, vectors: MessageVectors, tables_by_line: dict[tuple[int, ...], str]
+    ) -> FieldRow:
+        """Return the row of a field.
+
+        ``tables_by_line``: stem of the tables for each line of the ICD.
+        """
+        field, storage = description.model, description.storage
         is_bytes, index = field.is_bytes, field.index
         line = tuple(id(step.node) for step in field.steps)
-        stem = f"{names.stem(one.message)}_selftest_{one.name}"
-        tables = known.setdefault(line, stem)
+        stem = f"{names.stem(description.message)}_selftest_{description.name}"
+        tables = tables_by_line.setdefault(line, stem)
         unfit = [v for v in vectors.unfit.get(field.name, ()) if not is_bytes and storage.min <= v <= storage.max]
         return FieldRow(
-            field=one,
+            field=description,
             stem=stem,
             tables=tables,
             element="" if index is None else f"{index}u, ",
@@ -157,11 +170,11 @@ class _Rows:
             packed=(field.bits + 7) // 8,
             type=_type(field),
             fresh="0u" if is_bytes else _unsigned(_number(vectors.default[field.name])),
-            view=type_of(one) if field.view else "",
+            view=type_of(description) if field.view else "",
             unfit=list(map(_unsigned, unfit)),
-            whole=None if field.view else _whole(one),
-            scaled=_scaled(one, vectors.settings.get(field.name)) if one.is_scaled else None,
-            text=_texts(one, vectors.settings[field.name]) if one.is_text else None,
+            integer=None if field.view else _integer_accessors(description),
+            scaled=_scaled(description, vectors.settings.get(field.name)) if description.is_scaled else None,
+            text=_texts(description, vectors.settings[field.name]) if description.is_text else None,
         )
 
 
@@ -172,15 +185,17 @@ def _type(field: NodePlace) -> str:
 
 
 def _id(id: int, message: Message | None) -> str:
-    """An id, the longest and the shortest frame of its message, and what becomes of the latter where all is 0."""
+    """Return the row of an id: longest and shortest frame of its message, and the
+    status of the shortest frame with zeros.
+    """
     if message is None:
         return f"{{{id}u, -1, 0u, ICD_ERROR_UNKNOWN_ID}}"
-    is_refused = any(part.low > 0 for part in message.layout.parts)  # zeros count less than there can be
+    is_refused = any(part.low > 0 for part in message.layout.parts)  # counters of 0 are below the minimum
     return f"{{{id}u, {message.length}, {message.layout.shortest}u, {'ICD_ERROR_LENGTH' if is_refused else 'ICD_OK'}}}"
 
 
 def _frame(row: SharedRow) -> str:
-    """A frame of an id that several messages have, and what becomes of it."""
+    """Return the row of a frame with a shared id, and its expected status."""
     octets = f"(const uint8_t[]){{{', '.join(f'0x{byte:02X}' for byte in row.frame)}}}" if row.frame else "NULL"
     refused = "ICD_ERROR_UNKNOWN_ID" if row.expected is None else "ICD_ERROR_LENGTH"
     status, name = ("ICD_OK", literal(row.message)) if row.message is not None else (refused, "NULL")
@@ -188,33 +203,39 @@ def _frame(row: SharedRow) -> str:
 
 
 def _plain(message: MessageDescription, vectors: MessageVectors) -> MessageVectors:
-    """As C sees a message of which a field is not always there: its members are as in a new one then; other bits are 0."""
-    if message.earlier_parts:  # bits that are no field's are not at one place in all frames
+    """Return the vectors as C represents optional fields: absent members have initial
+    values, and other bits are 0.
+    """
+    if message.earlier_parts:  # the position of reserved bits varies between frames
         return replace(vectors, rows=tuple(replace(row, frame=row.encoded) for row in vectors.rows))
     if not message.optional_members:
         return vectors
     absent: Raw = {field.model.name: field.model.initial_value for field in message.optional_members}
-    scaled = [one.model for one in _scalars(message) if one.model.has_formula]
+    scaled = [scalar.model for scalar in _scalars(message) if scalar.model.has_formula]
     rows = []
     for row in vectors.rows:
         raw = {field.name: (absent | row.raw)[field.name] for field in scalars_in(message.model.layout)}
-        doubles = {one.name: bits_of(codec.physical_double(one, _number(raw[one.name])) or 0.0) for one in scaled}
+        doubles = {
+            field.name: bits_of(codec.physical_double(field, _number(raw[field.name])) or 0.0) for field in scaled
+        }
         rows.append(replace(row, frame=row.encoded, raw=raw, doubles=doubles))
-    always = {name: given for name, given in vectors.unfit.items() if name not in absent}
+    always = {name: raws for name, raws in vectors.unfit.items() if name not in absent}
     fresh = {field.name: field.initial_value for field in raw_fields_in(message.model.layout)}
     return replace(vectors, rows=tuple(rows), default=vectors.default | fresh, unfit=always)
 
 
 def _scalars(message: MessageDescription) -> Iterator[FieldDescription]:
-    """All scalars of a message, overlay fields and derived values among them, in the order of the ICD."""
+    """Return all scalars of a message, overlays and derived values included, in the
+    order of the ICD.
+    """
     return (scalar for member in message.declared_members for scalar in member.scalars)
 
 
 def _tail(message: MessageDescription, tail: VariablePartDescription, vectors: MessageVectors) -> dict[str, object]:
-    """What there is of a message whose frames differ in length."""
+    """Return the template values of a message of variable length."""
     return {
         "least": message.model.layout.shortest,
-        "counter": next(place for place, one in enumerate(_scalars(message)) if one.model is tail.counter.model),
+        "counter": next(place for place, scalar in enumerate(_scalars(message)) if scalar.model is tail.counter.model),
         "high": tail.model.high,
         "frames": _bytes(b"".join(frame.ljust(message.model.length, b"\0") for frame in vectors.miscounted)),
         "frame_lengths": list(map(len, vectors.miscounted)),
@@ -227,7 +248,10 @@ def _accessors(field: FieldDescription, end: str, type: str, rows: list[str]) ->
 
 
 def _texts(field: FieldDescription, settings: Settings) -> Accessors:
-    """Setting texts: the bytes that each gives, or that it is refused. C has no text with characters of other bytes."""
+    """Return assignments of texts: the resulting bytes, or a refusal.
+
+    C strings cannot represent all bytes, so other contents are omitted.
+    """
     lines = []
     for text, raw in settings:
         assert not isinstance(raw, int)
@@ -246,7 +270,10 @@ def _number(value: int | bytes) -> int:
 
 
 def _scaled(field: FieldDescription, settings: Settings | None) -> Accessors:
-    """Setting doubles; of a view, which has no ``settings``, there is the getter alone."""
+    """Return assignments of doubles.
+
+    An overlay has no setter, and its ``settings`` have the value None.
+    """
     lines: list[str] = []
     if settings is None:
         return _accessors(field, field.physical_name, "double", lines)
@@ -257,22 +284,22 @@ def _scaled(field: FieldDescription, settings: Settings | None) -> Accessors:
     return _accessors(field, field.physical_name, "double", lines)
 
 
-def _whole(field: FieldDescription) -> Accessors | None:
-    """The integer accessors, if the field has some, with their exact values."""
-    whole = physical.scaled(field).integers if field.steps else None
-    if whole is None or field.steps is None:
+def _integer_accessors(field: FieldDescription) -> Accessors | None:
+    """Return the integer accessors with their exact values; None if the field has none."""
+    integers = physical.scaled(field).integers if field.steps else None
+    if integers is None or field.steps is None:
         return None
     lines = []
     for raw in values(field.model):
         assert isinstance(raw, int)
-        exact = field.steps.physical(raw) * whole.scale.per
+        exact = field.steps.physical(raw) * integers.scale.per
         assert exact.denominator == 1
         lines.append(f"{{{_unsigned(raw)}, {physical.int64(int(exact))}}},")
-    return _accessors(field, field.integer_name(whole.scale.per), whole.type, lines)
+    return _accessors(field, field.integer_name(integers.scale.per), integers.type, lines)
 
 
 def _unsigned(value: int) -> str:
-    """The 64 bits of a raw value as a literal."""
+    """Return the 64 bits of a raw value as a C literal."""
     return f"{value}u" if 0 <= value < 1 << 16 else f"UINT64_C(0x{value & ((1 << 64) - 1):X})"
 
 

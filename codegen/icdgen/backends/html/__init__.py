@@ -1,6 +1,7 @@
-"""The documentation site: plain pages that work from a folder, without network.
+"""Backend of the documentation site: static pages that work from a folder without
+network.
 
-But for search and decoder they do without JavaScript.
+Only search and decoder need JavaScript.
 """
 
 from __future__ import annotations
@@ -18,11 +19,14 @@ if TYPE_CHECKING:
     from icdgen.diff.inputs.side import Side
     from icdgen.render import Renderer
 
-shipped.provide_runtime()  # which makes the bytes that pages show
+shipped.provide_runtime()  # computes the transmitted bytes that pages show
 
 
 class HtmlBackend:
-    """``icdgen --lang html``. ``previous`` is an older release to compare with, for the page that says what changed."""
+    """Backend of ``icdgen --lang html``.
+
+    ``previous``: older release to compare with, for the page of changes.
+    """
 
     name = "html"
     reserved: frozenset[str] = frozenset()
@@ -33,11 +37,13 @@ class HtmlBackend:
         self.packages = Packages()
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
-        """Every page, and what the pages load."""
+        """Yield each page, and the files that pages load."""
         from icdgen.backends.html.site import files
 
         return files(icd, render, self.packages, self.previous)
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
-        """None: file names and anchors are made unique as they are given out."""
+        """Return no identifiers: file names and anchors are made unique as they are
+        assigned.
+        """
         return iter(())

@@ -1,4 +1,6 @@
-"""All facts of how a node talks, for its page: those that code is made from, and what else its ICD says of the protocol."""
+"""Protocol facts of a node for its page: facts used by generated code, and further
+content of the protocol section.
+"""
 
 from __future__ import annotations
 
@@ -14,11 +16,11 @@ from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Crc, Step
 
 _IN_HEXADECIMAL = ("address_7bit", "check", "printed_constant")
-_BESIDES = ("source", "assumptions", "summary")  # where it stands, why it is assumed (a table of its own), prose
+_BESIDES = ("source", "assumptions", "summary")  # place in the manual, reasons (in a separate table), prose
 
 
 class Row(NamedTuple):
-    """A fact: what it is, its value, and why that is assumed, if it is."""
+    """Fact with its description, its value and, if it is assumed, the reason."""
 
     about: str
     value: str
@@ -28,18 +30,23 @@ class Row(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A table of facts; ``anchor`` is unique in the page."""
+    """Table of facts.
+
+    ``anchor`` is unique in the page.
+    """
 
     anchor: str
     title: str
     rows: list[Row]
 
 
-def of_code(relations: Relations, known: Facts) -> list[Part]:
-    """Every fact that code is made from, be it a default, by the section of the ICD that it stands in."""
-    why = {(one.section, one.key): one.why for one in known.assumptions}
-    found = []
-    for path, thing in _things(known):
+def of_code(relations: Relations, facts: Facts) -> list[Part]:
+    """Return each fact that generated code uses, defaults included, by section of the
+    ICD.
+    """
+    why = {(assumption.section, assumption.key): assumption.why for assumption in facts.assumptions}
+    parts = []
+    for path, thing in _things(facts):
         rows = []
         for fact in facts_of(thing):
             value = getattr(thing, fact.name)
@@ -48,40 +55,46 @@ def of_code(relations: Relations, known: Facts) -> list[Part]:
             url = relations.links.message(value.message) if isinstance(value, Step) else ""
             rows.append(Row(capitalized(fact.about), value_text(fact, value), why.get((path, fact.key), ""), url))
         if rows:
-            found.append(_part(path, rows))
-    return found
+            parts.append(_part(path, rows))
+    return parts
 
 
-def with_others(relations: Relations, known: Facts, parts: list[Part], section: Mapping[str, Any]) -> list[Part]:
-    """The facts that code is made from, and behind those of each section what else the ICD says there: names, units and words."""
-    urls = {one.name: relations.links.message(one) for one in relations.icd.messages_of(known.node)}
-    read = {f"{path}.{fact.key}" for path, thing in _things(known) for fact in facts_of(thing)}
+def with_others(relations: Relations, facts: Facts, parts: list[Part], section: Mapping[str, Any]) -> list[Part]:
+    """Return the facts of generated code, each section followed by its remaining
+    content: names, units and texts.
+    """
+    urls = {message.name: relations.links.message(message) for message in relations.icd.messages_of(facts.node)}
+    read = {f"{path}.{fact.key}" for path, thing in _things(facts) for fact in facts_of(thing)}
     read |= {f"{path}.{fact.key}" for path in ("crc8", "crc16") for fact in facts_of(Crc)}
-    found = {part.anchor: replace(part, rows=[*part.rows]) for part in parts}
-    for path, key, form, value in _said(schema.protocol(), section, ()):
+    parts_by_anchor = {part.anchor: replace(part, rows=[*part.rows]) for part in parts}
+    for path, key, form, value in _keys_with_values(schema.protocol(), section, ()):
         if ".".join((*path, key)) in read:
             continue
         if isinstance(value, list) and value and isinstance(value[0], Mapping):
-            path, rows = (*path, key), [_entry(one) for one in value]
+            path, rows = (*path, key), [_entry(entry) for entry in value]
         else:
             url = urls.get(value, "") if isinstance(value, str) else ""
-            rows = [Row(_about(form, key), _said_text(form, key, value), "", url)]
+            rows = [Row(_about(form, key), _value_text(form, key, value), "", url)]
         part = _part(path[0], [])
-        before = "".join(f"{one.replace('_', ' ')}: " for one in path[1:])
-        found.setdefault(part.anchor, part).rows.extend(r._replace(about=capitalized(before + r.about)) for r in rows)
-    return list(found.values())
+        before = "".join(f"{step.replace('_', ' ')}: " for step in path[1:])
+        parts_by_anchor.setdefault(part.anchor, part).rows.extend(
+            r._replace(about=capitalized(before + r.about)) for r in rows
+        )
+    return list(parts_by_anchor.values())
 
 
-def _said(
+def _keys_with_values(
     form: dict[str, Any], section: Mapping[str, Any], path: tuple[str, ...]
 ) -> Iterator[tuple[tuple[str, ...], str, dict[str, Any], Any]]:
-    """Each key that has a value or a list: where it stands, its name, its form and what it holds."""
+    """Yield each key with a value or a list: its path, its name, its schema and its
+    content.
+    """
     for key, value in section.items():
         inside = schema.inside(form, key)
         if key in _BESIDES:
             continue
         if isinstance(value, Mapping):
-            yield from _said(inside, value, (*path, key))
+            yield from _keys_with_values(inside, value, (*path, key))
         else:
             yield path, key, inside, value
 
@@ -91,29 +104,29 @@ def _about(form: dict[str, Any], key: str) -> str:
     return capitalized(key.replace("_", " ") if not meaning or meaning.startswith("name of a") else meaning)
 
 
-def _said_text(form: dict[str, Any], key: str, value: object) -> str:
+def _value_text(form: dict[str, Any], key: str, value: object) -> str:
     is_code = key in _IN_HEXADECIMAL or "byte" in form.get("$ref", "")
     return f"0x{value:02X}" if is_code and type(value) is int else as_text(value)
 
 
 def _entry(row: Mapping[str, Any]) -> Row:
-    """An entry of a list; what it is called says which."""
-    others = {key: value for key, value in row.items() if key != "name"}
-    return Row(str(row.get("name", "")), as_text(others))
+    """Return the row of a list entry, labeled by the name of the entry."""
+    other_keys = {key: value for key, value in row.items() if key != "name"}
+    return Row(str(row.get("name", "")), as_text(other_keys))
 
 
 def _part(path: str, rows: list[Row]) -> Part:
     return Part(f"facts-{path.replace('.', '-')}", path.replace(".", ": ").replace("_", " "), rows)
 
 
-def _things(known: Facts) -> list[tuple[str, object]]:
+def _things(facts: Facts) -> list[tuple[str, object]]:
     named = {
-        "client": known.client, "uart.framing": known.framing, "uart.acknowledge": known.acknowledge, "can": known.can,
-        "can.extended": known.can and known.can.extended, "crc8": known.checksum, "log_mask": known.mask,
-        "telemetry_log": known.log_file, "unsolicited_log": known.log_message, "index_file": known.index,
-        "file_transfer": known.files, "file_transfer.hole_map": known.hole_map,
-        **{f"file_transfer.{name}": one for name, one in (known.files.procedures if known.files else {}).items()},
-        "program_copy": known.program_copy, "program_information": known.program_information,
+        "client": facts.client, "uart.framing": facts.framing, "uart.acknowledge": facts.acknowledge, "can": facts.can,
+        "can.extended": facts.can and facts.can.extended, "crc8": facts.checksum, "log_mask": facts.mask,
+        "telemetry_log": facts.log_file, "unsolicited_log": facts.log_message, "index_file": facts.index,
+        "file_transfer": facts.files, "file_transfer.hole_map": facts.hole_map,
+        **{f"file_transfer.{name}": procedure for name, procedure in (facts.files.procedures if facts.files else {}).items()},
+        "program_copy": facts.program_copy, "program_information": facts.program_information,
     }  # fmt: skip
     return [(path, thing) for path, thing in named.items() if thing is not None]
 
@@ -134,7 +147,7 @@ def as_text(value: object) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, (tuple, list)):
-        return ", ".join(as_text(one) for one in value)
+        return ", ".join(as_text(item) for item in value)
     if isinstance(value, dict):
-        return ", ".join(f"{key} {as_text(one)}" for key, one in value.items() if key != "assumptions")
+        return ", ".join(f"{key} {as_text(item)}" for key, item in value.items() if key != "assumptions")
     return f"{value:,}" if isinstance(value, int) else "" if value is None else str(value)

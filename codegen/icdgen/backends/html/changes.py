@@ -1,4 +1,6 @@
-"""The page that says what changed since an older release: `icdgen diff`, with links to the pages of the site."""
+"""Page of changes since an older release: the report of `icdgen diff`, with links to
+the pages of the site.
+"""
 
 from __future__ import annotations
 
@@ -11,14 +13,14 @@ from icdgen.icd.model import Enum, Message, Node
 
 
 def values(relations: Relations, previous: Side) -> dict[str, object]:
-    """Values of the page."""
-    made = report.make(previous, Side("this release", relations.icd))
-    sections = [(group, _url(relations, group.owner.after)) for group in groups(made.changes)]
-    return {"sections": sections, **html.shared(made)}
+    """Return the values of the page."""
+    comparison_report = report.make(previous, Side("this release", relations.icd))
+    sections = [(group, _url(relations, group.owner.after)) for group in groups(comparison_report.changes)]
+    return {"sections": sections, **html.shared(comparison_report)}
 
 
 def _url(relations: Relations, thing: object) -> str:
-    """Where it stands; empty for what is gone."""
+    """Return the link to an object; empty for a removed object."""
     if isinstance(thing, Message):
         return relations.links.message(thing)
     if isinstance(thing, Enum):

@@ -1,7 +1,8 @@
-"""The bit layout of a frame as a picture: one row for one, two or four bytes, each bit where the ICD numbers it.
+"""Drawing of the bit layout of a frame: rows of one, two or four bytes, with the bit
+numbers of the ICD.
 
-Within a byte the most significant bit stands on the left, whichever way bits are numbered, so that a byte reads as its
-hexadecimal digits do.
+Within a byte the most significant bit is on the left for either bit numbering, so that
+bytes read like their hexadecimal digits.
 """
 
 from __future__ import annotations
@@ -19,12 +20,15 @@ from icdgen.icd.model import Message, Node
 from icdgen.icd.places import NodePlace, scalars_in
 
 WIDTH, LEFT, TOP = 1000, 64, 24
-_FEW = 3  # rows of one field that are drawn; of more only the first and the last
+_FEW = 3  # maximum rows of one field; of longer fields, the first and the last row are drawn
 
 
 @dataclass
 class Shape:
-    """A field, or the reserved bits. ``key`` is the field's number, from 1."""
+    """Drawn field, or reserved bits.
+
+    ``key``: number of the field, from 1.
+    """
 
     key: int
     kind: str
@@ -36,7 +40,7 @@ class Shape:
 
 @dataclass
 class Drawing:
-    """All coordinates are in units of the view box."""
+    """Drawing; all coordinates are in units of the view box."""
 
     height: int
     columns: list[tuple[float, str]]  # x, bit number
@@ -51,13 +55,18 @@ class Drawing:
 
 
 def draw(message: Message, node: Node, links: Links, first: int = 0, end: int | None = None) -> Drawing | None:
-    """The picture of bytes ``first`` to before ``end`` (all); None if there are none."""
+    """Return the drawing of the bytes from ``first`` to before ``end`` (default: all);
+    None for an empty range.
+    """
     end = message.length if end is None else end
     return _Canvas(message, node, links, first, end).drawing() if end > first else None
 
 
 def hatch(x: int, y: int, width: int, height: int) -> str:
-    """Slanted lines across a box, as a path; a pattern fill would need an id that is unique in its page."""
+    """Return diagonal lines across a box, as an SVG path.
+
+    A pattern fill would require an id that is unique in its page.
+    """
     path, step = [], 9
     for start in range(x - height, x + width, step):
         left, right = max(start, x), min(start + height, x + width)
@@ -67,7 +76,9 @@ def hatch(x: int, y: int, width: int, height: int) -> str:
 
 
 def bytes_a_row(length: int, fields: Sequence[NodePlace]) -> int:
-    """1 for short frames of small fields, 4 for long frames."""
+    """Return the bytes in a row: 1 for short frames of small fields, up to 4 for long
+    frames.
+    """
     small = any(f.bits < 8 for f in fields)
     if length == 1 or (small and length <= 12):
         return 1
@@ -78,12 +89,16 @@ class _Canvas:
     def __init__(self, message: Message, node: Node, links: Links, first: int, end: int) -> None:
         self.message, self.node, self.first, self.length = message, node, first, end - first
         self.repeats = links.repeats(message)
-        inside = [one for one in scalars_in(message.layout) if one.at < 8 * end and one.at + one.bits > 8 * first]
+        inside = [
+            place for place in scalars_in(message.layout) if place.at < 8 * end and place.at + place.bits > 8 * first
+        ]
         self.across = bytes_a_row(self.length, inside)
         self.cell = (WIDTH - LEFT) / (8 * self.across)
         self.shapes = [
-            Shape(key, one.type, f"{clip(self._label(key), 200)}: {bit_range(one.at, one.bits)}", anchor)
-            for key, (one, anchor) in enumerate(zip(scalars_in(message.layout), links.anchors(message), strict=True), 1)
+            Shape(key, place.type, f"{clip(self._label(key), 200)}: {bit_range(place.at, place.bits)}", anchor)
+            for key, (place, anchor) in enumerate(
+                zip(scalars_in(message.layout), links.anchors(message), strict=True), 1
+            )
         ]
         self.owner = self._owners()[8 * first : 8 * end]
         self.grid, self.rows = self._grid()
@@ -91,33 +106,41 @@ class _Canvas:
         self.row = (46 if narrow else 34) if self.across < 4 else 30
 
     def _label(self, key: int) -> str:
-        """The name of a field; of one that is not always there also those of what may be in its place."""
+        """Return the name of a field; for an optional field, also the names of its
+        alternatives.
+        """
         field, name = scalars_in(self.message.layout)[key - 1], self.repeats.short(key)
         if not field.when:
             return name
-        mine = layout.mask(field, self.node)
-        others = [
-            one.name for one in scalars_in(self.message.layout) if one.when and layout.mask(one, self.node) & mine
+        own_mask = layout.mask(field, self.node)
+        alternatives = [
+            place.name
+            for place in scalars_in(self.message.layout)
+            if place.when and layout.mask(place, self.node) & own_mask
         ]
-        return " / ".join([name, *(other for other in others if other != field.name)][:4])
+        return " / ".join([name, *(other for other in alternatives if other != field.name)][:4])
 
     def _owners(self) -> list[int]:
-        """Key of the field that each bit of the frame belongs to, in bytes of bits from the left; 0: reserved."""
+        """Return the key of the field of each bit, in the order of drawing; 0 for
+        reserved bits.
+        """
         owner = [0] * (8 * self.message.length)
-        for shape, one in zip(self.shapes, scalars_in(self.message.layout), strict=True):
-            if one.view or one.is_count:
+        for shape, place in zip(self.shapes, scalars_in(self.message.layout), strict=True):
+            if place.view or place.is_count:
                 continue
-            if one.is_bytes:
-                owner[one.at : one.at + one.bits] = [shape.key] * one.bits
+            if place.is_bytes:
+                owner[place.at : place.at + place.bits] = [shape.key] * place.bits
                 continue
-            for piece in layout.pieces(one, self.node):
+            for piece in layout.pieces(place, self.node):
                 right = 8 * piece.byte + 8 - piece.shift
                 for bit in range(right - piece.bits, right):
-                    owner[bit] = owner[bit] or shape.key  # of alternatives the first
+                    owner[bit] = owner[bit] or shape.key  # the first one of alternative fields
         return owner
 
     def _grid(self) -> tuple[list[tuple[int, list[int]]], list[int]]:
-        """First byte of each row that is drawn, with the owners of its bits; where rows are left out, -1."""
+        """Return the first byte of each drawn row with the owners of its bits; -1 for
+        omitted rows.
+        """
         step = 8 * self.across
         every = [(at // 8, self.owner[at : at + step]) for at in range(0, len(self.owner), step)]
         grid: list[tuple[int, list[int]]] = []
@@ -168,46 +191,51 @@ class _Canvas:
         return round(LEFT + column * self.cell)
 
     def _rects(self, key: int) -> list[tuple[int, int, int, int]]:
-        """Runs of cells of one owner; runs below each other that are equally wide are one rectangle."""
-        found: list[list[int]] = []
+        """Return the rectangles of one owner.
+
+        Adjacent rows of equal extent form one rectangle.
+        """
+        rectangles: list[list[int]] = []
         for index, (_, owners) in enumerate(self.grid):
             for owner, start, end in _runs(owners):
                 if owner != key:
                     continue
                 x, y, width = self._x(start), self._y(index), self._x(end) - self._x(start)
-                above = next((r for r in found if r[0] == x and r[2] == width and r[1] + r[3] == y), None)
+                above = next((r for r in rectangles if r[0] == x and r[2] == width and r[1] + r[3] == y), None)
                 if above:
                     above[3] += self.row
                 else:
-                    found.append([x, y, width, self.row])
-        return [(r[0], r[1], r[2], r[3]) for r in found]
+                    rectangles.append([x, y, width, self.row])
+        return [(r[0], r[1], r[2], r[3]) for r in rectangles]
 
     def _lines(self) -> str:
-        """Boundaries between what belongs to different owners, and around everything."""
+        """Return the boundaries between different owners, and the outline, as an SVG
+        path.
+        """
         path: list[str] = []
         above: list[int] = []
         for index, (_, owners) in enumerate(self.grid):
             y = self._y(index)
             path += (f"M{self._x(start)} {y}v{self.row}" for _, start, _ in _runs(owners) if start)
             path.append(f"M{LEFT} {y}v{self.row}M{self._x(len(owners))} {y}v{self.row}")
-            differs = _runs(one != other for one, other in zip_longest(owners, above))
+            differs = _runs(owner != owner_above for owner, owner_above in zip_longest(owners, above))
             path += (f"M{self._x(start)} {y}H{self._x(end)}" for is_other, start, end in differs if is_other)
             above = owners
         path.append(f"M{LEFT} {self._y(len(self.grid))}H{self._x(len(above))}")
         return "".join(path)
 
     def _skips(self) -> list[tuple[int, str]]:
-        """Where rows are left out, and what is said there."""
-        found = []
+        """Return the positions of omitted rows with their texts."""
+        skips = []
         for index, first in enumerate(self.rows):
             if first < 0:
                 left_out = self.rows[index + 1] - self.rows[index - 1] - self.across
-                found.append((self._y(index), f"{left_out} more bytes"))
-        return found
+                skips.append((self._y(index), f"{left_out} more bytes"))
+        return skips
 
 
 def _runs(row: Iterable[int]) -> Iterator[tuple[int, int, int]]:
-    """Equal values in a row: the value, where they begin, and where they end."""
+    """Yield runs of equal values: value, start and end."""
     end = 0
     for value, group in groupby(row):
         start, end = end, end + len(list(group))

@@ -1,4 +1,4 @@
-"""The page of an enumeration."""
+"""Page of an enumeration."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from icdgen.icd.model import Enum
 
 
 def values(relations: Relations, enum: Enum) -> dict[str, object]:
-    """Values of the page."""
+    """Return the values of the page."""
     return {
         "enum": enum,
         "node": relations.icd.node(enum.node),

@@ -1,4 +1,6 @@
-"""The envelope of a link on its pages: what it looks like, what it adds to a message, and what scripts need to take it off."""
+"""Packet format of a link on the pages: its fields, the bytes that it adds to a
+message, and data for scripts.
+"""
 
 from __future__ import annotations
 
@@ -43,7 +45,7 @@ _KINDS = {
 
 
 class Place(NamedTuple):
-    """A field of the envelope: its role, where it stands, what it is for, and what it holds."""
+    """Field of the packet format: role, position, purpose and value."""
 
     role: str
     place: str
@@ -52,7 +54,7 @@ class Place(NamedTuple):
 
 
 class Sum(NamedTuple):
-    """A checksum: its parameters, and, of a CRC, what a calculator computes with."""
+    """Checksum with its parameters; for a CRC, also the parameters of the calculator."""
 
     name: str
     rows: list[tuple[str, str]]
@@ -60,9 +62,12 @@ class Sum(NamedTuple):
 
 
 def script_facts(form: Stream, message: Message | None = None) -> dict[str, object]:
-    """What scripts need to know of the envelope; ``message``: only of its rows."""
+    """Return the data on the packet format for scripts.
+
+    ``message``: include only rows of this message.
+    """
     ids = None if message is None else set(message.ids)
-    found: dict[str, object] = {
+    script_data: dict[str, object] = {
         "delimited_by": form.delimited_by,
         "header": form.header_bytes,
         "trailer": form.trailer_bytes,
@@ -72,13 +77,13 @@ def script_facts(form: Stream, message: Message | None = None) -> dict[str, obje
         "fields": [_field(field) for field in form.fields],
     }
     if form.check:
-        found["check"] = _check(form.check)
+        script_data["check"] = _check(form.check)
     if size := pair_bytes(form):
-        found["id_pairs"] = size
+        script_data["id_pairs"] = size
     for direction in ("telecommand", "telemetry"):
         rows = [row for row in form.rows(direction) if ids is None or row.id in ids]
-        found[direction] = [[row.id, row.least, row.most, row.seed] for row in rows]
-    return found
+        script_data[direction] = [[row.id, row.least, row.most, row.seed] for row in rows]
+    return script_data
 
 
 def _field(field: Any) -> dict[str, object]:
@@ -92,12 +97,14 @@ def _check(check: Check) -> dict[str, object]:
 
 
 def crc_numbers(crc: Crc) -> dict[str, object]:
-    """The parameters of a checksum that are known."""
+    """Return the defined parameters of a checksum."""
     return {key: value for key, value in asdict(crc).items() if value is not None}
 
 
 def boxes(section: Mapping[str, Any]) -> list[tuple[str, str, float, str]]:
-    """Text, what is below it, share of the width and bits above, of each field and the data between."""
+    """Return text, subtitle, share of the width, and bit number of each field and of
+    the data.
+    """
     form = section["stream"]
     return [*_boxes(form.get("header", ())), ("data", "", 3.0, ""), *_boxes(form.get("trailer", ()))]
 
@@ -108,7 +115,7 @@ def _boxes(rows: Any) -> Iterator[tuple[str, str, float, str]]:
 
 
 def places(section: Mapping[str, Any]) -> list[Place]:
-    """Each field, in order."""
+    """Return each field, in order."""
     form = section["stream"]
     return [
         Place(row["role"], f"{part}, {bit_range(row['at'], row['bits'])}", _about(row), _holds(row))
@@ -133,7 +140,8 @@ def _holds(row: Mapping[str, Any]) -> str:
     value = row.get("value")
     if isinstance(value, Mapping):
         return ", ".join(
-            f"{_number(one)} in {direction}{'s' * (direction == 'telecommand')}" for direction, one in value.items()
+            f"{_number(number)} in {direction}{'s' * (direction == 'telecommand')}"
+            for direction, number in value.items()
         )
     return "" if value is None else _number(value)
 
@@ -142,20 +150,31 @@ def _number(value: int | list[int]) -> str:
     return " ".join(f"{byte:02X}" for byte in value) if isinstance(value, list) else f"{value} (0x{value:X})"
 
 
-def sums(section: Mapping[str, Any], known: Facts) -> list[Sum]:
-    """The checksums that have a name."""
-    found = []
-    for name, given in section.get("checksums", {}).items():
-        form = known.stream.check if known.stream else None
-        kind, covers = given["kind"], given["covers"]
-        rows = [("Kind", f"CRC of {given['width']} bits" if kind == CRC else f"{_KINDS[kind]}, {given['width']} bits")]
-        rows += [(key.replace("_", " ").capitalize(), _value(given[key])) for key in _PARAMETERS if key in given]
+def sums(section: Mapping[str, Any], node_facts: Facts) -> list[Sum]:
+    """Return the named checksums."""
+    checksums = []
+    for name, declaration in section.get("checksums", {}).items():
+        form = node_facts.stream.check if node_facts.stream else None
+        kind, covers = declaration["kind"], declaration["covers"]
+        rows = [
+            (
+                "Kind",
+                (
+                    f"CRC of {declaration['width']} bits"
+                    if kind == CRC
+                    else f"{_KINDS[kind]}, {declaration['width']} bits"
+                ),
+            )
+        ]
+        rows += [
+            (key.replace("_", " ").capitalize(), _value(declaration[key])) for key in _PARAMETERS if key in declaration
+        ]
         rows.append(("Covers", _covered(covers)))
-        if given.get("seeds"):
-            said = ", ".join(f"{message} {seed}" for message, seed in given["seeds"].items())
-            rows.append(("A byte after all others, by message", said))
-        found.append(Sum(name, rows, form.crc if form and kind == CRC else None))
-    return found
+        if declaration.get("seeds"):
+            seeds = ", ".join(f"{message} {seed}" for message, seed in declaration["seeds"].items())
+            rows.append(("A byte after all others, by message", seeds))
+        checksums.append(Sum(name, rows, form.crc if form and kind == CRC else None))
+    return checksums
 
 
 _PARAMETERS = ("polynomial", "init", "reflect_in", "reflect_out", "xor_out")
@@ -171,7 +190,7 @@ def _covered(covers: Mapping[str, str]) -> str:
 
 
 class Part(NamedTuple):
-    """Bytes of the line, and what they are."""
+    """Transmitted bytes with their meaning."""
 
     kind: str
     data: bytes
@@ -179,13 +198,13 @@ class Part(NamedTuple):
 
 
 def packet(form: Stream, link: Any, id: int, direction: Direction, data: bytes) -> list[Part]:
-    """A message in its envelope, before anything is stuffed."""
-    whole = stream_encode(link._replace(stream=link.stream._replace(delimited_by=PACKET)), id, data, direction)
-    head, end = form.header_bytes, len(whole) - form.trailer_bytes
+    """Return the parts of a message in its packet format, before byte stuffing."""
+    packet_bytes = stream_encode(link._replace(stream=link.stream._replace(delimited_by=PACKET)), id, data, direction)
+    head, end = form.header_bytes, len(packet_bytes) - form.trailer_bytes
     before, behind = (", ".join(f.role for f in form.fields if f.in_trailer == where) for where in (False, True))
     parts = [
-        Part("id", whole[:head], f"header: {before}"),
-        Part("data", whole[head:end], f"data, {count(end - head, 'byte')}"),
-        Part("crc", whole[end:], f"trailer: {behind}"),
+        Part("id", packet_bytes[:head], f"header: {before}"),
+        Part("data", packet_bytes[head:end], f"data, {count(end - head, 'byte')}"),
+        Part("crc", packet_bytes[end:], f"trailer: {behind}"),
     ]
     return [part for part in parts if part.data]

@@ -1,4 +1,4 @@
-"""The page of all errata and notes."""
+"""Page of all errata and notes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _LEVELS = ("certain", "likely", "open")
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """An erratum or a note, where it applies, and the names of the messages among that."""
+    """Erratum or note, its places, and the names of affected messages."""
 
     erratum: Erratum
     places: list[Place]
@@ -24,16 +24,16 @@ class Entry:
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """Those of a node: anchor, title and entries of its errata and its notes."""
+    """Errata and notes of a node: anchor, title and entries of both kinds."""
 
     node: Node
     kinds: list[tuple[str, str, list[Entry]]]
 
 
 def values(relations: Relations) -> dict[str, object]:
-    """Values of the page: of each node that has some, its errata and its notes in their order."""
+    """Return the values of the page: errata and notes of each node, in order."""
     groups = [_group(relations, node) for node in relations.icd.nodes if node.errata]
-    entries = [entry for group in groups for _, _, some in group.kinds for entry in some]
+    entries = [entry for group in groups for _, _, entries_of_kind in group.kinds for entry in entries_of_kind]
     return {
         "groups": groups,
         "messages": sorted({name for entry in entries for name in entry.messages}),
@@ -42,24 +42,28 @@ def values(relations: Relations) -> dict[str, object]:
 
 
 def _group(relations: Relations, node: Node) -> Group:
-    errata = [_entry(relations, one) for one in node.errata if not one.is_note]
-    notes = [_entry(relations, one) for one in node.errata if one.is_note]
+    errata = [_entry(relations, erratum) for erratum in node.errata if not erratum.is_note]
+    notes = [_entry(relations, erratum) for erratum in node.errata if erratum.is_note]
     return Group(node, [(f"{node.name}-errata", "Errata", errata), (f"{node.name}-notes", "Notes", notes)])
 
 
 def _entry(relations: Relations, erratum: Erratum) -> Entry:
     places = relations.places[erratum.id, erratum.title]
-    return Entry(erratum, places[:_FEW], places[_FEW:], list(dict.fromkeys(one.text.split(": ")[0] for one in places)))
+    return Entry(
+        erratum, places[:_FEW], places[_FEW:], list(dict.fromkeys(place.text.split(": ")[0] for place in places))
+    )
 
 
 def changed(erratum: Erratum) -> list[tuple[str, str, str]]:
-    """Key, as printed, as held; for errata that change something."""
+    """Return key, printed value and corrected value of each change of an erratum."""
     printed = dict(erratum.printed)
-    return [(key, shown(printed.get(key)), shown(held)) for key, held in erratum.held] if erratum.changes else []
+    return (
+        [(key, shown(printed.get(key)), shown(corrected)) for key, corrected in erratum.held] if erratum.changes else []
+    )
 
 
 def shown(value: object) -> str:
-    """A value of the ICD file as text."""
+    """Return a value of the ICD as text."""
     if value is None:
         return "absent"
     return str(value).lower() if isinstance(value, bool) else str(value)

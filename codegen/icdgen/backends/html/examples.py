@@ -1,4 +1,4 @@
-"""Golden vectors that a page shows: few, and such that each says something."""
+"""Selection of golden vectors that a page shows."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from icdgen.icd.places import NodePlace, scalars_in
 from icdgen.tables import clean
 from icdgen.vectors import patterns
 
-_MOST = 60  # fields of a message whose values are written out for each example
+_MOST = 60  # maximum number of fields of a message whose values are shown
 
 
 class Cell(NamedTuple):
@@ -22,7 +22,7 @@ class Cell(NamedTuple):
 
 
 class Example(NamedTuple):
-    """A frame and what it holds, field by field."""
+    """Frame with the values of its fields."""
 
     why: str
     hex: str
@@ -31,30 +31,34 @@ class Example(NamedTuple):
 
 
 def frames(message: Message, node: Node) -> list[tuple[str, str]]:
-    """Name and bytes of every frame of the message's golden vectors, in their order."""
+    """Return purpose and bytes of each frame of the golden vectors of a message, in
+    order.
+    """
     if not message.length:
         return []
-    found: dict[bytes, str] = {}
+    purposes: dict[bytes, str] = {}
     for why, frame in patterns.frames(message, node):
-        found.setdefault(frame, why)
+        purposes.setdefault(frame, why)
     for index, raw in enumerate(patterns.raw_columns(message, node)):
-        found.setdefault(codec.encode(node, message, raw), f"chosen values {index}")
-    return [(why, frame.hex(" ").upper()) for frame, why in found.items()]
+        purposes.setdefault(codec.encode(node, message, raw), f"chosen values {index}")
+    return [(why, frame.hex(" ").upper()) for frame, why in purposes.items()]
 
 
 def examples(message: Message, node: Node) -> list[Example]:
-    """The pseudo-random frame and all ones, which the golden vectors hold too; none for a message without bytes."""
+    """Return a pseudo-random frame and a frame of ones, both from the golden vectors;
+    empty for a message without bytes.
+    """
     if not message.length:
         return []
     rows = [("random 0", patterns.random_frame(message, "vector 0")), ("all ones", b"\xff" * message.length)]
-    found = []
+    results = []
     for why, frame in rows:
         if message.layout.parts:
             frame = patterns.cut(message, node, frame, message.layout.parts[-1].most)
         raw = codec.decode(node, message, frame) if len(scalars_in(message.layout)) <= _MOST else {}
         cells = [_cell(field, raw.get(field.name)) for field in scalars_in(message.layout)] if raw else []
-        found.append(Example(why, frame.hex(" ").upper(), frame, cells))
-    return found
+        results.append(Example(why, frame.hex(" ").upper(), frame, cells))
+    return results
 
 
 def _cell(field: NodePlace, raw: int | bytes | None) -> Cell:
@@ -62,8 +66,8 @@ def _cell(field: NodePlace, raw: int | bytes | None) -> Cell:
         return Cell("", "not there")
     if isinstance(raw, bytes):
         shown = raw.hex(" ").upper()
-        said = codec.text(raw) if field.type == "text" else ""
-        return Cell(shown if len(raw) <= 16 else f"{shown[:47]} …", clean(said))
+        content = codec.text(raw) if field.type == "text" else ""
+        return Cell(shown if len(raw) <= 16 else f"{shown[:47]} …", clean(content))
     if field.type == "float":
         value = floats.text_of(codec.float_value(field, raw), field.bits)
         if digits_of(field) is not None:
@@ -80,5 +84,5 @@ def _cell(field: NodePlace, raw: int | bytes | None) -> Cell:
 
 
 def _raw(field: NodePlace, raw: int) -> str:
-    """The raw value of an integer field in its display format."""
+    """Return the raw value of an integer field in its display format."""
     return integer_text(field, raw) if base_of(field) else number(raw)

@@ -1,4 +1,4 @@
-"""The rows of a message's field table."""
+"""Rows of the field table of a message."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from icdgen.show.fields import remarks
 
 @dataclass
 class FieldRow:
-    """A field, or (``key`` 0) a run of reserved bits."""
+    """Field, or a run of reserved bits with ``key`` 0."""
 
     key: int
     at: int
@@ -42,52 +42,55 @@ class FieldRow:
 
 @dataclass
 class FlagRow:
-    """Flags one after the other, which stand in a grid."""
+    """Consecutive flags, shown as a grid."""
 
     flags: list[FieldRow]
     key: int = -1
 
 
-_MANY_FLAGS = 6  # of so many flags on end a grid is made
+_MANY_FLAGS = 6  # minimum number of consecutive flags of a grid
 
-_COLUMNS = ("raw", "physical", "resolution", "unit", "formula")  # left out where no field has anything in them
+_COLUMNS = ("raw", "physical", "resolution", "unit", "formula")  # omitted if all their cells are empty
 
 
 def columns_of(rows: list[FieldRow]) -> list[str]:
-    """Each further column that says something about at least one field."""
+    """Return the columns with content in at least one row."""
     return [name for name in _COLUMNS if any(getattr(row, name) for row in rows)]
 
 
 def rows(message: Message, node: Node, links: Links) -> list[FieldRow]:
-    """Fields and reserved bits in the order of the frame; of arrays that are shown by one element, that one."""
+    """Return fields and reserved bits in the order of the frame.
+
+    Arrays represented by one element have the rows of that element.
+    """
     repeats, anchors = links.repeats(message), links.anchors(message)
-    found = [
+    field_rows = [
         _row(key, field, message, links, anchors[key - 1])
         for key, field in enumerate(scalars_in(message.layout), 1)
         if not field.is_count and repeats.is_shown(key)
     ]
     for gap in layout.gaps(message, node):
-        found += [FieldRow(0, at, bits) for at, bits in repeats.shown_parts(gap.at, gap.bits)]
-    return sorted(found, key=lambda row: row.at)
+        field_rows += [FieldRow(0, at, bits) for at, bits in repeats.shown_parts(gap.at, gap.bits)]
+    return sorted(field_rows, key=lambda row: row.at)
 
 
-def between(found: list[FieldRow], section: Section) -> list[FieldRow | FlagRow]:
-    """Of these rows those of a section, flags in grids."""
+def between(field_rows: list[FieldRow], section: Section) -> list[FieldRow | FlagRow]:
+    """Return the rows of a section, with consecutive flags as grids."""
     inside = [
         row
-        for row in found
+        for row in field_rows
         if row.key in section.keys or (not row.key and section.first * 8 <= row.at < section.end * 8)
     ]
-    made: list[FieldRow | FlagRow] = []
+    section_rows: list[FieldRow | FlagRow] = []
     for is_flag, group in groupby(inside, key=lambda row: row.is_flag):
         run = list(group)
-        made += [FlagRow(run)] if is_flag and len(run) >= _MANY_FLAGS else run
-    return made
+        section_rows += [FlagRow(run)] if is_flag and len(run) >= _MANY_FLAGS else run
+    return section_rows
 
 
 def _row(key: int, field: NodePlace, message: Message, links: Links, anchor: str) -> FieldRow:
-    # of what is derived the formula says all
-    told = () if field.derived else remarks(field, texts.number, message if message.has_conditions else None)
+    # the formula describes a derived value completely
+    field_remarks = () if field.derived else remarks(field, texts.number, message if message.has_conditions else None)
     return FieldRow(
         key=key,
         at=field.at,
@@ -102,6 +105,6 @@ def _row(key: int, field: NodePlace, message: Message, links: Links, anchor: str
         resolution=texts.factor(abs(field.scale.factor)) if field.scale else "",
         unit=field.unit_symbol,
         unit_url=links.unit(field.unit) if field.unit else "",
-        formula=field.formula if field.has_formula or field.derived else "",  # points are among the notes
-        notes=[texts.capitalized(note) for note in told],
+        formula=field.formula if field.has_formula or field.derived else "",  # a lookup table is part of the notes
+        notes=[texts.capitalized(note) for note in field_remarks],
     )

@@ -1,4 +1,6 @@
-"""The manual of icdgen as pages of the site: ``docs/**/*.md``, with links between them and the files that they show."""
+"""Documentation of icdgen as pages of the site: ``docs/**/*.md`` with links between
+pages and to shown files.
+"""
 
 from __future__ import annotations
 
@@ -16,16 +18,16 @@ from icdgen.backends.html.texts import clip
 if TYPE_CHECKING:
     from markdown_it.token import Token
 
-FOLDER = "icdgen-docs"  # no node can be called so
+FOLDER = "icdgen-docs"  # no name of a node contains a hyphen
 HOME = f"{FOLDER}/index.html"
 INDEX = "README"  # page that lists the others
-_OF_EVERY_PAGE = ("content", "sidebar", "search", "results", "theme")  # ids that headings cannot have
+_OF_EVERY_PAGE = ("content", "sidebar", "search", "results", "theme")  # ids in use by the page template
 _LONG = 12_000  # characters of a page whose sections are folded
 
 
 @dataclass
 class Section:
-    """What stands below a heading, as plain text."""
+    """Content below a heading, as plain text."""
 
     title: str
     anchor: str
@@ -35,10 +37,10 @@ class Section:
 
 @dataclass
 class Page:
-    """A page of the manual.
+    """Page of the documentation.
 
-    ``name`` is its path below ``docs`` without suffix, ``guides/scales``. ``html`` is safe: it was made from Markdown in
-    which HTML is only text.
+    ``name``: path below ``docs`` without suffix, for example ``guides/scales``.
+    ``html`` is safe: the Markdown reader treats HTML in its source as text.
     """
 
     name: str
@@ -52,32 +54,36 @@ class Page:
 
     @property
     def url(self) -> str:
-        """``icdgen-docs/reference/wire.html``"""
+        """Path on the site: ``icdgen-docs/reference/wire.html``."""
         return f"{FOLDER}/{self.name}.html" if self.name != INDEX else HOME
 
     @property
     def about(self) -> str:
-        """How it begins."""
+        """Start of the text."""
         return clip(self.sections[0].text, 160) if self.sections else ""
 
 
 @cache
 def pages() -> tuple[Page, ...]:
-    """All pages, the index first, in the order of the index; none where the manual is not installed."""
+    """Return all pages in the order of the index, which comes first; empty if the
+    documentation is not installed.
+    """
     folder = shipped.docs()
     paths = {path.relative_to(folder).with_suffix("").as_posix(): path for path in sorted(folder.rglob("*.md"))}
     if INDEX not in paths:
         return ()
     topics = topics_of(paths[INDEX].read_text("utf-8"))
     names = dict.fromkeys([INDEX, *(name for name in topics if name in paths), *paths])
-    made = [_page(paths[name], name) for name in names]
-    for page in made:
+    all_pages = [_page(paths[name], name) for name in names]
+    for page in all_pages:
         page.topics = topics.get(page.name, ())
-    return tuple(made)
+    return tuple(all_pages)
 
 
 def topics_of(index: str) -> dict[str, tuple[str, ...]]:
-    """Pages in the order of the index, with the topics behind the link to each: ``[Link](link.md): SLIP, COBS; ...``."""
+    """Return the pages of the index in order, with the topics after each link:
+    ``[Link](link.md): SLIP, COBS; ...``.
+    """
     links = re.findall(r"\[([^\]]+)\]\(([^)#:]+)\.md\)(?::\s([^;\[\]]*?)(?=;|,?\s*\n-|,\s*\[|\n\n|\Z))?", index)
     return {
         name: (title, *(" ".join(topic.split()) for topic in topics.split(",") if topic.strip()))
@@ -86,7 +92,7 @@ def topics_of(index: str) -> dict[str, tuple[str, ...]]:
 
 
 def groups() -> dict[str, list[Page]]:
-    """Pages by their folder: the index and what lies beside it, guides, reference, explanation."""
+    """Return the pages by folder: index, guides, reference and explanation."""
     by_folder: dict[str, list[Page]] = {}
     for page in pages():
         by_folder.setdefault(page.name.rpartition("/")[0], []).append(page)
@@ -94,7 +100,7 @@ def groups() -> dict[str, list[Page]]:
 
 
 def files() -> Iterator[tuple[str, str]]:
-    """What the pages show and lead to: path on the site and text."""
+    """Yield path and text of files that the pages show or link to."""
     folder = shipped.docs()
     for path in sorted(folder.rglob("*")):
         if path.is_file() and path.suffix in (".yaml", ".c", ".h", ".py", ".rs", ".toml", ".txt"):
@@ -102,7 +108,7 @@ def files() -> Iterator[tuple[str, str]]:
 
 
 def anchor_of(title: str) -> str:
-    """``the-errata-overlays``, as forges make them."""
+    """Return the anchor of a heading as forges generate it: ``the-errata-overlays``."""
     return re.sub(r"\s", "-", re.sub(r"[^\w\s-]", "", title.strip().lower()))
 
 
@@ -121,7 +127,7 @@ def _page(path: Path, name: str = "") -> Page:
     for number, token in enumerate(tokens):
         if token.type == "heading_open":
             title = _plain(tokens[number + 1])
-            anchor = next(one for one in _anchors(title) if one not in taken)
+            anchor = next(candidate for candidate in _anchors(title) if candidate not in taken)
             taken.add(anchor)
             token.attrSet("id", anchor)
             page.sections.append(Section(title, anchor, int(token.tag[1:])))
@@ -140,7 +146,7 @@ def _page(path: Path, name: str = "") -> Page:
 
 
 def _tables_in_reach(html: str) -> str:
-    """Tables and code that are too wide for a screen scroll, by the keyboard too."""
+    """Return the page with scrollable tables and code, also by keyboard."""
     numbers = count(1)
     html = html.replace("<pre>", '<pre tabindex="0" data-copy>').replace("<th>", '<th scope="col">')
     html = re.sub(
@@ -152,12 +158,14 @@ def _tables_in_reach(html: str) -> str:
 
 
 def _folded(html: str) -> str:
-    """The sections of a long page are folded."""
+    """Return a long page with folded sections."""
     if len(html) < _LONG:
         return html
-    first, *others = re.split(r"(?=<h2 )", html)
-    made = [re.sub(r"\A(<h2 .*?</h2>)", r"<summary>\1</summary>", one, flags=re.DOTALL) for one in others]
-    return first + "".join(f'<details class="fold">{one}</details>\n' for one in made)
+    first, *sections = re.split(r"(?=<h2 )", html)
+    folded_sections = [
+        re.sub(r"\A(<h2 .*?</h2>)", r"<summary>\1</summary>", section, flags=re.DOTALL) for section in sections
+    ]
+    return first + "".join(f'<details class="fold">{section}</details>\n' for section in folded_sections)
 
 
 def _plain(token: Token) -> str:
@@ -165,24 +173,27 @@ def _plain(token: Token) -> str:
 
 
 def _mend_links(token: Token, path: Path) -> None:
-    """Links to other pages lead to what was made of them; what is not on the site becomes text."""
-    kept: list[bool] = []
+    """Replace links to Markdown files by links to pages.
+
+    Links to files outside of the site become text.
+    """
+    is_linked: list[bool] = []
     children = []
     for child in token.children or ():
         if child.type == "link_open":
             target = _target(str(child.attrGet("href") or ""), path)
-            kept.append(bool(target))
+            is_linked.append(bool(target))
             if not target:
                 continue
             child.attrSet("href", target)
-        elif (child.type == "link_close" and not kept.pop()) or child.type == "image":
+        elif (child.type == "link_close" and not is_linked.pop()) or child.type == "image":
             continue
         children.append(child)
     token.children = children
 
 
 def _target(href: str, path: Path) -> str:
-    """Where a link leads from a page of the manual; empty for what is not on the site."""
+    """Return the target of a link on the site; empty if the site does not contain it."""
     name, hash, anchor = href.partition("#")
     if ":" in name or name.startswith("/"):
         return ""
@@ -200,6 +211,6 @@ def _target(href: str, path: Path) -> str:
 
 
 def _top(path: Path) -> Path:
-    """Folder of the manual that a page belongs to."""
+    """Return the documentation folder of a page."""
     folder = shipped.docs().resolve()
     return folder if path.resolve().is_relative_to(folder) else path.parent.resolve()

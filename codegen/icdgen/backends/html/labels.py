@@ -1,16 +1,19 @@
-"""Names that fit into the boxes of a drawing."""
+"""Placement of names in the boxes of a drawing."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
-_SIZES = (13, 11)  # font sizes that are tried, in units of the view box
-_ADVANCE = 0.54  # width of an average letter, by font size
+_SIZES = (13, 11)  # font sizes in order of preference, in units of the view box
+_ADVANCE = 0.54  # average width of a letter, relative to the font size
 _LEADING = 1.18
 
 
 class Label(NamedTuple):
-    """A line of text around ``x``, its baseline at ``y``; ``key``: it is only the field's number."""
+    """Line of text centered at ``x`` with baseline ``y``.
+
+    ``key``: whether it is only the number of the field.
+    """
 
     x: int
     y: float
@@ -23,10 +26,12 @@ Box = tuple[int, int, int, int]  # x, y, width, height
 
 
 def fit(boxes: list[Box], name: str, number: int) -> list[Label]:
-    """The name in each box that it fits into, in as many lines as it takes; the number where it fits into none."""
-    found = [label for box in boxes for label in _in_box(box, name)]
-    if found or not boxes:
-        return found
+    """Return the name in each box that is large enough, in several lines if needed;
+    otherwise the number in the largest box.
+    """
+    labels = [label for box in boxes for label in _in_box(box, name)]
+    if labels or not boxes:
+        return labels
     x, y, width, height = max(boxes, key=lambda box: (box[2] * box[3], -box[1]))
     return [Label(x + width // 2, round(y + height / 2 + 4, 1), 11, str(number), True)]
 
@@ -46,7 +51,9 @@ def _in_box(box: Box, name: str) -> list[Label]:
 
 
 def _wrap(text: str, width: int, most: int) -> list[str]:
-    """At most ``most`` lines of at most ``width`` characters; empty where that cannot be."""
+    """Return at most ``most`` lines of at most ``width`` characters; empty if
+    impossible.
+    """
     lines: list[str] = []
     for word in text[:400].split():
         if len(word) > width:

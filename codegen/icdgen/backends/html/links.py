@@ -1,7 +1,9 @@
-"""Where everything stands on the site: paths from its top, and anchors that stay the same from release to release.
+"""Paths of all pages relative to the top of the site, and anchors that are stable
+between releases.
 
-Messages and enumerations go by the words of their names, fields and members by those and, as a second anchor, by their place or
-value; messages can also be reached by id, on the page of their node.
+Names of messages and enumerations determine their paths, and names of fields and
+members their anchors. Position or value provide a second anchor. Messages can also be
+reached by id on the page of their node.
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ from icdgen.icd.units import Unit
 from icdgen.naming import snake, words
 
 _LONGEST = 80
-# Stems that file systems or the site itself keep for themselves.
+# File names reserved by file systems or used by the site itself.
 _TAKEN = {"index", "protocol", "con", "prn", "aux", "nul"}
 _TAKEN.update(f"{port}{number}" for port in ("com", "lpt") for number in range(10))
 
@@ -26,7 +28,10 @@ HOME, ERRATA, UNITS, CHANGES = "index.html", "errata.html", "units.html", "chang
 
 @lru_cache(maxsize=16384)
 def slug(text: str, vocabulary: tuple[str, ...]) -> str:
-    """``estimated_roll_angle``; of what is too long the beginning, told apart by a checksum."""
+    """Return a name for paths, such as ``estimated_roll_angle``.
+
+    A long name is shortened and gets a checksum.
+    """
     name = snake(words(text, vocabulary)) or f"{crc32(text.encode('utf-8', 'surrogatepass')):08x}"
     if len(name) > _LONGEST:
         return f"{name[:_LONGEST]}_{crc32(name.encode()):08x}"
@@ -34,7 +39,7 @@ def slug(text: str, vocabulary: tuple[str, ...]) -> str:
 
 
 class Links:
-    """Paths of a set of ICDs. Equal names below one owner are told apart by a number."""
+    """Paths of a set of ICDs. Equal names of one owner are numbered."""
 
     def __init__(self, icd: Icd) -> None:
         self._pages: dict[tuple[str, str, str], str] = {}
@@ -44,82 +49,88 @@ class Links:
             for message in node.messages:
                 self._anchors[id(message)] = _anchors_of_fields(message, self.repeats(message), node.vocabulary)
             self._anchors.update((id(enum), _anchors_of_members(enum, node.vocabulary)) for enum in node.enums)
-            self._give_out(node, "message", "", node.messages)
-            self._give_out(node, "enum", "enum-", node.enums)
+            self._assign_pages(node, "message", "", node.messages)
+            self._assign_pages(node, "enum", "enum-", node.enums)
 
-    def _give_out(self, node: Node, kind: str, prefix: str, things: tuple[Message, ...] | tuple[Enum, ...]) -> None:
+    def _assign_pages(self, node: Node, kind: str, prefix: str, things: tuple[Message, ...] | tuple[Enum, ...]) -> None:
         taken: set[str] = set()
         for thing in things:
             name = _free(prefix + slug(thing.identifier or thing.name, node.vocabulary), taken)
             self._pages[node.name, kind, thing.name] = f"{node.name}/{name}.html"
 
     def node(self, name: str) -> str:
-        """``demo/index.html``"""
+        """Return the page of a node: ``demo/index.html``."""
         return f"{name}/index.html"
 
     def printed(self, name: str) -> str:
-        """The page that holds a whole node."""
+        """Return the page with all messages of a node."""
         return f"{name}/all-messages.html"
 
     def protocol(self, name: str) -> str:
-        """The page that says how a node talks."""
+        """Return the page of a node's protocol."""
         return f"{name}/protocol.html"
 
     def message(self, message: Message) -> str:
-        """``demo/estimated_roll.html``"""
+        """Return the page of a message: ``demo/estimated_roll.html``."""
         return self._pages[message.node, "message", message.name]
 
     def enum(self, enum: Enum) -> str:
-        """``demo/enum-mode.html``"""
+        """Return the page of an enumeration: ``demo/enum-mode.html``."""
         return self._pages[enum.node, "enum", enum.name]
 
     def anchor(self, owner: Message | Enum, name: str) -> str:
-        """Anchor of a field (``field-roll_angle``) or a member (``member-idle``) of its owner's page."""
+        """Return the anchor of a field (``field-roll_angle``) or member
+        (``member-idle``) in the page of its owner.
+        """
         return self._anchors[id(owner)][name]
 
     def anchors(self, message: Message) -> list[str]:
-        """Anchors of the fields of a message, in their order."""
+        """Return the anchors of the fields of a message, in order."""
         return [self.anchor(message, field.name) for field in scalars_in(message.layout)]
 
     def field(self, message: Message, field: NodePlace) -> str:
-        """``demo/estimated_roll.html#field-roll_angle``"""
+        """Return the link to a field: ``demo/estimated_roll.html#field-roll_angle``."""
         return f"{self.message(message)}#{self.anchor(message, field.name)}"
 
     def repeats(self, message: Message) -> Repeats:
-        """The arrays of a message of which its page shows one element."""
+        """Return the arrays of a message of which its page shows one element."""
         return self._repeats[id(message)]
 
     def erratum(self, erratum: Erratum) -> str:
-        """``errata.html#DEM-001``"""
+        """Return the link to an erratum: ``errata.html#DEM-001``."""
         return f"{ERRATA}#{erratum.id}"
 
     def unit(self, unit: Unit) -> str:
-        """``units.html#unit-deg``"""
+        """Return the link to a unit: ``units.html#unit-deg``."""
         return f"{UNITS}#unit-{unit.identifier}"
 
 
 def _anchors_of_fields(message: Message, repeats: Repeats, vocabulary: tuple[str, ...]) -> dict[str, str]:
-    """By the name of the field; the fields of further elements have those of the first, where the page shows that alone."""
+    """Return the anchors by name of the field.
+
+    If the page shows one element of an array, fields of other elements share its
+    anchors.
+    """
     taken: set[str] = set()
-    found: dict[str, str] = {}
+    anchors: dict[str, str] = {}
     for field, leader, name in zip(scalars_in(message.layout), repeats.leaders, repeats.names, strict=True):
         first = scalars_in(message.layout)[leader - 1]
         if first is field:
-            found[field.name] = _free("field-" + slug(field.identifier or name, vocabulary), taken)
+            anchors[field.name] = _free("field-" + slug(field.identifier or name, vocabulary), taken)
         else:
-            found[field.name] = found[first.name]
-    return found
+            anchors[field.name] = anchors[first.name]
+    return anchors
 
 
 def _anchors_of_members(enum: Enum, vocabulary: tuple[str, ...]) -> dict[str, str]:
-    """By the value of the member."""
+    """Return the anchors by value of the member."""
     taken: set[str] = set()
     return {str(m.value): _free("member-" + slug(m.identifier or m.name, vocabulary), taken) for m in enum.members}
 
 
 def _free(name: str, taken: set[str]) -> str:
-    found, number = name, 2
-    while found in taken:
-        found, number = f"{name}-{number}", number + 1
-    taken.add(found)
-    return found
+    candidate, number = name, 2
+    while candidate in taken:
+        candidate, number = f"{name}-{number}", number + 1
+    taken.add(candidate)
+    return candidate

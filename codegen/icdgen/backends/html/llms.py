@@ -1,4 +1,4 @@
-"""``llms.txt``: the site in a page of Markdown, for programs that read text."""
+"""File ``llms.txt``: the site as one page of Markdown, for language models."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from icdgen.describe.numbers import length_text
 
 
 def text(relations: Relations, compared: bool) -> str:
-    """Nodes, then every message with ids, length and the link to its page."""
+    """Return nodes and messages with ids, length and links to their pages."""
     icd, links = relations.icd, relations.links
     lines = ["# Interface control documents", ""]
     lines += [
@@ -38,5 +38,5 @@ def text(relations: Relations, compared: bool) -> str:
 
 
 def _line(text: str) -> str:
-    """One line of Markdown that says exactly this."""
+    """Return a text as one line of Markdown with escaped markup."""
     return re.sub(r"([\\`*_\[\]<>])", r"\\\1", " ".join(texts.clip(text, 400).split()))

@@ -1,4 +1,4 @@
-"""The page of a message."""
+"""Page of a message."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ if TYPE_CHECKING:
 
 
 def values(relations: Relations, node: Node, message: Message, render: Renderer) -> dict[str, Any]:
-    """Values of the page of a message that ``node`` declares."""
+    """Return the values of the page of a message that ``node`` declares."""
     described, in_c = describe(relations.icd).message(message), relations.in_c(message)
     repeats = relations.links.repeats(message)
     parts = sections.bands(relations, message)
     shares = parts or sections.shares(message)
-    pictures = [drawing.draw(message, node, relations.links, one.first, one.end) for one in parts] or [
+    pictures = [drawing.draw(message, node, relations.links, part.first, part.end) for part in parts] or [
         drawing.draw(message, node, relations.links)
     ]
     drawings = [picture for picture in pictures if picture is not None]
@@ -49,8 +49,8 @@ def values(relations: Relations, node: Node, message: Message, render: Renderer)
         "keyed": any(picture.keyed for picture in drawings),
         "rows": rows,
         "columns": fields.columns_of(rows),
-        "bands": [(one, fields.between(rows, one), picture) for one, picture in zip(parts, pictures, strict=False)],
-        "shares": [(one, fields.between(rows, one)) for one in shares],
+        "bands": [(part, fields.between(rows, part), picture) for part, picture in zip(parts, pictures, strict=False)],
+        "shares": [(share, fields.between(rows, share)) for share in shares],
         "buses": wire.buses(message, relations.wire(message), data),
         "example_data": is_received and bool(data),
         "examples": shown,
@@ -64,10 +64,10 @@ def values(relations: Relations, node: Node, message: Message, render: Renderer)
 
 
 def _facts(relations: Relations, node: Node, message: Message) -> list[tuple[str, str, str]]:
-    """Label, text, and where a link leads."""
+    """Return label, text and link of each fact."""
     protocol = relations.icd.protocol_of(node) or {}
     reply = protocol.get("stream", {}).get("replies", {}).get(message.name)
-    answer = next((one for one in relations.icd.messages_of(node) if one.name == reply), None)
+    answer = next((candidate for candidate in relations.icd.messages_of(node) if candidate.name == reply), None)
     is_acknowledged = message.telecommand_id is not None and answer is None and "stream" not in protocol
     source = [f"{word} {number}" for word, number in (("table", message.table), ("page", message.page)) if number]
     facts = [
@@ -85,13 +85,13 @@ def _facts(relations: Relations, node: Node, message: Message) -> list[tuple[str
             for owner, row in relations.logged[message.node, message.name]
         ),
         ("Manual", ", ".join(source), ""),
-        ("Spoken by", ", ".join(one.title for one in relations.speakers[node.name] if one is not node), ""),
+        ("Spoken by", ", ".join(speaker.title for speaker in relations.speakers[node.name] if speaker is not node), ""),
     ]
     return [(label, text, url) for label, text, url in facts if text]
 
 
 def _open_parts(message: Message) -> Iterator[tuple[str, str, str]]:
-    """How much there is of each part of variable length."""
+    """Yield the limits of each variable-length part."""
     parts = message.layout.parts
     for part in parts:
         until = "up to the end" if part.is_rest else f"as many as {count_text(part.counter, part.plus)} says"

@@ -1,4 +1,4 @@
-"""The home page and the page of a node."""
+"""Home page, and page of a node."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ _CONFIDENCE = ("certain", "likely", "open")
 
 
 def brief(relations: Relations, node: Node) -> dict[str, object]:
-    """What every page says about a node."""
+    """Return the values of a node that every page shows."""
     return {"name": node.name, "title": texts.clip(node.title, 80), "url": relations.links.node(node.name)}
 
 
 def home(relations: Relations) -> dict[str, object]:
-    """Values of the home page."""
+    """Return the values of the home page."""
     icd = relations.icd
     messages = [message for node in icd.nodes for message in node.messages]
     errata = [erratum for node in icd.nodes for erratum in node.errata if not erratum.is_note]
@@ -46,7 +46,7 @@ def home(relations: Relations) -> dict[str, object]:
 
 
 def _paste_example(relations: Relations, example: Message | None) -> str:
-    """A frame as it goes over the line, to show what can be pasted."""
+    """Return a transmitted frame, as an example of input for the decoder."""
     if example is None:
         return ""
     frame = examples.examples(example, relations.icd.node(example.node))[0].frame
@@ -71,7 +71,7 @@ def _card(relations: Relations, node: Node) -> dict[str, object]:
 
 
 def _decisions(node: Node) -> dict[str, int]:
-    """How many errata and notes it has."""
+    """Return the number of errata and notes."""
     notes = sum(erratum.is_note for erratum in node.errata)
     return {"errata": len(node.errata) - notes, "notes": notes}
 
@@ -87,9 +87,9 @@ def _facts(node: Node) -> list[tuple[str, str]]:
 
 
 def values(relations: Relations, node: Node) -> dict[str, object]:
-    """Values of a node's page, and of the page that holds all its messages."""
-    spoken = sorted(relations.icd.messages_of(node), key=lambda m: m.node != node.name)
-    rows = [_row(relations, node, message) for message in spoken]
+    """Return the values of the page of a node, and of the page with all its messages."""
+    used_messages = sorted(relations.icd.messages_of(node), key=lambda m: m.node != node.name)
+    rows = [_row(relations, node, message) for message in used_messages]
     received = {m.telemetry_id: relations.place(m) for m in reversed(relations.icd.messages_of(node))}
     numbering = f"bit 0 is the {'least' if node.bit_order == 'lsb0' else 'most'} significant"
     return {
@@ -98,16 +98,23 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
         "facts": [*_facts(node), ("Byte order", f"{node.byte_order}-endian"), ("Bit numbering", numbering)],
         "rows": rows,
         "kinds": [
-            (kind, title, count) for kind, title in _KINDS.items() if (count := sum(m.kind == kind for m in spoken))
+            (kind, title, count)
+            for kind, title in _KINDS.items()
+            if (count := sum(m.kind == kind for m in used_messages))
         ],
-        "groups": sorted({message.group for message in spoken if message.group}),
+        "groups": sorted({message.group for message in used_messages if message.group}),
         "loggable": [(row, received.get(row.id)) for row in node.loggable],
         "enums": [
             (Place(enum.name, relations.links.enum(enum)), len(enum.members), enum.summary) for enum in node.enums
         ],
-        "included": [Place(one.title, relations.links.node(one.name)) for one in relations.icd.included(node)],
+        "included": [
+            Place(included_node.title, relations.links.node(included_node.name))
+            for included_node in relations.icd.included(node)
+        ],
         "speakers": [
-            Place(one.title, relations.links.node(one.name)) for one in relations.speakers[node.name] if one is not node
+            Place(speaker.title, relations.links.node(speaker.name))
+            for speaker in relations.speakers[node.name]
+            if speaker is not node
         ],
         "protocol": protocol.has_page(relations, node),
         "printed": relations.links.printed(node.name),

@@ -1,6 +1,8 @@
-"""Messages as the JavaScript codec wants them: which bits of which bytes, which scale. Plain data, ready for JSON.
+"""Messages in the form of the JavaScript codec: positions of bits, and scales, as data
+for JSON.
 
-Integers that a JavaScript number would not hold exactly are texts; the codec takes both.
+Integers that a JavaScript number cannot represent exactly are strings; the codec
+accepts both.
 """
 
 from __future__ import annotations
@@ -16,7 +18,10 @@ from icdgen.icd.places import NodePlace, scalars_in
 
 
 def message_plan(message: Message, node: Node) -> dict[str, object]:
-    """The plan of a message; ``node`` is the one that declares it. Fields stand in the order of the ICD."""
+    """Return the data of a message; ``node`` declares it.
+
+    Fields are in the order of the ICD.
+    """
     places = {field.name: place for place, field in enumerate(scalars_in(message.layout))}
     fields = [_field(field, message, node, places) for field in scalars_in(message.layout)]
     plan: dict[str, object] = {"name": message.name, "length": message.length, "fields": fields}
@@ -27,8 +32,14 @@ def message_plan(message: Message, node: Node) -> dict[str, object]:
     parts = message.layout.parts
     if len(parts) > 1:
         plan["inner"] = [
-            {"counter": places[one.counter], "begin": one.begin, "step": one.step, "most": one.most, "plus": one.plus}
-            for one in parts[:-1]
+            {
+                "counter": places[part.counter],
+                "begin": part.begin,
+                "step": part.step,
+                "most": part.most,
+                "plus": part.plus,
+            }
+            for part in parts[:-1]
         ]
         plan["fewest"] = message.layout.shortest
     if parts:
@@ -41,23 +52,28 @@ def message_plan(message: Message, node: Node) -> dict[str, object]:
 
 
 def enum_plan(enum: Enum) -> list[list[object]]:
-    """Value and name of each member, and of a range its last value."""
+    """Return value and name of each member, and the last value of a range."""
     return [[integer(m.value), m.name, *([] if m.to is None else [integer(m.to)])] for m in enum.members]
 
 
 def integer(value: int) -> int | str:
-    """The number, as text where a double would not hold it."""
+    """Return the number, as text if a double cannot represent it exactly."""
     return value if abs(value) < EXACT_DOUBLE else str(value)
 
 
 def _field(field: NodePlace, message: Message, node: Node, places: Mapping[str, int]) -> dict[str, object]:
-    """The plan of a field; what does not apply is left out. ``places``: of the message's fields by name."""
+    """Return the data of a field without inapplicable keys.
+
+    ``places``: positions of the message's fields by name.
+    """
     scaled, curve, how = steps(field), field.curve, field.derived
     variable = message.layout.sequence
     digits, base = digits_of(field), base_of(field)
     pieces = () if field.is_count or field.is_bytes else layout.pieces(field, node)
     is_part = bool(curve) and field.is_invertible and field.settable_raws != (field.raw_min, field.raw_max)
-    limits = {one.key: [integer(one.value.numerator), integer(one.value.denominator)] for one in bounds(field.limits)}
+    limits = {
+        bound.key: [integer(bound.value.numerator), integer(bound.value.denominator)] for bound in bounds(field.limits)
+    }
     plan: dict[str, object] = {
         "name": field.name,
         "type": "bytes" if field.is_bytes else field.type,
@@ -79,15 +95,15 @@ def _field(field: NodePlace, message: Message, node: Node, places: Mapping[str, 
         "unit": field.unit_symbol or None,
         "enum": field.enum.name if field.enum else None,
         "const": None if field.const is None else integer(field.const),
-        "special": [[integer(one.value), one.meaning] for one in field.special] or None,  # bits of floats
+        "special": [[integer(special.value), special.meaning] for special in field.special] or None,  # bits of floats
         "limits": limits or None,  # numerator and denominator of each
-        "when": [[places[one.field], list(map(integer, one.values))] for one in field.when] or None,
+        "when": [[places[condition.field], list(map(integer, condition.values))] for condition in field.when] or None,
         "derived": (
-            [[places[one] for one in how.fields], list(how.numbers), list(map(list, how.steps))] if how else None
+            [[places[name] for name in how.fields], list(how.numbers), list(map(list, how.steps))] if how else None
         ),
-        # a new message has it, though it is not sent
+        # a new message stores it, although its part has no elements
         "inner": field.name != field.steps[0].node.name and any(field.steps[0].node is part for part in variable[:-1]),
-        # bytes or text, which a frame holds in part
+        # variable-length bytes or text
         "isOpen": bool(variable) and field.is_bytes and field.scalar.length is not None and field.node is variable[-1],
     }
     return {key: value for key, value in plan.items() if value is not None and value is not False}

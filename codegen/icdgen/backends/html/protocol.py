@@ -1,4 +1,6 @@
-"""The page that says how a node talks: lines, framing, checksums, identifiers, errors, who sends what when, and what is assumed."""
+"""Page of a node's protocol: buses, framing, checksums, identifiers, errors, sequences
+and assumptions.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,10 @@ _WIDTH = 720
 
 
 class Box(NamedTuple):
-    """A piece of a drawing: two lines of text in a box at ``x``; ``above`` it are the numbers of its bits."""
+    """Box of a drawing at ``x`` with two lines of text.
+
+    ``above``: numbers of its bits.
+    """
 
     x: float
     width: float
@@ -28,120 +33,123 @@ class Box(NamedTuple):
 
 
 def has_page(relations: Relations, node: Node) -> bool:
-    """Whether the ICD says anything about how the node talks."""
+    """Return whether the ICD describes the protocol of the node."""
     return bool(relations.icd.protocol_of(node))
 
 
 def values(relations: Relations, node: Node) -> dict[str, object]:
-    """Values of the page."""
-    known, section = facts.of(relations.icd, node), relations.icd.protocol_of(node)
-    checks, sums = _checks(known, section), envelopes.sums(section, known)
-    parts = all_facts.of_code(relations, known)
-    computed = [(name, crc) for name, crc, _ in checks] + [(one.name, one.crc) for one in sums if one.crc]
+    """Return the values of the page."""
+    node_facts, section = facts.of(relations.icd, node), relations.icd.protocol_of(node)
+    checks, sums = _checks(node_facts, section), envelopes.sums(section, node_facts)
+    parts = all_facts.of_code(relations, node_facts)
+    computed = [(name, crc) for name, crc, _ in checks] + [
+        (checksum.name, checksum.crc) for checksum in sums if checksum.crc
+    ]
     return {
         "node": node,
-        "envelope": _envelope(relations, known, section),
+        "envelope": _envelope(relations, node_facts, section),
         "lines": lines(section),
-        "framing": _framing(known),
-        "escaped": known.framing and f"{known.framing.escape:02X}",
-        "escaped_as": known.framing and f"{known.framing.escape:02X} {known.framing.escaped:02X}",
+        "framing": _framing(node_facts),
+        "escaped": node_facts.framing and f"{node_facts.framing.escape:02X}",
+        "escaped_as": node_facts.framing and f"{node_facts.framing.escape:02X} {node_facts.framing.escaped:02X}",
         "checks": [
             *((name, _crc_rows(crc), f"0x{check:X}" if check is not None else "") for name, crc, check in checks),
-            *((one.name, [Row(*row) for row in one.rows], "") for one in sums),
+            *((checksum.name, [Row(*row) for row in checksum.rows], "") for checksum in sums),
         ],
         "calculator": (
             texts.script_json([{"name": name, **envelopes.crc_numbers(crc)} for name, crc in computed])
             if computed
             else ""
         ),
-        "identifier": _identifier(known, section),
+        "identifier": _identifier(node_facts, section),
         "types": [
-            Row(f"{one['value']} · {one['name']}", one.get("summary", ""))
-            for one in section.get("can", {}).get("message_types", {}).get("values", ())
+            Row(f"{message_type['value']} · {message_type['name']}", message_type.get("summary", ""))
+            for message_type in section.get("can", {}).get("message_types", {}).get("values", ())
         ],
-        "errors": errors(relations, node, known, section),
-        "acknowledges": sequences.acknowledges(relations, node, known),
-        "procedures": sequences.procedures(relations, node, known),
+        "errors": errors(relations, node, node_facts, section),
+        "acknowledges": sequences.acknowledges(relations, node, node_facts),
+        "procedures": sequences.procedures(relations, node, node_facts),
         "times": [(part, row) for part in parts for row in part.rows if row.value.endswith(" ms")],
-        "parts": all_facts.with_others(relations, known, parts, section),
+        "parts": all_facts.with_others(relations, node_facts, parts, section),
         "assumptions": [
-            Row(f"{one.section}: {one.key.replace('_', ' ')}", as_text(one.value), one.why) for one in known.assumptions
+            Row(f"{assumption.section}: {assumption.key.replace('_', ' ')}", as_text(assumption.value), assumption.why)
+            for assumption in node_facts.assumptions
         ],
     }
 
 
 def lines(section: dict[str, Any]) -> list[tuple[str, list[Row]]]:
-    """The settings of each bus."""
-    found = []
+    """Return the settings of each bus."""
+    settings_by_bus = []
     for key, title in texts.BUSES.items():
         rows = list(_settings(section.get(key, {}), ""))
         if rows:
-            found.append((title, rows))
-    return found
+            settings_by_bus.append((title, rows))
+    return settings_by_bus
 
 
-def _settings(given: dict[str, Any], prefix: str) -> Iterator[Row]:
-    for key, value in given.items():
+def _settings(section: dict[str, Any], prefix: str) -> Iterator[Row]:
+    for key, value in section.items():
         label = f"{prefix}{key.replace('_', ' ')}"
         if isinstance(value, int) and not isinstance(value, bool):
             yield Row(label, f"0x{value:02X}" if "address" in key else f"{value:,}")
         elif isinstance(value, str):
             yield Row(label, value)
-        elif isinstance(value, list) and all(isinstance(one, str) for one in value):
+        elif isinstance(value, list) and all(isinstance(item, str) for item in value):
             yield Row(label, " or ".join(value))
         elif key in ("write", "read") and isinstance(value, dict):
             yield from _settings(value, f"{key}, ")
 
 
-def _framing(known: Facts) -> list[Box]:
-    form = known.framing
+def _framing(node_facts: Facts) -> list[Box]:
+    form = node_facts.framing
     if form is None:
         return []
     pieces = [(f"{form.escape:02X}", "escape", 1), (f"{form.start:02X}", "start", 1), ("id", "", 1.4), ("data", "", 4)]
-    if known.checksum and "uart" in known.checksum.telecommand_buses:
-        pieces.append(("CRC", "" if "uart" in known.checksum.telecommand_always else "optional", 1.4))
+    if node_facts.checksum and "uart" in node_facts.checksum.telecommand_buses:
+        pieces.append(("CRC", "" if "uart" in node_facts.checksum.telecommand_always else "optional", 1.4))
     pieces += [(f"{form.escape:02X}", "escape", 1), (f"{form.end:02X}", "end", 1)]
     return _row([(text, about, share, "") for text, about, share in pieces])
 
 
-def _envelope(relations: Relations, known: Facts, section: dict[str, Any]) -> dict[str, object]:
-    """What is around each message; empty without it."""
-    if known.stream is None:
+def _envelope(relations: Relations, node_facts: Facts, section: dict[str, Any]) -> dict[str, object]:
+    """Return the description of the packet format; empty without one."""
+    if node_facts.stream is None:
         return {}
-    urls = {one.name: relations.links.message(one) for one in relations.icd.messages_of(known.node)}
+    urls = {message.name: relations.links.message(message) for message in relations.icd.messages_of(node_facts.node)}
     replies = section["stream"].get("replies", {})
     return {
         "boxes": _row(envelopes.boxes(section)),
-        "ends": envelopes.ENDS[known.stream.delimited_by],
+        "ends": envelopes.ENDS[node_facts.stream.delimited_by],
         "places": envelopes.places(section),
-        "replies": [Row(sent, came, "", urls.get(came, "")) for sent, came in replies.items()],
+        "replies": [Row(request, reply, "", urls.get(reply, "")) for request, reply in replies.items()],
     }
 
 
 def _row(pieces: list[tuple[str, str, float, str]]) -> list[Box]:
-    """Boxes beside each other, as wide as their shares."""
-    whole, x, found = sum(share for _, _, share, _ in pieces), 0.0, []
+    """Return adjacent boxes with widths in proportion to their shares."""
+    total, x, boxes = sum(share for _, _, share, _ in pieces), 0.0, []
     for text, about, share, above in pieces:
-        width = (_WIDTH - 2) * share / whole
-        found.append(Box(round(1 + x, 1), round(width, 1), text, about, above))
+        width = (_WIDTH - 2) * share / total
+        boxes.append(Box(round(1 + x, 1), round(width, 1), text, about, above))
         x += width
-    return found
+    return boxes
 
 
-def _identifier(known: Facts, section: dict[str, Any]) -> list[Box]:
-    if known.can is None:
+def _identifier(node_facts: Facts, section: dict[str, Any]) -> list[Box]:
+    if node_facts.can is None:
         return []
     names = {row.get("role", row["name"]): row["name"] for row in section["can"]["identifier"]}
-    ordered: list[tuple[str, CanPart]] = sorted(known.can.parts.items(), key=lambda item: -item[1].shift)
+    ordered: list[tuple[str, CanPart]] = sorted(node_facts.can.parts.items(), key=lambda item: -item[1].shift)
     return _row([
         (names.get(role, role), f"{part.bits} bits", part.bits, f"{part.shift + part.bits - 1} … {part.shift}")
         for role, part in ordered
     ])  # fmt: skip
 
 
-def _checks(known: Facts, section: dict[str, Any]) -> list[tuple[str, Crc, int | None]]:
-    found = (("crc8", known.checksum and known.checksum.crc), ("crc16", known.crc16))
-    return [(f"CRC-{crc.width}", crc, section[key].get("check")) for key, crc in found if crc]
+def _checks(node_facts: Facts, section: dict[str, Any]) -> list[tuple[str, Crc, int | None]]:
+    candidates = (("crc8", node_facts.checksum and node_facts.checksum.crc), ("crc16", node_facts.crc16))
+    return [(f"CRC-{crc.width}", crc, section[key].get("check")) for key, crc in candidates if crc]
 
 
 def _crc_rows(crc: Crc) -> list[Row]:
@@ -152,12 +160,14 @@ def _crc_rows(crc: Crc) -> list[Row]:
     ]
 
 
-def errors(relations: Relations, node: Node, known: Facts, section: dict[str, Any]) -> list[tuple[int, str, str, str]]:
-    """Code, name, what it is to the protocol, and where the name stands."""
+def errors(
+    relations: Relations, node: Node, node_facts: Facts, section: dict[str, Any]
+) -> list[tuple[int, str, str, str]]:
+    """Return code, name, role in the protocol, and link of each error."""
     name = section.get("errors", {}).get("enum")
-    enums = (enum for one in (node, *relations.icd.included(node)) for enum in one.enums)
-    enum = next((one for one in enums if one.name == name), None)
-    roles = {code: key.replace("_", " ") for key, code in known.errors.items()}
+    enums = (enum for owner in (node, *relations.icd.included(node)) for enum in owner.enums)
+    enum = next((candidate for candidate in enums if candidate.name == name), None)
+    roles = {code: key.replace("_", " ") for key, code in node_facts.errors.items()}
     if enum is None:
         return [(code, role, "", "") for code, role in sorted(roles.items())]
     url = relations.links.enum(enum)
@@ -168,35 +178,43 @@ def errors(relations: Relations, node: Node, known: Facts, section: dict[str, An
 
 
 def entries(relations: Relations, node: Node, url: str) -> Iterator[tuple[str, str, Place]]:
-    """What the search finds of the page: words, title and place of each section."""
-    known, section = facts.of(relations.icd, node), relations.icd.protocol_of(node)
+    """Yield the search entries of the page: words, title and place of each section."""
+    node_facts, section = facts.of(relations.icd, node), relations.icd.protocol_of(node)
     for title, rows in lines(section):
         words = " ".join(f"{row.about} {row.value}" for row in rows)
         yield f"line bus serial interface {words}", f"{title} settings", Place(node.title, f"{url}#lines")
-    checks = [*(name for name, _, _ in _checks(known, section)), *(one.name for one in envelopes.sums(section, known))]
+    checks = [
+        *(name for name, _, _ in _checks(node_facts, section)),
+        *(checksum.name for checksum in envelopes.sums(section, node_facts)),
+    ]
     crc = "crc checksum polynomial init reflect calculator"
-    found = [
-        (known.framing, "uart framing escape start end of message byte stuffing", "Framing", "framing"),
+    sections = [
+        (node_facts.framing, "uart framing escape start end of message byte stuffing", "Framing", "framing"),
         (
-            known.stream,
+            node_facts.stream,
             "envelope stream header trailer sync length sequence delimiter framing checksum",
             "Envelope",
             "envelope",
         ),
         *(
-            (True, f"{crc} {one.replace('-', '').lower()}", f"{one} parameters and calculator", "checksums")
-            for one in checks
+            (True, f"{crc} {checksum.replace('-', '').lower()}", f"{checksum} parameters and calculator", "checksums")
+            for checksum in checks
         ),
-        (known.can, "can identifier bits message types", "CAN identifier", "identifier"),
-        (known.errors, "error codes reasons nack", "Error codes", "errors"),
+        (node_facts.can, "can identifier bits message types", "CAN identifier", "identifier"),
+        (node_facts.errors, "error codes reasons nack", "Error codes", "errors"),
         (True, "acknowledge ack nack handshake sequence", "Acknowledges", "acknowledges"),
         *(
-            (True, f"procedure sequence {' '.join(arrow.text for arrow in one.arrows)}", one.title, "procedures")
-            for one in sequences.procedures(relations, node, known)
+            (
+                True,
+                f"procedure sequence {' '.join(arrow.text for arrow in sequence.arrows)}",
+                sequence.title,
+                "procedures",
+            )
+            for sequence in sequences.procedures(relations, node, node_facts)
         ),
         (True, "timeout time-out retries interval wait", "Time-outs", "times"),
         (True, "assumptions assumed reasons", "Assumptions", "assumptions"),
     ]
-    for is_there, words, title, anchor in found:
+    for is_there, words, title, anchor in sections:
         if is_there:
             yield words, title, Place(node.title, f"{url}#{anchor}")

@@ -1,4 +1,6 @@
-"""What pages need to know to recognise any frame: all messages with their ids, and how each node talks."""
+"""Data by which pages recognize any frame: all messages with their ids, and the
+protocol of each node.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,9 @@ from icdgen.protocol import facts
 
 
 def index(relations: Relations) -> dict[str, Any]:
-    """``messages`` as name, page, length and owner; ``speakers`` with the number of the message of each id."""
+    """Return ``messages`` with name, page, length and owner, and ``speakers`` with the
+    message number of each id.
+    """
     messages = [message for node in relations.icd.nodes for message in node.messages]
     numbers = {(message.node, message.name): number for number, message in enumerate(messages)}
     return {
@@ -27,54 +31,60 @@ def index(relations: Relations) -> dict[str, Any]:
 
 
 def _tail(relations: Relations, message: Message) -> list[dict[str, Any]]:
-    """Where frames differ in length: what these are, and the bits that count the elements."""
+    """Return the lengths of frames of variable length, and the bits of the counter."""
     own, parts = message.layout, message.layout.parts
     if message.may_end_early:
         return [{"least": own.shortest, "step": 1, "pieces": []}]
     if not parts:
         return []
-    if len(parts) > 1:  # what its frames say themselves, their decoder looks at
+    if len(parts) > 1:  # the decoder evaluates the counters in the frame
         return [{"least": own.shortest, "step": own.lengths.step, "pieces": []}]
     tail, node = parts[-1], relations.icd.node(message.node)
     counter = next((place for place in places_in(own) if place.name == tail.counter and not tail.is_rest), None)
     pieces = () if counter is None else layout.pieces(counter, node)
-    found = {"least": own.shortest, "step": tail.step, "pieces": [[p.byte, p.shift, p.bits, p.at] for p in pieces]}
-    return [found | ({"low": tail.low} if tail.low else {})]
+    tail_data = {"least": own.shortest, "step": tail.step, "pieces": [[p.byte, p.shift, p.bits, p.at] for p in pieces]}
+    return [tail_data | ({"low": tail.low} if tail.low else {})]
 
 
 def script(relations: Relations) -> str:
-    """The index as a script, since a page opened from a folder may not fetch anything else."""
+    """Return the index as a script.
+
+    A page opened from a folder cannot load other data.
+    """
     return f'"use strict";\nglobalThis.icdgenFrameIndex = {json.dumps(index(relations), separators=(",", ":"))};\n'
 
 
 def numbers_of(ids: dict[int, tuple[Variant, ...]], numbers: dict[tuple[str, str], int]) -> dict[str, Any]:
-    """The number of the message of each id; where several share it, each with the bytes that its constants are in."""
-    found = {
-        id: [(numbers[one.message.node, one.message.name], constant_bytes(one)) for one in those]
-        for id, those in ids.items()
+    """Return the message number of each id.
+
+    For a shared id, each message has the bytes of its constants.
+    """
+    candidates = {
+        id: [(numbers[variant.message.node, variant.message.name], constant_bytes(variant)) for variant in variants]
+        for id, variants in ids.items()
     }
-    return {str(id): those if len(those) > 1 else those[0][0] for id, those in found.items()}
+    return {str(id): messages if len(messages) > 1 else messages[0][0] for id, messages in candidates.items()}
 
 
 def _speaker(relations: Relations, node: Node, numbers: dict[tuple[str, str], int]) -> dict[str, Any]:
-    known, ids = facts.of(relations.icd, node), ids_of(relations.icd, node)
-    found: dict[str, Any] = {
+    node_facts, ids = facts.of(relations.icd, node), ids_of(relations.icd, node)
+    speaker_data: dict[str, Any] = {
         "node": node.name,
         "title": node.title,
         "telecommands": numbers_of(ids.telecommand, numbers),
         "telemetry": numbers_of(ids.telemetry, numbers),
         "id_bytes": wire_ids.size(node.id_bits),
         "id_bits": node.id_bits,
-        "errors": {str(code): key.replace("_", " ") for key, code in known.errors.items()},
+        "errors": {str(code): key.replace("_", " ") for key, code in node_facts.errors.items()},
     }
-    found |= wire.framing_facts(known)
-    if known.stream:
-        found["stream"] = envelopes.script_facts(known.stream)
-    if known.checksum:
-        found["crc"] = wire.crc_facts(known)
-    if known.can:
-        found["can"] = wire.can_facts(known.can)
-    if known.acknowledge:
-        form = known.acknowledge
-        found["acknowledge"] = [form.length, form.id_at, form.error_at]
-    return found
+    speaker_data |= wire.framing_facts(node_facts)
+    if node_facts.stream:
+        speaker_data["stream"] = envelopes.script_facts(node_facts.stream)
+    if node_facts.checksum:
+        speaker_data["crc"] = wire.crc_facts(node_facts)
+    if node_facts.can:
+        speaker_data["can"] = wire.can_facts(node_facts.can)
+    if node_facts.acknowledge:
+        form = node_facts.acknowledge
+        speaker_data["acknowledge"] = [form.length, form.id_at, form.error_at]
+    return speaker_data

@@ -1,4 +1,6 @@
-"""What the pages ask about a set of ICDs as a whole: who speaks what, what is contained in what, where an erratum applies."""
+"""Relations within a set of ICDs: nodes that use a message, contained messages, and
+places of errata.
+"""
 
 from __future__ import annotations
 
@@ -21,14 +23,16 @@ from icdgen.runtime_objects.links import link_of
 
 
 class Place(NamedTuple):
-    """Something with a page: what it is called, and the way there from the top of the site."""
+    """Name of an object and the link to its page from the top of the site."""
 
     text: str
     url: str
 
 
 class Contained(NamedTuple):
-    """``place``, of ``length`` bytes, repeats, or is repeated, from bit ``at``."""
+    """Containment of messages: ``place``, of ``length`` bytes, contains the other
+    message or is contained in it, from bit ``at``.
+    """
 
     place: Place
     at: int
@@ -36,17 +40,18 @@ class Contained(NamedTuple):
 
 
 class Relations:
-    """Everything is worked out once."""
+    """Relations within a set of ICDs, computed once."""
 
     def __init__(self, icd: Icd, packages: Packages | None = None) -> None:
         self.icd, self.links = icd, Links(icd)
         self.packages = packages or Packages()
         self._in_c = with_prefix(icd, self.packages.c_prefix)
         self.speakers: dict[str, list[Node]] = {
-            one.name: [node for node in icd.nodes if node is one or one in icd.included(node)] for one in icd.nodes
+            owner.name: [node for node in icd.nodes if node is owner or owner in icd.included(node)]
+            for owner in icd.nodes
         }
-        self.uses: dict[tuple[str, str], list[Place]] = defaultdict(list)  # fields that hold an enumeration
-        self.units: dict[str, tuple[Unit, list[Place]]] = {}  # and the fields that have it
+        self.uses: dict[tuple[str, str], list[Place]] = defaultdict(list)  # fields of an enumeration type
+        self.units: dict[str, tuple[Unit, list[Place]]] = {}  # unit with its fields
         self.places: dict[tuple[str, str], list[Place]] = defaultdict(list)
         self.contained_in: dict[tuple[str, str], list[Contained]] = defaultdict(list)
         self.contains: dict[tuple[str, str], list[Contained]] = defaultdict(list)
@@ -56,10 +61,10 @@ class Relations:
             self._node(node)
 
     def in_c(self, message: Message) -> MessageDescription:
-        """The message with the prefix that its node has in C."""
+        """Return the message with the C prefix of its node."""
         name = self.packages.c_prefix + message.node
-        found = next(one for one in self._in_c.node(name).messages if one.name == message.name)
-        return describe(self._in_c).message(found)
+        message_in_c = next(candidate for candidate in self._in_c.node(name).messages if candidate.name == message.name)
+        return describe(self._in_c).message(message_in_c)
 
     def _node(self, node: Node) -> None:
         spoken = {message.name: message for message in self.icd.messages_of(node)}
@@ -97,37 +102,41 @@ class Relations:
             self.places[erratum.id, erratum.title].append(place)
 
     def place(self, message: Message) -> Place:
-        """The message, as a link."""
+        """Return the message as a link."""
         return Place(message.name, self.links.message(message))
 
     def shown_fields(self, message: Message) -> list[tuple[str, NodePlace]]:
-        """The fields that the page of a message shows, with their names: of some arrays only those of the first element."""
+        """Return names and fields that the page of a message shows; of some arrays,
+        only the first element.
+        """
         repeats = self.links.repeats(message)
         named = zip(repeats.names, scalars_in(message.layout), strict=True)
         return [pair for key, pair in enumerate(named, 1) if repeats.is_shown(key)]
 
     def wire(self, message: Message) -> Wire:
-        """How the message travels."""
+        """Return the description of the transmission of a message."""
         spoken = [self._speaker(node) for node in self.speakers[message.node]]
         declared = self._speaker(self.icd.node(message.node))
-        return Wire(*declared, [one for one in spoken if one.facts.checksum])
+        return Wire(*declared, [speaker for speaker in spoken if speaker.facts.checksum])
 
     def _speaker(self, node: Node) -> Speaker:
         if node.name not in self._spoken:
-            known = facts.of(self.icd, node)
-            self._spoken[node.name] = Speaker(known, self.icd.protocol_of(node), link_of(self.icd, known))
+            node_facts = facts.of(self.icd, node)
+            self._spoken[node.name] = Speaker(node_facts, self.icd.protocol_of(node), link_of(self.icd, node_facts))
         return self._spoken[node.name]
 
 
 def manual(node: Node) -> str:
-    """``Some Manual 7.2 (2020-11-03)``"""
+    """Return the manual of a node: ``Some Manual 7.2 (2020-11-03)``."""
     facts = dict(node.document)
     text = " ".join(filter(None, (facts.get("document"), facts.get("version"))))
     return texts.clip(text + (f" ({facts['date']})" if "date" in facts else ""), 200)
 
 
 def document(node: Node) -> str:
-    """``Some Manual 7.2 (2020-11-03), section 6.3``"""
+    """Return the manual of a node with section: ``Some Manual 7.2 (2020-11-03), section
+    6.3``.
+    """
     text, section = manual(node), dict(node.document).get("section", "")
     if section:
         text += f", section {section}" if section[0].isdigit() else f", {section}"

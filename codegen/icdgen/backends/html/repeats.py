@@ -1,4 +1,6 @@
-"""Arrays of which a page shows one element: structs that repeat, arrays of variable length and long arrays."""
+"""Arrays that a page represents by one element: repeated structs, variable-length
+arrays and long arrays.
+"""
 
 from __future__ import annotations
 
@@ -12,15 +14,18 @@ from icdgen.icd.frames import PathStep, name_of_steps
 from icdgen.icd.model import Message
 from icdgen.icd.places import NodePlace, places_in, scalars_in
 
-_LONG = 16  # elements of an array of numbers that is shown by one element
+_LONG = 16  # longer arrays of numbers are represented by one element
 
 _Array: TypeAlias = "tuple[tuple[int, int | None], ...]"
-"""Way to an array: the identity of each node on it, and which element of an array around it."""
+"""Path to an array: identity of each node, and index of the element in each enclosing array."""
 
 
 @dataclass(frozen=True, slots=True)
 class Repeat:
-    """An array from byte ``first``, of which every element has ``step`` bytes; ``times`` is ``0 to 64``."""
+    """Array that starts at byte ``first`` and has elements of ``step`` bytes.
+
+    ``times``: number of elements, for example ``0 to 64``.
+    """
 
     name: str  # ``satellites[].signals``
     first: int
@@ -30,19 +35,19 @@ class Repeat:
 
     @property
     def end(self) -> int:
-        """The byte after the last element."""
+        """Byte after the last element."""
         return self.first + self.step * self.count
 
 
 class Repeats:
-    """Those of a message, and the fields that its page shows."""
+    """Arrays of a message, and the fields that its page shows."""
 
     def __init__(self, message: Message) -> None:
-        self._found: dict[_Array, Repeat] = {}
+        self._repeats: dict[_Array, Repeat] = {}
         scalars = scalars_in(message.layout)
-        if not message.contains:  # a composite has the bands of its parts
+        if not message.contains:  # a composite message has a section for each part
             self._add_arrays(message, scalars)
-        self.arrays = sorted(self._found.values(), key=lambda one: (one.first, -one.end))
+        self.arrays = sorted(self._repeats.values(), key=lambda repeat: (repeat.first, -repeat.end))
         firsts = [self._first(scalar.steps) for scalar in scalars]
         keys = {scalar.name: key for key, scalar in enumerate(scalars, 1)}
         # Key of the field of the first element that stands for each field, in the order of the fields.
@@ -52,25 +57,29 @@ class Repeats:
         self.elements = [self._element(scalar.steps) for scalar in scalars]
 
     def is_shown(self, key: int) -> bool:
-        """Whether the page shows the field itself, and no other stands for it."""
+        """Return whether the page shows the field itself."""
         return self.leaders[key - 1] == key
 
     def shown_parts(self, at: int, bits: int) -> list[tuple[int, int]]:
-        """Of a run of bits, first bit and length of each part that is in no element which the page leaves out."""
-        ends = [8 * end for one in self.arrays for end in (one.first + one.step, one.end)]
+        """Return first bit and length of each part of a run of bits, without omitted
+        elements.
+        """
+        ends = [8 * end for array in self.arrays for end in (array.first + array.step, array.end)]
         cuts = [at, *sorted(end for end in set(ends) if at < end < at + bits), at + bits]
         return [(start, end - start) for start, end in pairwise(cuts) if not self._is_skipped(start)]
 
     def _is_skipped(self, bit: int) -> bool:
-        return any(8 * (one.first + one.step) <= bit < 8 * one.end for one in self.arrays)
+        return any(8 * (array.first + array.step) <= bit < 8 * array.end for array in self.arrays)
 
     def short(self, key: int) -> str:
-        """The name of a field within its array: ``elev`` of ``satellites[].elev``."""
+        """Return the name of a field within its array: ``elev`` of
+        ``satellites[].elev``.
+        """
         name = self.names[key - 1]
         return name.rpartition("[].")[2] if self.elements[key - 1] else name
 
     def _add_arrays(self, message: Message, scalars: tuple[NodePlace, ...]) -> None:
-        """Find the arrays that are shown by one element."""
+        """Find the arrays that are represented by one element."""
         starts = sorted(scalar.at for scalar in scalars)
         for place in _arrays(places_in(message.layout)):
             node = place.node
@@ -79,38 +88,40 @@ class Repeats:
                 continue
             begin, end = place.at, place.at + place.width
             inside = bisect_left(starts, end) - bisect_left(starts, begin)
-            # Other fields at the same place (alternatives, overlays) are to be seen: then every element is shown.
+            # If other fields share the place (alternatives, overlays), every element is shown.
             if begin % 8 == place.bits % 8 == 0 and inside == sum(1 for _ in place.scalars()):
                 times = f"{variable.fewest} to {variable.most}" if variable else str(place.count)
                 label = ".".join(filter(None, (self._label(place.steps[:-1]), node.name)))
-                self._found[_array(place.steps, len(place.steps) - 1)] = Repeat(
+                self._repeats[_array(place.steps, len(place.steps) - 1)] = Repeat(
                     label, begin // 8, place.bits // 8, place.count, times
                 )
 
     def _first(self, steps: tuple[PathStep, ...]) -> tuple[PathStep, ...]:
-        """Return the same place in the first element of every array that is shown by one."""
+        """Return the corresponding place in the first element of each represented
+        array.
+        """
         for depth, step in enumerate(steps):
-            if step.element and _array(steps, depth) in self._found:
+            if step.element and _array(steps, depth) in self._repeats:
                 steps = (*steps[:depth], PathStep(step.node, 0), *steps[depth + 1 :])
         return steps
 
     def _label(self, steps: tuple[PathStep, ...]) -> str:
-        """``satellites[].elev``"""
+        """Return the label of a place: ``satellites[].elev``."""
         return ".".join(
-            f"{step.node.name}[]" if _array(steps, depth) in self._found else name_of_steps((step,))
+            f"{step.node.name}[]" if _array(steps, depth) in self._repeats else name_of_steps((step,))
             for depth, step in enumerate(steps)
         )
 
     def _element(self, steps: tuple[PathStep, ...]) -> str:
         for depth in range(len(steps)):
-            if _array(steps, depth) in self._found:
+            if _array(steps, depth) in self._repeats:
                 is_struct = depth + 1 < len(steps)
                 return name_of_steps(steps[: depth + 1] if is_struct else (*steps[:depth], PathStep(steps[depth].node)))
         return ""
 
 
 def _arrays(places: tuple[NodePlace, ...]) -> Iterator[NodePlace]:
-    """List the arrays among places, and of each the arrays within its first element."""
+    """Yield the arrays among places, and the arrays within their first elements."""
     for place in places:
         if place.count:
             yield place
@@ -119,5 +130,5 @@ def _arrays(places: tuple[NodePlace, ...]) -> Iterator[NodePlace]:
 
 
 def _array(steps: tuple[PathStep, ...], depth: int) -> _Array:
-    """Return the way to the array that a step leads into."""
+    """Return the path to the array that a step leads into."""
     return (*((id(step.node), step.element) for step in steps[:depth]), (id(steps[depth].node), None))

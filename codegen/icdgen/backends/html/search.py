@@ -1,4 +1,4 @@
-"""The index of the search: everything that has a name, with the words it is found by and the way there."""
+"""Search index: all named objects with their search words and links."""
 
 from __future__ import annotations
 
@@ -13,12 +13,15 @@ from icdgen.icd.model import CONFIGURATION, Enum, Member, Message, Node
 from icdgen.icd.places import NodePlace
 from icdgen.naming import words
 
-_MOST = 300  # characters of a text that is searched
+_MOST = 300  # searched characters of a text
 
 
 class Entry(NamedTuple):
-    """``own``: the words of its identifier, where they are not those of the title; ``about``: what else is said of it;
-    ``phrases``: what means exactly this; ``aliases``: other names of it."""
+    """Entry of the index.
+
+    ``own``: words of its identifier, if they differ from the title. ``about``: further
+    text. ``phrases``: exact names. ``aliases``: other names.
+    """
 
     kind: str
     title: str
@@ -31,7 +34,7 @@ class Entry(NamedTuple):
 
 
 def entries(relations: Relations) -> Iterator[Entry]:
-    """Nodes, messages, enumerations, units, fields, members and errata."""
+    """Yield nodes, messages, enumerations, units, fields, members and errata."""
     links = relations.links
     for node in relations.icd.nodes:
         yield Entry("node", node.title, node.summary, node.name, "", (node.name,), links.node(node.name))
@@ -58,7 +61,9 @@ def entries(relations: Relations) -> Iterator[Entry]:
             title = f"{erratum.id} {erratum.title}"
             yield Entry(erratum.label.lower(), title, node.title, "", about, (erratum.id,), links.erratum(erratum))
     for page in guide.pages():
-        for section in page.sections[: 1 if page.name == guide.INDEX else None]:  # its sections are lists of pages
+        for section in page.sections[
+            : 1 if page.name == guide.INDEX else None
+        ]:  # sections of the index are lists of pages
             url = page.url if section.level == 1 else f"{page.url}#{section.anchor}"
             context = "guide" if section.level == 1 else f"guide · {page.title}"
             topics = page.topics if section.level == 1 else ()
@@ -66,15 +71,18 @@ def entries(relations: Relations) -> Iterator[Entry]:
 
 
 def script(relations: Relations) -> str:
-    """The index as a script, since a page opened from a folder may not fetch anything else."""
+    """Return the index as a script.
+
+    A page opened from a folder cannot load other data.
+    """
     rows = [
         [
-            *(texts.clip(part, _MOST) for part in one[:5]),
-            texts.clip("|".join(one.phrases), _MOST),
-            one.url,
-            *one.aliases,
+            *(texts.clip(part, _MOST) for part in entry[:5]),
+            texts.clip("|".join(entry.phrases), _MOST),
+            entry.url,
+            *entry.aliases,
         ]
-        for one in entries(relations)
+        for entry in entries(relations)
     ]
     lines = ",\n".join(json.dumps(row, separators=(",", ":")) for row in rows)
     return f'"use strict";\nglobalThis.icdgenSearchIndex = [\n{lines}\n];\n'
@@ -91,7 +99,7 @@ def _of_message(relations: Relations, node: Node, message: Message) -> Iterator[
     if message.kind == CONFIGURATION:
         phrases += [f"telecommand {message.set_id}", f"telemetry {message.get_id}"]
     phrases += _table(message.table)
-    speakers = " ".join(one.name for one in relations.speakers[node.name])
+    speakers = " ".join(speaker.name for speaker in relations.speakers[node.name])
     buses = " ".join(bus for bus in texts.BUSES if bus in relations.icd.protocol_of(node))
     about = f"{speakers} {message.group} {buses} {message.summary}"
     context = f"{message.kind} {ids} · {node.title}"
@@ -107,9 +115,11 @@ def _of_message(relations: Relations, node: Node, message: Message) -> Iterator[
 
 
 def _error_codes(relations: Relations, node: Node) -> set[str]:
-    """Names of the node's enumerations that hold the error codes of a protocol."""
-    spoken = [relations.icd.protocol_of(one) for one in relations.speakers[node.name]]
-    return {section["errors"]["enum"] for section in spoken if "enum" in section.get("errors", {})}
+    """Return the names of enumerations of the node that contain error codes of a
+    protocol.
+    """
+    protocols = [relations.icd.protocol_of(speaker) for speaker in relations.speakers[node.name]]
+    return {section["errors"]["enum"] for section in protocols if "enum" in section.get("errors", {})}
 
 
 def _of_enum(relations: Relations, node: Node, enum: Enum, is_error: bool) -> Iterator[Entry]:
@@ -126,9 +136,9 @@ def _of_enum(relations: Relations, node: Node, enum: Enum, is_error: bool) -> It
 
 
 def _words(thing: Message | NodePlace | Enum | Member, node: Node) -> str:
-    """The words of its identifiers, unless they are those of its name."""
-    found = " ".join(words(thing.identifier or thing.name, node.vocabulary)).lower()
-    return "" if found == " ".join(re.findall(r"[^\W_]+", thing.name)).lower() else found
+    """Return the words of an identifier, unless they equal the words of the name."""
+    identifier_words = " ".join(words(thing.identifier or thing.name, node.vocabulary)).lower()
+    return "" if identifier_words == " ".join(re.findall(r"[^\W_]+", thing.name)).lower() else identifier_words
 
 
 def _table(table: int | None) -> list[str]:

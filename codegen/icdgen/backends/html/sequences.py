@@ -1,4 +1,6 @@
-"""Who sends what when: acknowledges and procedures as diagrams of two lines with arrows between them."""
+"""Sequence diagrams of acknowledges and procedures: two lifelines with arrows between
+them.
+"""
 
 from __future__ import annotations
 
@@ -15,12 +17,15 @@ from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Download, Step
 
 TOP, ROW = 40, 46
-_TEXT, _NOTE = 50, 62  # characters that fit between the lines
+_TEXT, _NOTE = 50, 62  # characters that fit between the lifelines
 
 
 @dataclass(frozen=True, slots=True)
 class Arrow:
-    """From the client if ``out``; ``text`` above the arrow leads to ``url``, ``note`` stands below it."""
+    """Arrow of a diagram, from the client if ``out``.
+
+    ``text`` is above the arrow and links to ``url``; ``note`` is below it.
+    """
 
     out: bool
     text: str
@@ -30,7 +35,10 @@ class Arrow:
 
 @dataclass(frozen=True, slots=True)
 class Sequence:
-    """``node`` is what the right line is called."""
+    """Sequence diagram.
+
+    ``node``: label of the right lifeline.
+    """
 
     title: str
     node: str
@@ -43,34 +51,42 @@ class Sequence:
 
     @property
     def placed(self) -> list[tuple[int, Arrow]]:
-        """The arrows and where they are drawn."""
-        short = [Arrow(one.out, clip(one.text, _TEXT), clip(one.note, _NOTE), one.url) for one in self.arrows]
+        """Arrows with their vertical positions."""
+        short = [Arrow(arrow.out, clip(arrow.text, _TEXT), clip(arrow.note, _NOTE), arrow.url) for arrow in self.arrows]
         return [(TOP + ROW * (number + 1) - 16, arrow) for number, arrow in enumerate(short)]
 
 
-def acknowledges(relations: Relations, node: Node, known: Facts) -> list[Sequence]:
-    """How a telecommand is acknowledged, and telemetry is asked for, on each bus that the ICD describes."""
-    waits = f"waits {known.client.reply_timeout} ms, tries again {known.client.retries} times"
-    found = []
-    if known.framing:
-        answer = "acknowledge: id and error code" if known.acknowledge else ""
-        told = [Arrow(True, "telecommand: id, parameters", waits)]
-        found.append(Sequence("UART, telecommand", node.title, told + ([Arrow(False, answer)] if answer else [])))
-        asked = [Arrow(True, "request: id of the telemetry", waits), Arrow(False, "reply: id, data")]
-        found.append(Sequence("UART, telemetry", node.title, asked))
-    if known.i2c_address is not None:
-        told = [Arrow(True, f"write to {known.i2c_address:02X}: id, parameters")]
-        if known.polled:
-            one, url = known.polled, relations.links.message(known.polled.message)
-            every = f"every {known.client.poll_interval} ms, for {known.client.poll_timeout} ms at most"
-            told += [Arrow(True, one.message.name, every, url), Arrow(False, f"until {one.processed}", one.error, url)]
-        found.append(Sequence("I²C, telecommand", node.title, told))
-    if known.can:
-        types = known.can.types
-        told = list(_on_can(types, "telecommand", "acknowledge", "refusal"))
-        asked = list(_on_can(types, "request", "reply", "request_refusal"))
-        found += [Sequence("CAN, telecommand", node.title, told), Sequence("CAN, telemetry", node.title, asked)]
-    return found
+def acknowledges(relations: Relations, node: Node, node_facts: Facts) -> list[Sequence]:
+    """Return the acknowledge of a telecommand and the request of telemetry, for each
+    bus of the ICD.
+    """
+    waits = f"waits {node_facts.client.reply_timeout} ms, tries again {node_facts.client.retries} times"
+    sequences = []
+    if node_facts.framing:
+        answer = "acknowledge: id and error code" if node_facts.acknowledge else ""
+        arrows = [Arrow(True, "telecommand: id, parameters", waits)]
+        sequences.append(Sequence("UART, telecommand", node.title, arrows + ([Arrow(False, answer)] if answer else [])))
+        arrows = [Arrow(True, "request: id of the telemetry", waits), Arrow(False, "reply: id, data")]
+        sequences.append(Sequence("UART, telemetry", node.title, arrows))
+    if node_facts.i2c_address is not None:
+        arrows = [Arrow(True, f"write to {node_facts.i2c_address:02X}: id, parameters")]
+        if node_facts.polled:
+            polled, url = node_facts.polled, relations.links.message(node_facts.polled.message)
+            every = f"every {node_facts.client.poll_interval} ms, for {node_facts.client.poll_timeout} ms at most"
+            arrows += [
+                Arrow(True, polled.message.name, every, url),
+                Arrow(False, f"until {polled.processed}", polled.error, url),
+            ]
+        sequences.append(Sequence("I²C, telecommand", node.title, arrows))
+    if node_facts.can:
+        types = node_facts.can.types
+        telecommand_arrows = list(_on_can(types, "telecommand", "acknowledge", "refusal"))
+        telemetry_arrows = list(_on_can(types, "request", "reply", "request_refusal"))
+        sequences += [
+            Sequence("CAN, telecommand", node.title, telecommand_arrows),
+            Sequence("CAN, telemetry", node.title, telemetry_arrows),
+        ]
+    return sequences
 
 
 def _on_can(types: dict[str, int], sent: str, answer: str, refusal: str) -> Iterator[Arrow]:
@@ -79,21 +95,27 @@ def _on_can(types: dict[str, int], sent: str, answer: str, refusal: str) -> Iter
             yield Arrow(out, f"{kind.replace('_', ' ')}: type {types[kind]}", note)
 
 
-def procedures(relations: Relations, node: Node, known: Facts) -> list[Sequence]:
-    """The steps of each procedure that the ICD describes, in their order."""
-    found = []
-    for name, one in (known.files.procedures if known.files else {}).items():
-        arrows = [*_steps(relations, one), *(_packets(relations, known) if isinstance(one, Download) else [])]
-        found.append(Sequence(f"File {name}", node.title, arrows, _limits(one)))
-    for title, operation in (("Program copy", known.program_copy), ("Program information", known.program_information)):
+def procedures(relations: Relations, node: Node, node_facts: Facts) -> list[Sequence]:
+    """Return the steps of each procedure of the ICD, in order."""
+    sequences = []
+    for name, procedure in (node_facts.files.procedures if node_facts.files else {}).items():
+        arrows = [
+            *_steps(relations, procedure),
+            *(_packets(relations, node_facts) if isinstance(procedure, Download) else []),
+        ]
+        sequences.append(Sequence(f"File {name}", node.title, arrows, _limits(procedure)))
+    for title, operation in (
+        ("Program copy", node_facts.program_copy),
+        ("Program information", node_facts.program_information),
+    ):
         if operation is not None:
-            found.append(Sequence(title, node.title, list(_steps(relations, operation)), _limits(operation)))
-    return found
+            sequences.append(Sequence(title, node.title, list(_steps(relations, operation)), _limits(operation)))
+    return sequences
 
 
-def _steps(relations: Relations, one: object) -> Iterator[Arrow]:
-    for fact in facts_of(one):
-        step = getattr(one, fact.name)
+def _steps(relations: Relations, procedure: object) -> Iterator[Arrow]:
+    for fact in facts_of(procedure):
+        step = getattr(procedure, fact.name)
         if fact.kind is not Kind.STEP or not isinstance(step, Step):
             continue
         name, url = step.message.name, relations.links.message(step.message)
@@ -103,29 +125,29 @@ def _steps(relations: Relations, one: object) -> Iterator[Arrow]:
             yield Arrow(False, name, ", ".join(step.fields.values()), url)
 
 
-def _packets(relations: Relations, known: Facts) -> Iterator[Arrow]:
-    """The packets of a download, whose id is another one on each bus where the ICD says so."""
-    files = known.files
+def _packets(relations: Relations, node_facts: Facts) -> Iterator[Arrow]:
+    """Yield the packets of a download, whose ids can differ between buses."""
+    files = node_facts.files
     assert files is not None
     buses: dict[int, list[str]] = defaultdict(list)
     for bus, id in files.packet_ids.items():
         buses[id].append(BUSES[bus])
-    told = "; ".join(f"id {id} on {', '.join(names)}" for id, names in buses.items())
-    message = next((known.telemetry[id] for id in buses if id in known.telemetry), None)
+    ids_by_bus = "; ".join(f"id {id} on {', '.join(names)}" for id, names in buses.items())
+    message = next((node_facts.telemetry[id] for id in buses if id in node_facts.telemetry), None)
     url = relations.links.message(message) if message else ""
     counter = f"{count(files.counter_bytes, 'byte')} of counter, " if files.counter_bytes else ""
-    yield Arrow(False, message.name if message else "packets of the file", told, url)
+    yield Arrow(False, message.name if message else "packets of the file", ids_by_bus, url)
     note = f"{counter}{count(files.packet_bytes, 'byte')} of the file each"
     yield Arrow(False, "… one packet after another", note, url)
 
 
-def _limits(one: object) -> list[str]:
-    """Times and counts of a procedure, in words."""
-    found = []
-    for fact in facts_of(one):
-        value = getattr(one, fact.name)
+def _limits(procedure: object) -> list[str]:
+    """Return times and counts of a procedure as text."""
+    limits = []
+    for fact in facts_of(procedure):
+        value = getattr(procedure, fact.name)
         if fact.kind is Kind.TIME:
-            found.append(f"{fact.about}: {value} ms")
+            limits.append(f"{fact.about}: {value} ms")
         elif fact.kind is Kind.NUMBER and value is not None:
-            found.append(f"{fact.about}: {value}")
-    return list(map(capitalized, found))
+            limits.append(f"{fact.about}: {value}")
+    return list(map(capitalized, limits))

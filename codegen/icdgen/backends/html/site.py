@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from icdgen.diff.inputs.side import Side
     from icdgen.render import Renderer
 
-# Written by hand; the pages load them.
+# Static files that the pages load.
 _LOADED = (
     *("style.css", "layout.css", "print.css", "icon.svg"),
     *(
@@ -55,7 +55,10 @@ _LOADED = (
 def files(
     icd: Icd, render: Renderer, packages: Packages, previous: Side | None = None
 ) -> Iterator[tuple[PurePosixPath, str]]:
-    """Path and text of each file; ``previous`` is an older release that ``changes.html`` compares with."""
+    """Yield path and text of each file.
+
+    ``previous``: older release that ``changes.html`` compares with.
+    """
     relations = Relations(icd, packages)
     compared = previous is not None
     common = {
@@ -86,20 +89,27 @@ def files(
 
         yield page(CHANGES, "changes.html.j2", **changes.values(relations, previous))
     for node in icd.nodes:
-        beside = sidebar.of_node(relations, node, render)
+        sidebar_of = sidebar.of_node(relations, node, render)
         url = relations.links.node(node.name)
         yield PurePosixPath(sidebar.contents(node)), sidebar.script(relations, node)
-        yield page(url, "node.html.j2", sidebar=beside(url), **nodes.values(relations, node))
+        yield page(url, "node.html.j2", sidebar=sidebar_of(url), **nodes.values(relations, node))
         if protocol.has_page(relations, node):
             url = relations.links.protocol(node.name)
-            yield page(url, "protocol.html.j2", sidebar=beside(url), **protocol.values(relations, node))
+            yield page(url, "protocol.html.j2", sidebar=sidebar_of(url), **protocol.values(relations, node))
         shown = [messages.values(relations, node, message, render) for message in node.messages]
-        for before, one, after in zip([None, *shown], shown, [*shown[1:], None], strict=False):
-            yield page(one["url"], "message.html.j2", before=before, after=after, sidebar=beside(one["url"]), **one)
+        for before, values, after in zip([None, *shown], shown, [*shown[1:], None], strict=False):
+            yield page(
+                values["url"],
+                "message.html.j2",
+                before=before,
+                after=after,
+                sidebar=sidebar_of(values["url"]),
+                **values,
+            )
         yield page(relations.links.printed(node.name), "print.html.j2", shown=shown, **nodes.values(relations, node))
         for enum in node.enums:
             url = relations.links.enum(enum)
-            yield page(url, "enum.html.j2", sidebar=beside(url), **enums.values(relations, enum))
+            yield page(url, "enum.html.j2", sidebar=sidebar_of(url), **enums.values(relations, enum))
     yield from _guide(page, render)
     for name in _LOADED:
         yield PurePosixPath(name), render(name)
@@ -113,14 +123,14 @@ _Page = Callable[..., tuple[PurePosixPath, str]]
 
 
 def _guide(page: _Page, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
-    """The manual of icdgen, where it is there."""
+    """Yield the pages of the documentation of icdgen, if it is installed."""
     from markupsafe import Markup
 
-    found = guide.pages()
-    if not found:
+    guide_pages = guide.pages()
+    if not guide_pages:
         return
-    for one in found:
-        root = "../" * one.url.count("/")
-        sidebar = Markup(render("guide-sidebar.html.j2", groups=guide.groups(), name=one.name, root=root))
-        yield page(one.url, "guide.html.j2", page=one, sidebar=sidebar)
+    for guide_page in guide_pages:
+        root = "../" * guide_page.url.count("/")
+        sidebar = Markup(render("guide-sidebar.html.j2", groups=guide.groups(), name=guide_page.name, root=root))
+        yield page(guide_page.url, "guide.html.j2", page=guide_page, sidebar=sidebar)
     yield from ((PurePosixPath(path), text) for path, text in guide.files())

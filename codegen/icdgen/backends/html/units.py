@@ -1,4 +1,4 @@
-"""The reference of units and types."""
+"""Reference page of units and types."""
 
 from __future__ import annotations
 
@@ -21,7 +21,9 @@ _TYPES = {
 
 
 def values(relations: Relations) -> dict[str, object]:
-    """Values of the page: units in use by quantity, types with their number of fields."""
+    """Return the values of the page: used units by quantity, and types with their
+    number of fields.
+    """
     quantities: dict[str, list[dict[str, object]]] = defaultdict(list)
     for unit, uses in relations.units.values():
         quantities[unit.quantity].append({"unit": unit, "uses": uses[:_FEW], "more": uses[_FEW:]})
@@ -40,14 +42,19 @@ def values(relations: Relations) -> dict[str, object]:
 
 
 def _numberings(relations: Relations) -> list[tuple[str, str, str]]:
-    """Titles of the nodes of each combination of byte order and bit numbering."""
-    found: dict[tuple[str, str], list[str]] = defaultdict(list)
+    """Return the titles of the nodes for each combination of byte order and bit
+    numbering.
+    """
+    titles_by_orders: dict[tuple[str, str], list[str]] = defaultdict(list)
     for node in relations.icd.nodes:
-        found[f"{node.byte_order}-endian", node.bit_order].append(node.title)
-    return [("all nodes" if len(found) == 1 else ", ".join(titles), *order) for order, titles in found.items()]
+        titles_by_orders[f"{node.byte_order}-endian", node.bit_order].append(node.title)
+    return [
+        ("all nodes" if len(titles_by_orders) == 1 else ", ".join(titles), *order)
+        for order, titles in titles_by_orders.items()
+    ]
 
 
-def _widths(kind: str, found: set[int]) -> str:
-    if kind in ("bytes", "text") and len(found) > 6:
-        return texts.span(str(min(found)), str(max(found)))
-    return ", ".join(map(str, sorted(found)))
+def _widths(kind: str, widths: set[int]) -> str:
+    if kind in ("bytes", "text") and len(widths) > 6:
+        return texts.span(str(min(widths)), str(max(widths)))
+    return ", ".join(map(str, sorted(widths)))

@@ -1,4 +1,4 @@
-"""How a message is used in C, Python and Rust, with the names that the backends give."""
+"""Use of a message in C, Python and Rust, with the names of the backends."""
 
 from __future__ import annotations
 
@@ -19,7 +19,10 @@ _LANGUAGES = (("C", "c", "usage.c.j2"), ("Python", "python", "usage.py.j2"), ("R
 
 
 class Snippet(NamedTuple):
-    """A piece of a program; ``text`` is what a highlighter would want: code with comments."""
+    """Piece of a program.
+
+    ``text`` is code with comments.
+    """
 
     language: str
     key: str
@@ -29,11 +32,14 @@ class Snippet(NamedTuple):
 def snippets(
     message: MessageDescription, in_c: MessageDescription, packages: Packages, render: Renderer
 ) -> list[Snippet]:
-    """One for each language: receiving, sending, or both. ``in_c``: the message under the name that its node has in C."""
+    """Return a snippet for each language: reception, transmission, or both.
+
+    ``in_c``: message with the C prefix of its node.
+    """
     of_c = _values(in_c, packages)
-    of_others = _values(message, packages)
+    of_other_languages = _values(message, packages)
     return [
-        Snippet(name, key, render(template, **(of_c if key == "c" else of_others)).rstrip("\n"))
+        Snippet(name, key, render(template, **(of_c if key == "c" else of_other_languages)).rstrip("\n"))
         for name, key, template in _LANGUAGES
     ]
 
@@ -61,5 +67,5 @@ def _values(message: MessageDescription, packages: Packages) -> dict[str, object
 
 
 def names(message: MessageDescription, in_c: MessageDescription) -> list[tuple[str, str]]:
-    """Language and the name of the message's type in it."""
+    """Return the name of the message's type in each language."""
     return [("C", f"{stem(in_c)}_t"), ("Python", camel(message.words)), ("Rust", camel(message.words))]

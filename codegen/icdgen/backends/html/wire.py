@@ -1,5 +1,7 @@
-"""What goes over UART, I2C and CAN for one message, as the Python runtime makes it. A bus that the ICD does not describe
-is left out."""
+"""Transmitted bytes of a message on UART, I2C and CAN, computed by the Python runtime.
+
+Buses that the ICD does not describe are omitted.
+"""
 
 from __future__ import annotations
 
@@ -21,11 +23,14 @@ from icdgen.icd.rules.wording import count
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Can, Framing
 
-_SHOWN = 24  # data bytes that are written out
+_SHOWN = 24  # maximum number of shown data bytes
 
 
 class Chunk(NamedTuple):
-    """Bytes of one meaning, as text: ``kind`` is frame, id, data, crc or note."""
+    """Bytes of one meaning as text.
+
+    ``kind`` is frame, id, data, crc or note.
+    """
 
     kind: str
     text: str
@@ -33,7 +38,7 @@ class Chunk(NamedTuple):
 
 
 class Line(NamedTuple):
-    """What is sent at once."""
+    """Bytes of one transmission."""
 
     label: str
     chunks: list[Chunk]
@@ -47,7 +52,7 @@ class Bus:
 
 
 class Speaker(NamedTuple):
-    """A node that speaks a message: what code is made from, the section of the ICD that it is read from, and its ``LINK``."""
+    """Node that uses a message: its facts, the section of its ICD, and its ``LINK``."""
 
     facts: Facts
     section: dict[str, Any]
@@ -55,7 +60,9 @@ class Speaker(NamedTuple):
 
 
 class Wire(NamedTuple):
-    """How a message travels: as the node that declares it says, with the checksums of all nodes that speak it."""
+    """Transmission of a message: protocol of the declaring node, and the nodes with a
+    checksum.
+    """
 
     facts: Facts
     section: dict[str, Any]
@@ -64,20 +71,23 @@ class Wire(NamedTuple):
 
 
 def buses(message: Message, wire: Wire, data: bytes) -> list[Bus]:
-    """The bytes of the message on each bus. ``data`` is the frame shown."""
-    found = [make(message, wire, data) for make in (_stream, _uart, _i2c, _can)]
-    return [bus for bus in found if bus is not None]
+    """Return the bytes of the message on each bus.
+
+    ``data``: shown frame.
+    """
+    results = [make(message, wire, data) for make in (_stream, _uart, _i2c, _can)]
+    return [bus for bus in results if bus is not None]
 
 
 def page_facts(message: Message, wire: Wire) -> dict[str, object]:
-    """What the decoder of a page needs to know: framing, ids and checksums."""
+    """Return the data of the decoder of a page: framing, ids and checksums."""
     facts: dict[str, object] = {
         "ids": list(message.ids),
         "id_bits": wire.facts.node.id_bits,
         "id": message.telecommand_id if message.telecommand_id is not None else message.telemetry_id,
         "command": message.telecommand_id is not None,
         "telemetry": message.telemetry_id,
-        "crc": [crc_facts(one.facts) for one in wire.checked],
+        "crc": [crc_facts(speaker.facts) for speaker in wire.checked],
     }
     if len(message.layout.lengths) > 1:
         facts["lengths"] = [message.layout.shortest, message.layout.lengths.step]
@@ -90,21 +100,25 @@ def page_facts(message: Message, wire: Wire) -> dict[str, object]:
 
 
 def framing_facts(facts: Facts) -> dict[str, object]:
-    """The bytes that delimit messages on the UART, and what is unusual about them; empty without framing."""
+    """Return the framing bytes of the UART with its special features; empty without
+    framing.
+    """
     framing = facts.framing
     if framing is None:
         return {}
-    found: dict[str, object] = {"framing": [framing.escape, framing.start, framing.end, framing.escaped]}
+    framing_data: dict[str, object] = {"framing": [framing.escape, framing.start, framing.end, framing.escaped]}
     if not framing.escapes_id:
-        found["plain_id"] = True
+        framing_data["plain_id"] = True
     if framing.ignores_other:
-        found["ignores_other"] = True
-    return found
+        framing_data["ignores_other"] = True
+    return framing_data
 
 
 def can_facts(form: Can) -> dict[str, object]:
-    """Shift and width of the parts of an identifier, types by kind, and where packets of long messages have what."""
-    found: dict[str, object] = {
+    """Return shift and width of the parts of an identifier, types by kind, and
+    positions in extended packets.
+    """
+    can_data: dict[str, object] = {
         "parts": {role: [part.shift, part.bits] for role, part in form.parts.items()},
         "types": form.types,
         "extended_types": form.extended_types,
@@ -112,18 +126,26 @@ def can_facts(form: Can) -> dict[str, object]:
         "node": form.node_address,
     }
     if form.extended:
-        one = form.extended
-        found["extended"] = [one.data_bytes, one.left_at, one.left_in_last, one.fill, one.bytes]
-    return found
+        extended = form.extended
+        can_data["extended"] = [
+            extended.data_bytes,
+            extended.left_at,
+            extended.left_in_last,
+            extended.fill,
+            extended.bytes,
+        ]
+    return can_data
 
 
 def crc_facts(facts: Facts) -> dict[str, object]:
-    """Parameters of the checksum of messages, its bytes and their order, and whether it covers the id."""
+    """Return parameters of the message checksum, its size and byte order, and whether
+    it covers the id.
+    """
     form = facts.checksum
     assert form is not None
-    found = envelopes.crc_numbers(form.crc) | {"bytes": form.bytes}
-    told = {"covers_id": form.covers_id, "little": facts.little and form.bytes > 1}
-    return found | {key: True for key, value in told.items() if value}
+    crc_data = envelopes.crc_numbers(form.crc) | {"bytes": form.bytes}
+    flags = {"covers_id": form.covers_id, "little": facts.little and form.bytes > 1}
+    return crc_data | {key: True for key, value in flags.items() if value}
 
 
 def _hex(data: bytes) -> str:
@@ -137,7 +159,7 @@ def _data(data: bytes) -> list[Chunk]:
 
 
 def _check(wire: Wire, direction: str, bus: str) -> Speaker | None:
-    """The node whose checksum is shown with messages of the direction."""
+    """Return the node whose checksum is shown for messages of the direction."""
     for speaker in wire.checked:
         form = speaker.facts.checksum
         assert form is not None
@@ -162,9 +184,11 @@ def _stream(message: Message, wire: Wire, data: bytes) -> Bus | None:
     for direction, id in ids.items():
         if id is not None:
             parts = envelopes.packet(form, wire.link, id, direction, data)
-            lines.append(Line(direction.capitalize(), [Chunk(one.kind, _hex(one.data), one.title) for one in parts]))
+            lines.append(
+                Line(direction.capitalize(), [Chunk(part.kind, _hex(part.data), part.title) for part in parts])
+            )
             sent = stream_encode(wire.link, id, data, direction)
-            if sent != b"".join(one.data for one in parts):
+            if sent != b"".join(part.data for part in parts):
                 lines.append(Line("in wire order", [Chunk("data", _hex(sent), "stuffed, between delimiters")]))
     return Bus("Envelope", f"A message ends {envelopes.ENDS[form.delimited_by]}.", lines)
 
@@ -185,10 +209,10 @@ def _uart(message: Message, wire: Wire, data: bytes) -> Bus | None:
 
 
 def _framed(link: Link, id: int, data: bytes, checked: Speaker | None = None) -> list[Chunk]:
-    """The bytes on the line, cut where the id, the data and the checksum begin and end."""
+    """Return the transmitted bytes, split at the borders of id, data and checksum."""
     body = i2c_write(checked.link if checked else link, id, data, checked is not None)
     line = uart_encode(link, body)
-    # What is sent for a part begins where the parts before it, sent alone, would be followed by the end of message.
+    # A part begins at the position of the end of message if only the preceding parts were sent.
     ends = [2, *(len(uart_encode(link, body[:size])) - 2 for size in (1, 1 + len(data), len(body)))]
     start, id_sent, data_sent, check_sent = (line[at:to] for at, to in zip([0, *ends], ends, strict=False))
     chunks = [Chunk("frame", _hex(start), "start of message"), Chunk("id", _hex(id_sent), f"id {id}")]
@@ -220,9 +244,9 @@ def _i2c(message: Message, wire: Wire, data: bytes) -> Bus | None:
         lines += _with_crc(wire, "telecommand", message.telecommand_id, data, sent)
     if message.telemetry_id is not None:
         how = "repeated start" if wire.facts.i2c_repeated_start else "stop and start"
-        again = Chunk("note", how, " or ".join(wire.section["i2c"].get("telemetry_request", [])))
+        restart = Chunk("note", how, " or ".join(wire.section["i2c"].get("telemetry_request", [])))
         read = Chunk("frame", f"{address << 1 | 1:02X}", "address, read")
-        answer = [write, _id(message.telemetry_id), again, read, *_data(data)]
+        answer = [write, _id(message.telemetry_id), restart, read, *_data(data)]
         lines.append(Line("Request and answer", answer))
         lines += _with_crc(wire, "telemetry", message.telemetry_id, data, answer)
     return Bus("I²C", f"7-bit address {address:02X}.", lines)
@@ -235,8 +259,8 @@ def _id(id: int) -> Chunk:
 def _with_crc(wire: Wire, direction: str, id: int, data: bytes, sent: list[Chunk]) -> Iterator[Line]:
     checked = _check(wire, direction, "i2c")
     if checked:
-        whole = i2c_write(checked.link, id, data, True)
-        yield Line("with CRC", [*sent, _crc_chunk(whole[1 + len(data) :], checked, direction)])
+        checked_bytes = i2c_write(checked.link, id, data, True)
+        yield Line("with CRC", [*sent, _crc_chunk(checked_bytes[1 + len(data) :], checked, direction)])
 
 
 def _can(message: Message, wire: Wire, data: bytes) -> Bus | None:
@@ -257,7 +281,9 @@ def _can(message: Message, wire: Wire, data: bytes) -> Bus | None:
 
 
 def _packets(wire: Wire, form: Can, message: CanMessage, label: str) -> Iterator[Line]:
-    """One packet, or as many extended ones as it takes; of many the first two and the last."""
+    """Yield one packet, or the extended packets of a long message; of many, the first
+    two and the last.
+    """
     try:
         packets = can_split(wire.link, message)
     except (TooLongError, UnsupportedError):
@@ -281,6 +307,6 @@ def _identifier(wire: Wire, form: Can, id: int) -> Chunk:
     parts = {role: id >> part.shift & (1 << part.bits) - 1 for role, part in form.parts.items()}
     rows = wire.section["can"]["message_types"]["values"]
     name = next(row["name"] for row in rows if row["value"] == parts["type"])
-    rest = f"channel {parts['channel']}, source {parts['source']}, destination {parts['destination']}"
+    addressing = f"channel {parts['channel']}, source {parts['source']}, destination {parts['destination']}"
     bits = sum(part.bits for part in form.parts.values())
-    return Chunk("id", f"{id:0{(bits + 3) // 4}X}", f"{name}: type {parts['type']}, {rest}")
+    return Chunk("id", f"{id:0{(bits + 3) // 4}X}", f"{name}: type {parts['type']}, {addressing}")

@@ -1,4 +1,7 @@
-"""Tables for reviews, a row per field: an .xlsx or .csv file per node. `icdgen import --profile tables` reads them back."""
+"""Tables for reviews with one row per field: an .xlsx or .csv file per node.
+
+`icdgen import --profile tables` reads them.
+"""
 
 from __future__ import annotations
 
@@ -13,24 +16,27 @@ from icdgen.icd.model import Icd
 
 
 class _Tables:
-    """What both formats share: every name may stand in a cell, so that no name clashes."""
+    """Base class of both table formats.
+
+    Cells can contain any name, so names never conflict.
+    """
 
     reserved: frozenset[str] = frozenset()
-    named_in: tuple[str, ...] = ()  # names stand as the ICD has them
+    named_in: tuple[str, ...] = ()  # names of the ICD are unchanged
     needs_lines = True  # keys without a column are taken from the file
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
-        """None: the tables declare no identifiers."""
+        """Return no identifiers: tables declare none."""
         return iter(())
 
 
 class CsvBackend(_Tables):
-    """``icdgen --lang csv``"""
+    """Backend of ``icdgen --lang csv``."""
 
     name = "csv"
 
     def files(self, icd: Icd, render: object) -> Iterator[tuple[PurePosixPath, str]]:
-        """``<node>.csv`` for each node with messages of its own, in their order."""
+        """Yield ``<node>.csv`` for each node with own messages, in order."""
         for node in icd.nodes:
             if table := rows.of_node(node):
                 text = io.StringIO()
@@ -39,12 +45,15 @@ class CsvBackend(_Tables):
 
 
 class XlsxBackend(_Tables):
-    """``icdgen --lang xlsx``"""
+    """Backend of ``icdgen --lang xlsx``."""
 
     name = "xlsx"
 
     def files(self, icd: Icd, render: object) -> Iterator[tuple[PurePosixPath, bytes]]:
-        """``<node>.xlsx`` for each node with messages of its own, in their order. Raises `UserError` without openpyxl."""
+        """Yield ``<node>.xlsx`` for each node with own messages, in order.
+
+        Raises `UserError` without openpyxl.
+        """
         from icdgen.backends.tables import workbook
 
         for node in icd.nodes:

@@ -1,4 +1,4 @@
-"""A node -> the rows of its table: one per field, with the message that it belongs to."""
+"""Rows of the table of a node: one per field, with its message."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ def _of_message(message: Message) -> Iterator[Row]:
         "Length": None if message.layout.sequence else message.length,  # a length that varies follows from the fields
     }  # fmt: skip
     for cells in fields or [{}]:
-        given = own | cells
-        yield [_cell(given.get(heading)) for heading in HEADINGS]
+        cells_of_row = own | cells
+        yield [_cell(cells_of_row.get(heading)) for heading in HEADINGS]
 
 
 def _cell(value: object) -> Cell:
@@ -55,13 +55,15 @@ def _fields(message: Message) -> Iterator[dict[str, object]]:
             else {}
         )
         name = ".".join(level.node.name for level in (line.levels[1:] if group else line.levels))
+        # Elements of a repeated struct have one row each, so that positions are
+        # explicit.
         starts = line.starts(first_only=True)
         for index, at in enumerate(starts, 1):
             yield _field(line, at, f"{name} {index}" if len(starts) > 1 else name, is_element=True) | group
 
 
 def _repeats(source: Map) -> dict[str, object]:
-    """How often an array or a group is repeated."""
+    """Return the cells for the repetition of an array or group."""
     count = source.get("count", source.get("size", ""))
     if isinstance(count, int):
         return {"Count": count}
@@ -84,6 +86,6 @@ def _field(line: Line, at: int, name: str, is_element: bool = False) -> dict[str
 
 
 def _further(source: Map) -> str:
-    """The keys of a field that have no column, as the ICD writes them."""
+    """Return the keys of a field without a column, as the ICD writes them."""
     texts = ((key, plain(value)) for key, value in source.items() if key not in _SHOWN)
     return "; ".join(f"{key}: {value if isinstance(value, str) else json.dumps(value)}" for key, value in texts)

@@ -1,4 +1,7 @@
-"""The rows of a node -> a workbook. The same rows give the same bytes on every machine, so that `--check` can compare them."""
+"""Workbook of the rows of a node.
+
+Equal rows result in equal bytes on all machines, so that `--check` can compare them.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +19,10 @@ _EPOCH = datetime.datetime(1980, 1, 1)  # the first time that a ZIP archive can 
 
 
 def of_rows(node: Node, rows: list[Row]) -> bytes:
-    """Return the workbook. Raises `UserError` without openpyxl."""
+    """Return the workbook.
+
+    Raises `UserError` without openpyxl.
+    """
     try:
         from openpyxl import Workbook
         from openpyxl.styles import Font
@@ -48,12 +54,14 @@ def of_rows(node: Node, rows: list[Row]) -> bytes:
 
 
 def _without_times(data: io.BytesIO) -> bytes:
-    """The archive with fixed times, and not compressed: compression depends on the version of zlib."""
-    made = io.BytesIO()
-    with zipfile.ZipFile(data) as archive, zipfile.ZipFile(made, "w", zipfile.ZIP_STORED) as fixed:
+    """Return the archive with fixed times and without compression, whose result depends
+    on the version of zlib.
+    """
+    output = io.BytesIO()
+    with zipfile.ZipFile(data) as archive, zipfile.ZipFile(output, "w", zipfile.ZIP_STORED) as fixed:
         for name in archive.namelist():
             content = archive.read(name)
             if name == "docProps/core.xml":  # openpyxl writes the time of saving
                 content = re.sub(rb"(<dcterms:modified[^>]*>)[^<]*", rb"\g<1>1980-01-01T00:00:00Z", content)
             fixed.writestr(zipfile.ZipInfo(name, _EPOCH.timetuple()[:6]), content)
-    return made.getvalue()
+    return output.getvalue()

@@ -1,4 +1,6 @@
-"""XTCE 1.2 (CCSDS 660.1): one file a node, with all that it speaks, for Yamcs and whatever reads the standard."""
+"""Backend of XTCE 1.2 (CCSDS 660.1-G): one file per node with all its messages, for
+Yamcs and other consumers of the standard.
+"""
 
 from __future__ import annotations
 
@@ -16,20 +18,24 @@ if TYPE_CHECKING:
 
 
 class XtceBackend:
-    """``icdgen --lang xtce``"""
+    """Backend of ``icdgen --lang xtce``."""
 
     name = "xtce"
     reserved: frozenset[str] = frozenset()
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
-        """``<node>.xml`` for each node, in their order."""
+        """Yield ``<node>.xml`` for each node, in order."""
         from icdgen.backends.xtce.sides import side, text
 
         for node in describe(icd).nodes:
             sides = {of: side(icd, node, of) for of in (TELEMETRY, TELECOMMAND)}
-            made = render("system.xml.j2", node=node, origin=origin(node.model, with_digest=True), text=text, **sides)
-            yield PurePosixPath(f"{node.name}.xml"), made
+            document = render(
+                "system.xml.j2", node=node, origin=origin(node.model, with_digest=True), text=text, **sides
+            )
+            yield PurePosixPath(f"{node.name}.xml"), document
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
-        """None: names are made unique as they are given out, and the ICD's own stand beside them."""
+        """Return no identifiers: names are made unique when they are assigned, and
+        aliases contain the names of the ICD.
+        """
         return iter(())

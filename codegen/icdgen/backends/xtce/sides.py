@@ -1,4 +1,4 @@
-"""All that a node speaks in one direction, ready for the template: what stands before the data, and the messages."""
+"""Content of one direction of a node for the template: header and messages."""
 
 from __future__ import annotations
 
@@ -18,11 +18,14 @@ _PACKET = {
     "Version": Run(0, 3), "Type": Run(3, 1), "SecondaryHeader": Run(4, 1), "Apid": Run(5, 11),
     "SequenceFlags": Run(16, 2), "SequenceCount": Run(18, 14), "Length": Run(32, 16),
 }  # fmt: skip
-_IN_COMMANDS = {"Type": 1, "SequenceFlags": 3}  # the others are 0, until the link counts and measures
+_IN_COMMANDS = {"Type": 1, "SequenceFlags": 3}  # other fields are 0; the sender sets counter and length
 
 
 class Head(NamedTuple):
-    """The header of a space packet, or the id alone; ``id`` is the parameter, or the argument, that tells a message."""
+    """Header of a space packet, or only the id.
+
+    ``id``: name of the parameter or argument that identifies a message.
+    """
 
     id: str
     bits: int
@@ -31,44 +34,50 @@ class Head(NamedTuple):
 
 
 class Side(NamedTuple):
-    """One of the two halves of a file."""
+    """Telemetry or telecommands of a file."""
 
     types: dict[str, Type]  # by name
     head: Head
-    rows: list[Row]  # parameters; arguments stand with their commands
+    rows: list[Row]  # parameters; arguments belong to their commands
     frames: list[Frame]
     bases: list[Base]  # of frames that share an id
     notes: list[str]
 
 
 def side(icd: Icd, node: NodeDescription, direction: str) -> Side | None:
-    """What a node speaks in a direction; None if it is nothing."""
-    spoken = next((one.messages for one in node.directions if one.kind == direction), ())
-    if not spoken:
+    """Return the content of a direction; None if the node has no messages in it."""
+    messages = next(
+        (node_direction.messages for node_direction in node.directions if node_direction.kind == direction), ()
+    )
+    if not messages:
         return None
     types = Types()
-    id_bits = max(node.model.id_bits, *(id.bit_length() for one in node.all_messages for id in one.model.ids))
+    id_bits = max(
+        node.model.id_bits, *(id.bit_length() for described in node.all_messages for id in described.model.ids)
+    )
     head = _head(id_bits, icd.protocol_of(node.model), direction, types)
     shared = {
-        one.id: min(among.message.model.layout.shortest for among in one.messages)
-        for one in node.ids(direction)
-        if one.is_shared
+        entry.id: min(candidate.message.model.layout.shortest for candidate in entry.messages)
+        for entry in node.ids(direction)
+        if entry.is_shared
     }
     maker = Frames(direction, types, head.bits, shared=shared, taken={"TelemetryFrame", "TelecommandFrame"})
-    frames = [maker.frame(message) for message, _ in spoken]
-    notes = [f"{direction} `{one.message.model.name}`: {note}" for one in frames for note in (*one.lacks, *one.notes)]
+    frames = [maker.frame(message) for message, _ in messages]
+    notes = [
+        f"{direction} `{frame.message.model.name}`: {note}" for frame in frames for note in (*frame.lacks, *frame.notes)
+    ]
     if direction == TELECOMMAND:
-        notes += [f"{direction} `{one.message.model.name}` is left out" for one in frames if one.lacks]
-        frames = [one for one in frames if not one.lacks]
-    rows = [*head.rows, *maker.reserved.values(), *(row for one in frames for row in one.rows)]
+        notes += [f"{direction} `{frame.message.model.name}` is left out" for frame in frames if frame.lacks]
+        frames = [frame for frame in frames if not frame.lacks]
+    rows = [*head.rows, *maker.reserved.values(), *(row for frame in frames for row in frame.rows)]
     named = {name: type_ for type_, name in types.names.items()}
     return Side(named, head, rows, frames, list(maker.bases.values()), notes)
 
 
 def _head(id_bits: int, protocol: dict[str, Any], direction: str, types: Types) -> Head:
-    """What all messages of a direction begin with."""
+    """Return the header of all messages of a direction."""
     header = protocol.get("stream", {}).get("header", ())
-    is_packet = [(one.get("at"), one.get("bits")) for one in header] == [one[:2] for one in _PACKET.values()]
+    is_packet = [(row.get("at"), row.get("bits")) for row in header] == [run[:2] for run in _PACKET.values()]
     places = _PACKET if is_packet else {"Id": Run(0, -(-id_bits // 8) * 8)}
     id = "Apid" if is_packet else "Id"
     rows, entries = [], []
@@ -83,5 +92,5 @@ def _head(id_bits: int, protocol: dict[str, Any], direction: str, types: Types) 
 
 
 def text(value: object) -> str:
-    """A text in one line, without what XML cannot have."""
+    """Return a text as one line without characters that XML does not permit."""
     return " ".join(_UNPRINTABLE.sub(" ", str(value)).split())

@@ -1,4 +1,4 @@
-"""What fields are made of in XTCE: types, each once, with a name."""
+"""Types of XTCE, each with a unique name."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from icdgen.icd.curve import CLAMP, EXTRAPOLATE
 from icdgen.icd.model import Member
 from icdgen.icd.places import NodePlace
 
-_LONG = range(-(1 << 63), 1 << 63)  # what XTCE has as a value of an integer
+_LONG = range(-(1 << 63), 1 << 63)  # range of integer values in XTCE
 _KEYS = {"min": "minInclusive", "above": "minExclusive", "max": "maxInclusive", "below": "maxExclusive"}
 _KINDS = {
     "uint": "Integer", "int": "Integer", "bool": "Boolean", "enum": "Enumerated", "float": "Float", "bytes": "Binary",
@@ -27,27 +27,30 @@ _KINDS = {
 
 @dataclass(frozen=True)
 class Type:
-    """A type of parameters or arguments. All of it is text for the template, but for numbers of bits and elements."""
+    """Type of parameters or arguments.
 
-    kind: str  # as in the name of its element
+    All attributes are text for the template, except numbers of bits and elements.
+    """
+
+    kind: str  # part of the name of its XML element
     bits: int = 0
-    encoding: str = ""  # of an integer on the wire; of a float none
-    byte_order: str = ""  # of more than one byte
+    encoding: str = ""  # encoding of an integer; empty for a float
+    byte_order: str = ""  # empty for a single byte
     unit: str = ""
     terms: tuple[tuple[int, str], ...] = ()  # exponents and coefficients
     points: tuple[tuple[str, str], ...] = ()  # raw and calibrated
     extrapolates: bool = False
     limits: tuple[tuple[str, str], ...] = ()  # names of attributes and values
     labels: tuple[Member, ...] = ()
-    enum: str = ""  # what an enumeration is called
-    of: str = ""  # of an array the type of its elements
-    count: int = 0  # of an array its elements; of what something counts the most that there are
-    counter: str = ""  # the parameter or argument that counts elements, or bytes
-    plus: int = 0  # there are so many more than it says
+    enum: str = ""  # name of the enumeration
+    of: str = ""  # element type of an array
+    count: int = 0  # number of elements; the maximum if there is a counter
+    counter: str = ""  # parameter or argument that counts elements or bytes
+    plus: int = 0  # offset added to the counter
 
     @property
     def size(self) -> int:
-        """Bits of a value of it, as programs hold it."""
+        """Bits of a value in programs."""
         is_double = self.terms or self.points
         return 64 if is_double or self.bits > 32 else 32
 
@@ -57,7 +60,7 @@ class Type:
 
 
 def unique(wanted: str, taken: set[str]) -> str:
-    """A name that nothing else has, from now on taken: as ``wanted``, or with a number behind it."""
+    """Return an unused name and reserve it: ``wanted``, or ``wanted`` with a number."""
     tried = chain([wanted], (f"{wanted}_{number}" for number in count(2)))
     name = next(name for name in tried if name not in taken)
     taken.add(name)
@@ -66,29 +69,31 @@ def unique(wanted: str, taken: set[str]) -> str:
 
 @dataclass
 class Types:
-    """Those of one of the sets of a file."""
+    """Types of one set of a file."""
 
     names: dict[Type, str] = field(default_factory=dict)
     taken: set[str] = field(default_factory=set)
 
     def name(self, of: Type, wanted: str) -> str:
-        """What a type is called: as ``wanted`` if that is free."""
+        """Return the name of a type: the existing one, otherwise ``wanted`` if it is
+        free.
+        """
         if of not in self.names:
             self.names[of] = unique(wanted, self.taken)
         return self.names[of]
 
     def of(self, field: FieldDescription, wanted: str, is_little: bool) -> str:
-        """The name of the type of a field, of an array of all its elements."""
+        """Return the name of the type of a field; for an array, of the array."""
         name = self._element(field, wanted, is_little)
         return name if not field.count else self.name(Type("Array", of=name, count=field.count), f"{wanted}_Array")
 
     def of_open(self, tail: VariablePartDescription, counter: str, wanted: str, is_little: bool) -> str:
-        """The name of the type of an open end, of which ``counter`` says how much there is."""
+        """Return the name of the type of a variable-length field with a counter."""
         if tail.field.model.is_bytes and not tail.field.count:
-            made = replace(type_of(tail.field.model), bits=0)
+            variable_type = replace(type_of(tail.field.model), bits=0)
         else:
-            made, wanted = Type("Array", of=self._element(tail.field, wanted, is_little)), f"{wanted}_Array"
-        return self.name(replace(made, count=tail.model.most, counter=counter, plus=tail.model.plus), wanted)
+            variable_type, wanted = Type("Array", of=self._element(tail.field, wanted, is_little)), f"{wanted}_Array"
+        return self.name(replace(variable_type, count=tail.model.most, counter=counter, plus=tail.model.plus), wanted)
 
     def _element(self, field: FieldDescription, wanted: str, is_little: bool) -> str:
         element = type_of(field.model, is_little)
@@ -96,25 +101,29 @@ class Types:
 
 
 def type_of(field: NodePlace, is_little: bool = False) -> Type:
-    """The type of a field, of an array that of an element."""
+    """Return the type of a field; for an array, of an element."""
     order = "" if field.is_bytes else "leastSignificantByteFirst" if is_little else most_first(field.bits)
     encoding = "" if field.type == "float" or field.is_bytes else "twosComplement" if field.is_signed else "unsigned"
-    made = Type(_KINDS[field.type], field.bits, encoding, order, field.unit_symbol)
+    field_type = Type(_KINDS[field.type], field.bits, encoding, order, field.unit_symbol)
     if field.enum is not None:
-        labels = tuple(one for one in field.enum.members if one.value in _LONG and one.last in _LONG)
-        return replace(made, labels=labels, enum=field.enum.name)
+        labels = tuple(member for member in field.enum.members if member.value in _LONG and member.last in _LONG)
+        return replace(field_type, labels=labels, enum=field.enum.name)
     if field.has_formula:
-        made = replace(made, kind="Float", **_calibration(field))
-    return replace(made, limits=_limits(field))
+        field_type = replace(field_type, kind="Float", **_calibration(field))
+    return replace(field_type, limits=_limits(field))
 
 
 def most_first(bits: int) -> str:
-    """The order of the bytes of a number that begins with the most significant one; of a single byte none."""
+    """Return the byte order of a number with the most significant byte first; empty for
+    a single byte.
+    """
     return "mostSignificantByteFirst" if bits > 8 else ""
 
 
 def _usual_name(field: FieldDescription, of: Type) -> str:
-    """What a type is called that has no more than an encoding, or that is an enumeration; else nothing."""
+    """Return the name of an enumeration or of a type with only an encoding; empty for
+    other types.
+    """
     if field.enum is not None:
         return naming.camel(field.enum.words)
     if of.unit or of.terms or of.points or of.limits:
@@ -125,7 +134,7 @@ def _usual_name(field: FieldDescription, of: Type) -> str:
 
 
 def _calibration(field: NodePlace) -> dict[str, Any]:
-    """The polynomial, or the table, of a formula."""
+    """Return the polynomial or lookup table of a formula."""
     if field.scale is not None:
         return {"terms": _terms([field.scale.offset, field.scale.factor])}
     curve = field.curve
@@ -133,7 +142,7 @@ def _calibration(field: NodePlace) -> dict[str, Any]:
     if not curve.points:
         return {"terms": _terms(list(map(Fraction, curve.coefficients)))}
     points = list(map(_point, curve.points))
-    if curve.outside == CLAMP and field.type != "float":  # XTCE has no word for it, but lines that are level
+    if curve.outside == CLAMP and field.type != "float":  # XTCE cannot clamp; horizontal segments have the same effect
         if curve.points[0][0] > field.raw_min:
             points.insert(0, (str(field.raw_min), points[0][1]))
         if curve.points[-1][0] < field.raw_max:
@@ -151,16 +160,19 @@ def _point(point: tuple[float, float]) -> tuple[str, str]:
 
 
 def _limits(field: NodePlace) -> tuple[tuple[str, str], ...]:
-    """Attributes of the valid range; of integers XTCE has inclusive ones only."""
-    said = {one.key: one.value for one in bounds(field.limits)}
+    """Return the attributes of the valid range.
+
+    XTCE permits only inclusive limits for integers.
+    """
+    limits = {bound.key: bound.value for bound in bounds(field.limits)}
     if field.type == "float" or field.has_formula:
-        return tuple((_KEYS[key], exact_text(value)) for key, value in said.items())
-    least = [ceil(said[key]) if key == "min" else floor(said[key]) + 1 for key in ("min", "above") if key in said]
-    most = [floor(said[key]) if key == "max" else ceil(said[key]) - 1 for key in ("max", "below") if key in said]
-    found = (*((_KEYS["min"], one) for one in least[-1:]), *((_KEYS["max"], one) for one in most[-1:]))
-    return tuple((key, str(value)) for key, value in found if value in _LONG)
+        return tuple((_KEYS[key], exact_text(value)) for key, value in limits.items())
+    least = [ceil(limits[key]) if key == "min" else floor(limits[key]) + 1 for key in ("min", "above") if key in limits]
+    most = [floor(limits[key]) if key == "max" else ceil(limits[key]) - 1 for key in ("max", "below") if key in limits]
+    attributes = (*((_KEYS["min"], limit) for limit in least[-1:]), *((_KEYS["max"], limit) for limit in most[-1:]))
+    return tuple((key, str(value)) for key, value in attributes if value in _LONG)
 
 
-def is_said(field: NodePlace) -> bool:
-    """Whether the calibration says all that the formula does."""
+def is_complete(field: NodePlace) -> bool:
+    """Return whether the calibration of XTCE represents the formula completely."""
     return field.type != "float" or field.curve is None or field.curve.outside != CLAMP
