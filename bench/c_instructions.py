@@ -1,10 +1,15 @@
-"""Instructions per call of the generated C decoders and encoders, beside hand-written shift-and-mask code.
+"""Count the instructions per call of the generated C decoders and encoders and of
+hand-written shift-and-mask code.
+
+Usage::
 
     python bench/c_instructions.py [--cc gcc] [--opt=-O2] [--check]
 
-Counts come from valgrind --tool=callgrind, so they do not depend on the machine's load. The generated functions check the
-length and the range of raw values; the hand-written ones (``c_by_hand.c``) check nothing. ``--check`` ends with status 1
-where a limit is missed. With arm-none-eabi-gcc, also the code size on a Cortex-M4.
+The counts come from valgrind --tool=callgrind and do not depend on the load of the
+machine. The generated functions check the length and the range of raw values; the
+hand-written functions (``c_by_hand.c``) check nothing. With ``--check``, the exit
+status is 1 if a limit is exceeded. If arm-none-eabi-gcc is installed, the code size on
+a Cortex-M4 is printed too.
 """
 
 from __future__ import annotations
@@ -72,9 +77,9 @@ CALL = """\
 
 
 def messages() -> dict[int, MessageDescription]:
-    """The frames of the bench."""
+    """Return the measured messages by telemetry id."""
     icd = load([BENCH.parent / "icd"], check=False).icd
-    of_id = {one.model.telemetry_id: one for one in describe(icd).node("cubeacp").messages}
+    of_id = {message.model.telemetry_id: message for message in describe(icd).node("cubeacp").messages}
     return {id: of_id[id] for id in LIMITS}
 
 
@@ -85,20 +90,25 @@ def generate(folder: Path) -> None:
         (folder / path).write_text(text, encoding="utf-8")
 
 
-def functions_of(found: dict[int, MessageDescription]) -> str:
-    """A source with a function for each generated one."""
-    values = ({"id": id, "stem": stem(m), "type": f"{stem(m)}_t"} for id, m in found.items())
+def functions_of(messages_by_id: dict[int, MessageDescription]) -> str:
+    """Return a source file with a non-inline function for each generated function."""
+    values = ({"id": id, "stem": stem(m), "type": f"{stem(m)}_t"} for id, m in messages_by_id.items())
     return '#include "cubeacp.h"\n' + "".join(FUNCTIONS.format(**v) for v in values)
 
 
-def instructions(folder: Path, found: dict[int, MessageDescription], compiler: str, option: str) -> dict[str, float]:
-    """Function -> instructions per call."""
-    values = [{"id": id, "stem": stem(m), "type": f"{stem(m)}_t", "upper": stem(m).upper()} for id, m in found.items()]
+def instructions(
+    folder: Path, messages_by_id: dict[int, MessageDescription], compiler: str, option: str
+) -> dict[str, float]:
+    """Return the instructions per call of each function."""
+    values = [
+        {"id": id, "stem": stem(m), "type": f"{stem(m)}_t", "upper": stem(m).upper()}
+        for id, m in messages_by_id.items()
+    ]
     declarations = "".join(DECLARATIONS.format(**v) for v in values)
     calls = "".join(CALL.format(**v) for v in values)
     program, counts = folder / "bench", folder / "counts"
     (folder / "bench.c").write_text(PROGRAM.format(declarations=declarations, calls=CALLS, calls_of_all=calls))
-    (folder / "generated.c").write_text(functions_of(found))
+    (folder / "generated.c").write_text(functions_of(messages_by_id))
     objects = []
     for source in (folder / "bench.c", folder / "generated.c", BENCH / "c_by_hand.c"):
         objects.append(folder / f"{source.stem}.o")
@@ -112,17 +122,22 @@ def instructions(folder: Path, found: dict[int, MessageDescription], compiler: s
     return {name: int(count.replace(",", "")) / CALLS for count, name in lines}
 
 
-def code_size(folder: Path, found: dict[int, MessageDescription]) -> dict[int, tuple[int, int]] | None:
-    """Id -> bytes of code for decode and encode on a Cortex-M4 with -Os, number of fields."""
+def code_size(folder: Path, messages_by_id: dict[int, MessageDescription]) -> dict[int, tuple[int, int]] | None:
+    """Return the bytes of code for decode and encode on a Cortex-M4 with -Os, and the
+    number of fields, by id.
+    """
     if not shutil.which("arm-none-eabi-gcc"):
         return None
     source, target = folder / "size.c", folder / "size.o"
-    source.write_text(functions_of(found))
+    source.write_text(functions_of(messages_by_id))
     options = ["-mcpu=cortex-m4", "-mthumb", "-Os", "-std=c99", f"-I{folder}", "-c", source, "-o", target]
     subprocess.run(["arm-none-eabi-gcc", *options], check=True)
     table = subprocess.run(["arm-none-eabi-nm", "-S", target], check=True, capture_output=True, text=True).stdout
     sizes = {name: int(size, 16) for size, name in re.findall(r"^\w+ (\w+) \w (\S+)$", table, re.M)}
-    return {id: (sizes[f"decode_{id}"] + sizes[f"encode_{id}"], len(message.fields)) for id, message in found.items()}
+    return {
+        id: (sizes[f"decode_{id}"] + sizes[f"encode_{id}"], len(message.fields))
+        for id, message in messages_by_id.items()
+    }
 
 
 def main() -> int:
@@ -131,16 +146,16 @@ def main() -> int:
     parser.add_argument("--opt", default="-O2")
     parser.add_argument("--check", action="store_true")
     options = parser.parse_args()
-    found = messages()
+    messages_by_id = messages()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         generate(folder)
-        counts = instructions(folder, found, options.cc, options.opt)
-        sizes = code_size(folder, found)
+        counts = instructions(folder, messages_by_id, options.cc, options.opt)
+        sizes = code_size(folder, messages_by_id)
     missed = []
     print("| frame | decode | by hand | ratio | encode | by hand | ratio | Cortex-M4 -Os, bytes a field |")
     print("|---|---|---|---|---|---|---|---|")
-    for id, message in found.items():
+    for id, message in messages_by_id.items():
         cells = [f"{id} {message.model.name}"]
         for what, limit in zip(("decode", "encode"), LIMITS[id], strict=True):
             ours, theirs = counts[f"{what}_{id}"], counts[f"hand_{what}_{id}"]

@@ -1,11 +1,16 @@
-"""Bytes of code that one more translation unit with a client costs, on a Cortex-M4 at -Os.
+"""Measure the code size of one more translation unit with a client, on a Cortex-M4 with
+-Os.
+
+Usage::
 
     python bench/c_units.py [--cc arm-none-eabi-gcc]
 
-The unit includes the header of a node, begins a client on the UART, requests a frame, sends, receives, and decodes what came.
-It is compiled as it is (every unit has functions and tables of its own) and with ICDGEN_SHARED (they are in `icdgen_wire.c`
-and `link.c`). Then whole programs of that kind, on each bus, linked with --gc-sections: with the C library's memory functions,
-without start-up code; with all messages in the tables of `link.c`, and with the one that is asked for.
+The unit includes the header of a node, starts a client on the UART, requests a frame,
+sends, receives and decodes it. It is compiled once with its own functions and tables,
+and once with ICDGEN_SHARED, where `icdgen_wire.c` and `link.c` contain them. Complete
+programs of this kind follow for each bus, linked with --gc-sections, with the memory
+functions of the C library and without start-up code: with the tables of all messages,
+and with only the requested message.
 """
 
 from __future__ import annotations
@@ -107,28 +112,30 @@ WAYS = {"header only": [], "ICDGEN_SHARED": ["-DICDGEN_SHARED"]}
 
 
 def text_bytes(cc: str, folder: Path, source: str, *options: str) -> int:
-    """Bytes of code and constants of the object that a source becomes."""
+    """Return the bytes of code and constants of the object file of a source."""
     flags = ["-std=c99", "-Os", *(["-mcpu=cortex-m4", "-mthumb"] if "arm" in cc else []), *options]
     subprocess.run([cc, *flags, f"-I{folder}", "-c", str(folder / source), "-o", str(folder / "unit.o")], check=True)
     size = cc.removesuffix("gcc") + "size" if cc.endswith("-gcc") else "size"
-    found = subprocess.run([size, str(folder / "unit.o")], check=True, capture_output=True, text=True).stdout
-    return int(found.splitlines()[1].split()[0])
+    output = subprocess.run([size, str(folder / "unit.o")], check=True, capture_output=True, text=True).stdout
+    return int(output.splitlines()[1].split()[0])
 
 
 def linked_bytes(cc: str, folder: Path, bus: str, *options: str) -> int:
-    """Bytes of code and constants of a program with a client on a bus, which holds what it uses."""
+    """Return the bytes of code and constants of a linked program with a client on a
+    bus.
+    """
     declared, output, used = OUTPUT[bus]
     address = "1, " if bus == "can" else ""
     text = PROGRAM.format(bus=bus, declared=declared, output=output, used=used, input=INPUT[bus], address=address)
     (folder / "program.c").write_text(text, encoding="utf-8")
     flags = ["-std=c99", "-Os", "-ffunction-sections", "-fdata-sections", "-DICDGEN_SHARED", f"-I{folder}", *options]
     target = ["-mcpu=cortex-m4", "-mthumb", "-nostartfiles"] if "arm" in cc else ["-nostartfiles", "-static"]
-    sources = [str(folder / one) for one in ("program.c", "icdgen_wire.c", "cubeacp/link.c")]
+    sources = [str(folder / name) for name in ("program.c", "icdgen_wire.c", "cubeacp/link.c")]
     out = str(folder / "program.elf")
     subprocess.run([cc, *flags, *target, "-Wl,--gc-sections,-e,program", *sources, "-o", out], check=True)
     size = cc.removesuffix("gcc") + "size" if cc.endswith("-gcc") else "size"
-    found = subprocess.run([size, out], check=True, capture_output=True, text=True).stdout
-    return int(found.splitlines()[1].split()[0])
+    size_output = subprocess.run([size, out], check=True, capture_output=True, text=True).stdout
+    return int(size_output.splitlines()[1].split()[0])
 
 
 def main() -> None:

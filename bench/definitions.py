@@ -1,9 +1,12 @@
-"""How long `icdgen import` takes on a definition, and C of what it makes of it, how much memory, and how both grow.
+"""Measure time and memory of `icdgen import` for definition files, of the check, and of
+the generated C code.
+
+Usage::
 
     python bench/definitions.py FILE ... [--times 1 2 4]
 
-With --times a DBC is enlarged first: all its messages again, with other ids and names. Seconds are the processor's,
-memory is that of the process.
+With --times, a DBC file is enlarged first: its messages are repeated with other ids and
+names. Times are processor times; memory is the maximum of the process.
 """
 
 from __future__ import annotations
@@ -24,18 +27,21 @@ _EXTENDED = 1 << 31
 
 
 def enlarged(text: str, times: int) -> str:
-    """A DBC with all its messages so many times."""
+    """Return a DBC file with all its messages repeated."""
     parts = [text]
     for number in range(1, times):
         high = _EXTENDED | number << 24
-        again = _OF_ID.sub(lambda one, high=high: f"{one[1]}{high | int(one[2]) & 0xFFFFFF}", text)  # type: ignore[misc]
-        lines = _NAME.sub(rf"\g<1>_{number}", again).split("\n")
-        parts.append("\n".join(one for one in lines if re.match(r"\s*(BO_|SG_|VAL_) ", one)))
+        repeated = _OF_ID.sub(lambda match, high=high: f"{match[1]}{high | int(match[2]) & 0xFFFFFF}", text)  # type: ignore[misc]
+        lines = _NAME.sub(rf"\g<1>_{number}", repeated).split("\n")
+        parts.append("\n".join(line for line in lines if re.match(r"\s*(BO_|SG_|VAL_) ", line)))
     return "\n\n".join(parts)
 
 
 def measured(*words: object) -> str:
-    """What a command of `icdgen` takes; it may exit with 1, which says that something is not held."""
+    """Return time and memory of an `icdgen` command.
+
+    Exit status 1 is permitted: the command reports omissions.
+    """
     environment = {**os.environ, "ICDGEN_CACHE": "off"}
     command = [sys.executable, "-m", "icdgen", *map(str, words)]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment)
@@ -60,13 +66,14 @@ def main() -> None:
                     file.write_text(enlarged(path.read_text(encoding="latin-1"), times), encoding="latin-1")
                 read = measured("import", file, "--out", f"{folder}/icd")
                 texts = (
-                    "\n" + one.read_text().partition("\nmessages:\n")[2] for one in Path(folder, "icd").glob("*.yaml")
+                    "\n" + path_of_icd.read_text().partition("\nmessages:\n")[2]
+                    for path_of_icd in Path(folder, "icd").glob("*.yaml")
                 )
                 messages = sum(text.count("\n  - name: ") for text in texts)
                 print(f"{path.name} x{times}: import {read}", end="", flush=True)
                 print(f"; check {measured('check', f'{folder}/icd')}", end="", flush=True)
-                made = measured("--lang", "c", "--out", f"{folder}/c", f"{folder}/icd")
-                print(f"; C {made}; {messages} messages held", flush=True)
+                generated = measured("--lang", "c", "--out", f"{folder}/c", f"{folder}/icd")
+                print(f"; C {generated}; {messages} messages held", flush=True)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""How long comparing takes, beside loading the two sets of ICDs that are compared.
+"""Measure the time of comparisons, and of loading both sets of ICDs.
 
 python bench/diff.py [--runs 21]
 """
@@ -27,7 +27,7 @@ from tests.diff.release.make import make  # noqa: E402
 
 
 def median(runs: int, work: Callable[[], object]) -> float:
-    """Milliseconds of the processor's time, so that others on the machine matter little."""
+    """Return the median processor time in milliseconds."""
     times = []
     for _ in range(runs):
         start = time.process_time()
@@ -36,12 +36,12 @@ def median(runs: int, work: Callable[[], object]) -> float:
     return statistics.median(times) * 1e3
 
 
-def far_apart(side: Side) -> Side:
-    """The same ICDs after 400 edits of all kinds."""
+def edited(side: Side) -> Side:
+    """Return the ICDs after 400 edits of all kinds."""
     rng, icd = random.Random(1), side.icd
     for number in range(400):
-        done = EDITS[list(EDITS)[number % len(EDITS)]](icd, rng)
-        icd = done.icd if done is not None else icd
+        result = EDITS[list(EDITS)[number % len(EDITS)]](icd, rng)
+        icd = result.icd if result is not None else icd
     return Side("edited", icd)
 
 
@@ -61,15 +61,15 @@ def main() -> None:
         pairs = {
             "the same twice": (same, other),
             "an older release": (old, new),
-            "after 400 edits": (same, far_apart(same)),
+            "after 400 edits": (same, edited(same)),
         }
         say("load both", max(runs // 4, 3), lambda: inputs.sides([older, "icd"], []))
-        for name, (one, two) in pairs.items():
-            number = len(report.make(one, two).changes)
-            say(f"compare {name} ({number} changes)", runs, partial(report.make, one, two))
-        made = report.make(old, new)
+        for name, (first, second) in pairs.items():
+            number = len(report.make(first, second).changes)
+            say(f"compare {name} ({number} changes)", runs, partial(report.make, first, second))
+        comparison = report.make(old, new)
         for form in reports.FORMATS:
-            say(f"report of an older release as {form}", runs, partial(reports.get(form), made))
+            say(f"report of an older release as {form}", runs, partial(reports.get(form), comparison))
 
 
 if __name__ == "__main__":

@@ -1,4 +1,5 @@
-"""From an empty folder to a device that answers: seconds of each step, as a person waits for them, and of the processor.
+"""Measure each step from an empty folder to a responding device: waiting time and
+processor time.
 
 python bench/first_device.py
 """
@@ -23,7 +24,7 @@ ICDGEN = (sys.executable, "-m", "icdgen")
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--runs", type=int, default=9)
-    runs = [once() for _ in range(parser.parse_args().runs)]
+    runs = [run_all_steps() for _ in range(parser.parse_args().runs)]
     print("| step | median, s | least, s | of the processor, s |\n|---|---|---|---|")
     for name in runs[0]:
         waited, busy = zip(*(run[name] for run in runs), strict=True)
@@ -33,8 +34,8 @@ def main() -> None:
 Times = tuple[float, float]
 
 
-def once() -> dict[str, Times]:
-    """Nothing is remembered from an earlier run."""
+def run_all_steps() -> dict[str, Times]:
+    """Run all steps with an empty cache, and return their times."""
     with tempfile.TemporaryDirectory() as folder:
         env = {**os.environ, "ICDGEN_CACHE": os.path.join(folder, ".cache")}
         run = partial(subprocess.run, cwd=folder, env=env, check=True, stdout=subprocess.DEVNULL)
@@ -59,7 +60,7 @@ def once() -> dict[str, Times]:
         monitor = times.pop(MONITOR)
         times["icdgen sim listens"] = listens, processor() - before - monitor[1]
         times[MONITOR] = monitor
-        return times | {"all": (sum(one for one, _ in times.values()), sum(one for _, one in times.values()))}
+        return times | {"all": (sum(wall for wall, _ in times.values()), sum(busy for _, busy in times.values()))}
 
 
 def timed(call: Callable[[], object]) -> Times:
@@ -69,7 +70,7 @@ def timed(call: Callable[[], object]) -> Times:
 
 
 def processor() -> float:
-    """Of the programs that have ended."""
+    """Return the processor time of all child processes that have ended."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 

@@ -1,12 +1,17 @@
-"""Start-to-end time of ``icdgen`` over all five nodes: nothing remembered, generating anew, and nothing to do.
+"""Measure complete runs of ``icdgen`` for the shipped nodes: without cache, with cached
+ICDs, and without changes.
+
+Usage::
 
     python bench/generate.py [--runs 21] [--lang c ...]
 
-Each figure is the processor's time of whole processes, interpreter start included, with their output thrown away; the least of
-them is also given as a multiple of bare Python's. What is compared takes turns, so that what else the machine does slows all
-alike. Every run writes to a folder that did not exist: ext4 takes ten times as long to
-create a file where some have just been deleted, and a user's cold build deletes none. Python keeps its compiled modules, as it does
-for a user, whatever the environment says.
+Each figure is the processor time of whole processes, start of the interpreter included.
+The minimum is also given as a multiple of bare Python. The variants take turns, so that
+other load affects all of them equally.
+
+Each run writes to a new folder: ext4 needs ten times as long to create a file if files
+were just deleted, and a cold build deletes none. Python caches its compiled modules as
+it does for a user, whatever the environment says.
 """
 
 from __future__ import annotations
@@ -25,7 +30,7 @@ from pathlib import Path
 
 
 def seconds(line: list[str], environment: dict[str, str]) -> float:
-    """Seconds of the processor's time that a command takes."""
+    """Return the processor time of a command in seconds."""
     start = resource.getrusage(resource.RUSAGE_CHILDREN)
     subprocess.run(line, check=True, stdout=subprocess.DEVNULL, env=environment)
     end = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -63,7 +68,7 @@ def main() -> None:
             for title, command, its_environment in rows:
                 shutil.rmtree(empty, ignore_errors=True)
                 spent = seconds(command(), its_environment)
-                times[title] += [spent] if turn else []  # the first fills the caches
+                times[title] += [spent] if turn else []  # the first turn fills the caches
         print(
             f"| {'+'.join(languages)}, {options.runs} runs | median, s | least, s | times bare Python |\n|---|---|---|---|"
         )

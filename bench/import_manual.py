@@ -1,4 +1,4 @@
-"""How long `icdgen import` takes on a manual, how much memory, and where the time goes.
+"""Measure time and memory of `icdgen import` for a manual, and the share of each stage.
 
 python bench/import_manual.py MANUAL.pdf [--profile NAME] [--jobs N] [--where]
 """
@@ -36,13 +36,15 @@ def main() -> None:
     parser.add_argument("--where", action="store_true", help="where the time goes, in one process")
     options = parser.parse_args()
     if options.where:
-        where(options.manual, options.profile)
+        measure_stages(options.manual, options.profile)
     else:
-        whole(options.manual, options.profile, options.jobs)
+        measure_command(options.manual, options.profile, options.jobs)
 
 
-def whole(manual: Path, profile: str | None, jobs: int) -> None:
-    """The command as a user runs it: wall time, processor time and the largest process, and all of them together."""
+def measure_command(manual: Path, profile: str | None, jobs: int) -> None:
+    """Measure the command as a user runs it: wall time, processor time, and memory of
+    the largest process and of all processes.
+    """
     with tempfile.TemporaryDirectory() as folder:
         words = ["--profile", profile] if profile else []
         command = [sys.executable, "-m", "icdgen", "import", str(manual), *words, "--out", folder, "--jobs", str(jobs)]
@@ -59,12 +61,12 @@ def whole(manual: Path, profile: str | None, jobs: int) -> None:
 
 
 def _family(pid: int) -> list[int]:
-    """A process and its children, by Linux's /proc."""
+    """Return the ids of a process and its descendants, from Linux's /proc."""
     try:
         children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
     except OSError:
         return [pid]
-    return [pid, *(one for child in children for one in _family(int(child)))]
+    return [pid, *(descendant for child in children for descendant in _family(int(child)))]
 
 
 def _resident(pid: int) -> int:
@@ -74,8 +76,8 @@ def _resident(pid: int) -> int:
         return 0
 
 
-def where(manual: Path, profile: str | None) -> None:
-    """The share of each stage, in one process, under a profiler."""
+def measure_stages(manual: Path, profile: str | None) -> None:
+    """Print the share of each stage, in one process under a profiler."""
     from icdgen.icd.fmt import emit
     from icdgen.importer import profile as profiles
     from icdgen.importer import run
@@ -88,9 +90,9 @@ def where(manual: Path, profile: str | None) -> None:
         emit.text(tree)
     profiler.disable()
     statistics = pstats.Stats(profiler)
-    found = {(os.path.basename(file), name): row[3] for (file, _, name), row in statistics.stats.items()}
+    time_by_function = {(os.path.basename(file), name): row[3] for (file, _, name), row in statistics.stats.items()}
     for stage, key in STAGES.items():
-        print(f"{found.get(key, 0.0) / statistics.total_tt:6.1%}  {stage}")
+        print(f"{time_by_function.get(key, 0.0) / statistics.total_tt:6.1%}  {stage}")
 
 
 if __name__ == "__main__":

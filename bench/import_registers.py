@@ -1,8 +1,12 @@
-"""How long the tables of a long data sheet take, compared with pdfminer, which reads the characters of its pages.
+"""Measure the reading of tables in a long data sheet, compared with pdfminer, which
+reads the characters of its pages.
 
-python bench/import_registers.py [PDF] [--pages 110] [--jobs 2]
+Usage::
 
-Without a PDF, a data sheet is drawn: a register map and a table of bits on each page, with text between them.
+    python bench/import_registers.py [PDF] [--pages 110] [--jobs 2]
+
+Without a PDF, a data sheet is drawn: a register map and a bit table on each page, with
+text between them.
 """
 
 from __future__ import annotations
@@ -30,7 +34,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         pdf = options.pdf or draw(Path(folder, "registers.pdf"), options.pages)
         seconds = {}
-        for part in PARTS:  # each in a process of its own, so that none finds what another one has loaded
+        for part in PARTS:  # separate processes, so that no part finds modules loaded by another
             command = [sys.executable, __file__, str(pdf), "--part", part, "--jobs", str(options.jobs)]
             seconds[part] = float(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
             print(f"{part}: {seconds[part]:.1f} s of processor time")
@@ -38,7 +42,7 @@ def main() -> None:
 
 
 def measure(pdf: Path, part: str, jobs: int) -> None:
-    """Print the processor time of one part, that of its child processes included."""
+    """Print the processor time of one part, child processes included."""
     if part == "pdfminer":
         from pdfminer.high_level import extract_pages
 

@@ -1,11 +1,15 @@
-"""How time grows with the size of an ICD: comparing two releases, and the vectors, of thousands of fields.
+"""Measure how time grows with the size of an ICD: comparison of two releases, and
+golden vectors, for thousands of fields.
+
+Usage::
 
     python bench/large.py [--fields 3000 10000 30000] [--command] [--diff] [--vectors]
 
-Each message has 40 fields. In the newer release a tenth of the messages has another name, and in every third message a field is
-renamed or scaled otherwise; with --every, all fields have another factor, or all messages another name. Seconds of the processor's
-time: of the whole command `icdgen diff`, which reads and checks both releases and remembers neither, and of the comparison
-alone. With --runs it is the least of several.
+Each message has 40 fields. In the newer release a tenth of the messages has another
+name, and in every third message a field is renamed or scaled differently. With --every,
+all fields have another factor, or all messages another name. Times are processor times:
+of the complete command `icdgen diff` without cache, and of the comparison alone. With
+--runs, the minimum of several runs is printed.
 """
 
 from __future__ import annotations
@@ -37,7 +41,7 @@ _HEAD = "icdgen: 1\nnode: {name: %s, title: T, byte_order: little, bit_order: ls
 
 
 def write(folder: Path, fields: int, newer: bool, every: str | None = None) -> Path:
-    """A folder of ICDs with that many fields."""
+    """Write a folder of ICDs with ``fields`` fields, and return it."""
     folder.mkdir()
     messages = fields // PER_MESSAGE
     for node in range((messages + PER_NODE - 1) // PER_NODE):
@@ -73,7 +77,10 @@ def seconds(work: Callable[[], object]) -> float:
 
 
 def command_seconds(*words: object) -> float:
-    """The processor's time of a whole `icdgen`, which keeps its compiled modules as it does for a user."""
+    """Return the processor time of an `icdgen` command.
+
+    Python caches its compiled modules, as it does for a user.
+    """
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     start = resource.getrusage(resource.RUSAGE_CHILDREN)
     subprocess.run(
@@ -83,8 +90,8 @@ def command_seconds(*words: object) -> float:
     return end.ru_utime + end.ru_stime - start.ru_utime - start.ru_stime
 
 
-def _compare(sides: list[Side], made: list[report.Report]) -> None:
-    made.append(report.make(*sides))
+def _compare(sides: list[Side], results: list[report.Report]) -> None:
+    results.append(report.make(*sides))
 
 
 def main() -> None:
@@ -112,9 +119,9 @@ def main() -> None:
                 continue
             sides = [Side(folder.name, load([folder], check=False).icd) for folder in folders]
             if options.diff or everything:
-                made: list[report.Report] = []
-                spent = min(seconds(partial(_compare, sides, made)) for _ in range(options.runs))
-                print(f"diff, {fields} fields: {spent:.2f} s, {len(made[0].changes)} changes", flush=True)
+                results: list[report.Report] = []
+                spent = min(seconds(partial(_compare, sides, results)) for _ in range(options.runs))
+                print(f"diff, {fields} fields: {spent:.2f} s, {len(results[0].changes)} changes", flush=True)
             if options.vectors or everything:
                 icd = sides[0].icd
                 spent = seconds(lambda icd=icd: [text(make(icd, node)) for node in icd.nodes])

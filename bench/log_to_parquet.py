@@ -1,8 +1,12 @@
-"""Time and memory of `icdgen log LOG --out LOG.parquet`, for a log with every frame that can be logged.
+"""Measure time and memory of `icdgen log LOG --out LOG.parquet`, for a log with all
+loggable frames.
+
+Usage::
 
     python bench/log_to_parquet.py [--size 1000] [--folder /tmp]
 
-``--size`` is in millions of bytes. The log is made of slowly changing values and of noise, as telemetry is.
+``--size`` is in millions of bytes. The log contains slowly changing values with noise,
+like real telemetry.
 """
 
 from __future__ import annotations
@@ -48,17 +52,17 @@ def used() -> float:
 
 
 def write(path: Path, size: int) -> int:
-    """Writes a log of about that size; fields of an entry."""
+    """Write a log of about ``size`` bytes, and return the number of fields of an entry."""
     icd = load_checked([ROOT / "icd"], ()).icd
-    known = next(k for k in (facts.of(icd, node) for node in icd.nodes) if k.log_file and k.mask and k.mask.bits)
-    mask = bytearray(known.mask.size)
-    for bit in known.mask.bits:
-        mask[bit // 8] |= 1 << (7 - bit % 8 if known.mask.msb0 else bit % 8)
-    slots, random = known.mask.selected(bytes(mask)), np.random.default_rng(1)
-    step, width = known.mask.slot_bytes, known.log_file.frames_at
+    node_facts = next(k for k in (facts.of(icd, node) for node in icd.nodes) if k.log_file and k.mask and k.mask.bits)
+    mask = bytearray(node_facts.mask.size)
+    for bit in node_facts.mask.bits:
+        mask[bit // 8] |= 1 << (7 - bit % 8 if node_facts.mask.msb0 else bit % 8)
+    slots, random = node_facts.mask.selected(bytes(mask)), np.random.default_rng(1)
+    step, width = node_facts.mask.slot_bytes, node_facts.log_file.frames_at
     entry_bytes = width + len(slots) * step
     with path.open("wb") as file:
-        file.write(bytes(mask).ljust(known.log_file.header_bytes, b"\0"))
+        file.write(bytes(mask).ljust(node_facts.log_file.header_bytes, b"\0"))
         number = 0
         while file.tell() < size:
             data = np.zeros((PIECE, entry_bytes), np.uint8)
@@ -71,7 +75,7 @@ def write(path: Path, size: int) -> int:
             file.write(data.tobytes())
             number += PIECE
     os.sync()
-    return sum(len(known.telemetry[slot.id].fields) for slot in slots if slot.id in known.telemetry)
+    return sum(len(node_facts.telemetry[slot.id].fields) for slot in slots if slot.id in node_facts.telemetry)
 
 
 if __name__ == "__main__":

@@ -1,11 +1,16 @@
-"""A message with an open end, UBX NAV-SAT with 32 satellites, beside code by hand, Kaitai Struct and pyubx2.
+"""Measure a message of variable length, UBX NAV-SAT with 32 satellites: generated code,
+hand-written code, Kaitai Struct and pyubx2.
+
+Usage::
 
     pip install kaitaistruct pyubx2 && python bench/nav_sat.py [--rounds 40]
 
-C and Rust are counted in instructions (valgrind), beside the same layout decoded by hand: both sides check the length and
-the count. Python is timed, each round all candidates in turn, medians of the rounds' ratios. By hand is what one would write
-with `struct`: a list of objects with the same attributes. The Kaitai class is what its compiler makes of such a frame.
-pyubx2 reads the payload as it lies in a message, without looking for it in a stream.
+C and Rust are measured in instructions (valgrind), compared with hand-written code;
+both check length and count. Python is measured in time: each round calls all candidates
+in turn, and the result is the median of the rounds' ratios. The hand-written Python
+code uses `struct` and returns objects with the same attributes. The Kaitai class is
+equal to the output of its compiler. pyubx2 decodes the payload without searching for it
+in a stream.
 """
 
 from __future__ import annotations
@@ -31,7 +36,7 @@ from icdgen.render import Renderer
 
 BENCH = Path(__file__).parent
 sys.path.insert(0, str(BENCH))
-from python_decode import PACKAGE, in_turn, ratio, there  # noqa: E402
+from python_decode import PACKAGE, in_turn, is_installed, ratio  # noqa: E402
 from python_others import by_kaitaistruct  # noqa: E402
 from rust_instructions import MANIFEST, counts  # noqa: E402
 
@@ -94,10 +99,12 @@ fn main() {{
 
 
 def frame_of(count: int) -> bytes:
-    """A frame, the same in every run, of known systems."""
+    """Return a frame with valid systems, equal in every run."""
     source = random.Random(count)
     systems = [bytes([source.randrange(8)]) + source.randbytes(7) + source.randbytes(3) + b"\3" for _ in range(count)]
-    flags = [one[:9] + bytes([one[9] & 0x7F]) + one[10:] for one in systems]  # a bit is reserved
+    flags = [
+        satellite[:9] + bytes([satellite[9] & 0x7F]) + satellite[10:] for satellite in systems
+    ]  # a bit is reserved
     return struct.pack("<IBBxx", 123456789, 1, count) + b"".join(flags)
 
 
@@ -111,7 +118,7 @@ def generate(folder: Path, backend: Any) -> Path:
 
 
 def c(folder: Path, frame: bytes) -> dict[str, float]:
-    """Function -> instructions a call."""
+    """Return the instructions per call of each C function."""
     source = generate(folder, CBackend())
     (folder / "main.c").write_text(C_MAIN % (", ".join(map(str, frame)), CALLS))
     (folder / "ours.c").write_text(C_CALLS)
@@ -130,7 +137,7 @@ def c(folder: Path, frame: bytes) -> dict[str, float]:
 
 
 def rust(folder: Path, frame: bytes) -> dict[str, float]:
-    """The same of the Rust decoders."""
+    """Return the instructions per call of each Rust decoder."""
     generate(folder, RustBackend())
     home = folder / "program"
     (home / "src").mkdir(parents=True)
@@ -145,7 +152,7 @@ def rust(folder: Path, frame: bytes) -> dict[str, float]:
 
 
 class Satellite:
-    """What one would write by hand: the head of a satellite, and its flags as attributes."""
+    """Satellite as in hand-written code, with its flags as attributes."""
 
     __slots__ = (
         "gnss_id", "sv_id", "cno", "elev", "azim", "pr_res", "quality_ind", "sv_used", "health", "diff_corr", "smoothed",
@@ -179,7 +186,7 @@ class Satellite:
 
 
 def by_hand(frame: bytes) -> tuple[int, int, list[Satellite]]:
-    """Time, version and satellites."""
+    """Decode a frame into time, version and satellites."""
     time, version, count = struct.unpack_from("<IBB", frame)
     if len(frame) != 8 + 12 * count:
         raise ValueError("length")
@@ -187,22 +194,29 @@ def by_hand(frame: bytes) -> tuple[int, int, list[Satellite]]:
 
 
 def python(folder: Path, frame: bytes, rounds: int) -> dict[str, list[float]]:
-    """Seconds a call of each candidate, round by round."""
+    """Return the seconds per call of each candidate, by round."""
     sys.path.insert(0, str(generate(folder, PythonBackend())))
     cls = import_module(f"{PACKAGE}.ublox").NavSat
     calls = {"ours": cls.from_bytes, "by hand": by_hand}
-    if there("kaitaistruct"):
+    if is_installed("kaitaistruct"):
         calls["Kaitai"] = by_kaitaistruct(cls)
-    if there("pyubx2"):
+    if is_installed("pyubx2"):
         from pyubx2 import GET, UBXMessage
 
         calls["pyubx2"] = lambda frame: UBXMessage(b"\x01", b"\x35", GET, payload=frame)
     read = cls.from_bytes(frame)
-    told = [(one.sv_id, one.azim, one.quality_ind, one.has_corr_used) for one in read.satellites]
-    assert told == [(one.sv_id, one.azim, one.quality_ind, one.has_corr_used) for one in by_hand(frame)[2]]
+    expected = [
+        (satellite.sv_id, satellite.azim, satellite.quality_ind, satellite.has_corr_used)
+        for satellite in read.satellites
+    ]
+    assert expected == [
+        (satellite.sv_id, satellite.azim, satellite.quality_ind, satellite.has_corr_used)
+        for satellite in by_hand(frame)[2]
+    ]
     if "Kaitai" in calls:
-        assert told == [
-            (one.sv_id, one.azim, one.quality_ind, one.has_corr_used) for one in calls["Kaitai"](frame).satellites
+        assert expected == [
+            (satellite.sv_id, satellite.azim, satellite.quality_ind, satellite.has_corr_used)
+            for satellite in calls["Kaitai"](frame).satellites
         ]
     timers = {name: Timer("call(frame)", globals={"call": call, "frame": frame}) for name, call in calls.items()}
     timers["ours, encode"] = Timer("call()", globals={"call": read.to_bytes})

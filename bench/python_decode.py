@@ -1,13 +1,20 @@
-"""Generated Python beside what users would pick instead: decoding frame by frame, 100,000 frames at once, and importing.
+"""Measure generated Python code and alternatives: decoding frame by frame, 100,000
+frames at once, and import.
+
+Usage::
 
     python bench/python_decode.py [--rounds 60] [--check]
 
-Every candidate is a function of one frame. A round measures all candidates in turn, so that a busy machine slows all of them;
-a ratio is the median of the rounds' ratios. Two candidates decode nothing and say what there is to win: ``stores`` makes the
-object and sets its attributes, ``passes`` is the two numpy operations without which no bit becomes a truth value. Frames are
-random, with known enumeration values and finite floats. ``construct``, ``kaitaistruct`` and ``numpy`` are measured where they
-are installed; the Kaitai classes are what its compiler makes of such frames. ``--check`` ends with status 1 where a limit is
-missed.
+Each candidate is a function of one frame. A round calls all candidates in turn, so that
+other load affects all of them; a ratio is the median of the rounds' ratios. Two
+candidates decode nothing and show the lower bound: ``stores`` creates the object and
+sets its attributes, and ``passes`` performs the two numpy operations that any
+conversion of a bit to a boolean needs.
+
+Frames are random, with defined enumeration values and finite floats. ``construct``,
+``kaitaistruct`` and ``numpy`` are measured if they are installed; the Kaitai classes
+are equal to the output of its compiler. With ``--check``, the exit status is 1 if a
+limit is exceeded.
 """
 
 from __future__ import annotations
@@ -44,26 +51,28 @@ FRAMES = 100_000
 
 
 def sample(cls: Any) -> bytes:
-    """A random frame with known enumeration values and finite floats."""
+    """Return a random frame with defined enumeration values and finite floats."""
     source = random.Random(cls.ID if hasattr(cls, "ID") else cls.GET_ID)
     message = cls.from_bytes(source.randbytes(cls.LENGTH))
     for info in cls.FIELDS:
         if info.type == "enum":
-            known = [member for member in info.enum if member.value < 1 << info.bits]
-            setattr(message, info.attribute, source.choice(known))
+            members = [member for member in info.enum if member.value < 1 << info.bits]
+            setattr(message, info.attribute, source.choice(members))
         elif info.type == "float":
             setattr(message, info.attribute, source.uniform(-1000, 1000))
     return message.to_bytes()
 
 
 def bare(cls: Any) -> Callable[[bytes], Any]:
-    """struct.unpack of the frame, flags as whole bytes."""
+    """Return struct.unpack for the frame, with flags as whole bytes."""
     layout = import_module(f"{PACKAGE}._compiled").Codec(cls).form.format
     return lambda frame: struct.unpack(layout, frame)
 
 
 def stores(cls: Any, frame: bytes) -> Callable[[bytes], Any]:
-    """A new object whose attributes are set, to values that are there already."""
+    """Return a function that creates an object and sets its attributes to existing
+    values.
+    """
     message = cls.from_bytes(frame)
     names: dict[str, Any] = {"cls": cls, "new": object.__new__, "values": tuple(message.as_dict().values())}
     targets = "".join(f"self.{name}, " for name in message.as_dict())
@@ -72,7 +81,7 @@ def stores(cls: Any, frame: bytes) -> Callable[[bytes], Any]:
 
 
 def in_turn(timers: dict[str, Timer], rounds: int) -> dict[str, list[float]]:
-    """Seconds a call of each, round by round."""
+    """Return the seconds per call of each timer, by round."""
     numbers = {name: max(1, int(0.0005 / min(timer.repeat(3, 1)))) for name, timer in timers.items()}
     times: dict[str, list[float]] = {name: [] for name in timers}
     for _ in range(rounds):
@@ -85,14 +94,14 @@ def ratio(over: list[float], under: list[float]) -> float:
     return statistics.median(a / b for a, b in zip(over, under, strict=True))
 
 
-def there(module: str) -> bool:
+def is_installed(module: str) -> bool:
     return importlib.util.find_spec(module) is not None
 
 
 def single(acp: Any, rounds: int) -> list[str]:
-    """Frame by frame; what misses its limit."""
+    """Measure decoding frame by frame, and return the exceeded limits."""
     makers = {"construct": by_construct, "kaitaistruct": by_kaitaistruct}
-    makers = {name: maker for name, maker in makers.items() if there(name)}
+    makers = {name: maker for name, maker in makers.items() if is_installed(name)}
     print(
         "| frame | fields | struct.unpack ns | stores | decode ns | ratio | limit | encode ns | construct | kaitaistruct |"
     )
@@ -106,16 +115,16 @@ def single(acp: Any, rounds: int) -> list[str]:
         timers = {name: Timer("call(frame)", globals={"call": call, "frame": frame}) for name, call in calls.items()}
         timers["encode"] = Timer("call()", globals={"call": cls.from_bytes(frame).to_bytes})
         times = in_turn(timers, rounds)
-        found, least = (ratio(times[name], times["bare"]) for name in ("decode", "stores"))
+        measured, least = (ratio(times[name], times["bare"]) for name in ("decode", "stores"))
         slower = {name: ratio(times[name], times["decode"]) for name in makers}
         nano = {name: statistics.median(values) * 1e9 for name, values in times.items()}
         shown = " | ".join(f"{slower[name]:.0f} times" if name in slower else "" for name in OTHERS)
         print(
-            f"| {id} | {len(cls.FIELDS)} | {nano['bare']:.0f} | {least:.2f} | {nano['decode']:.0f} | {found:.2f} | {limit} "
+            f"| {id} | {len(cls.FIELDS)} | {nano['bare']:.0f} | {least:.2f} | {nano['decode']:.0f} | {measured:.2f} | {limit} "
             f"| {nano['encode']:.0f} | {shown} |"
         )
-        if found > limit:
-            missed.append(f"decode {id}: {found:.2f} times struct.unpack, limit {limit}")
+        if measured > limit:
+            missed.append(f"decode {id}: {measured:.2f} times struct.unpack, limit {limit}")
         for name, least in OTHERS.items():
             if place < 3 and slower.get(name, least) < least:
                 missed.append(f"decode {id}: {slower[name]:.0f} times as fast as {name}, limit {least}")
@@ -123,8 +132,8 @@ def single(acp: Any, rounds: int) -> list[str]:
 
 
 def many(acp: Any, rounds: int) -> list[str]:
-    """Many frames at once; what misses its limit."""
-    if not there("numpy"):
+    """Measure decoding of many frames at once, and return the exceeded limits."""
+    if not is_installed("numpy"):
         return ["numpy is not installed"]
     import numpy
 
@@ -150,19 +159,19 @@ def many(acp: Any, rounds: int) -> list[str]:
         }
         times = in_turn({name: Timer("call()", globals={"call": call}) for name, call in calls.items()}, rounds)
         micro = {name: statistics.median(values) * 1e6 for name, values in times.items()}
-        found = ratio(times["raw"], times["memcpy"])
+        measured = ratio(times["raw"], times["memcpy"])
         print(
             f"| {id} | {len(frames):,} "
-            f"| {micro['memcpy']:.0f} | {ratio(times['passes'], times['memcpy']):.1f} | {micro['raw']:.0f} | {found:.1f} | {limit} "
+            f"| {micro['memcpy']:.0f} | {ratio(times['passes'], times['memcpy']):.1f} | {micro['raw']:.0f} | {measured:.1f} | {limit} "
             f"| {micro['physical']:.0f} | {ratio(times['physical'], times['memcpy']):.1f} |"
         )
-        if found > limit:
-            missed.append(f"decode_many {id}: {found:.1f} times a memcpy, limit {limit}")
+        if measured > limit:
+            missed.append(f"decode_many {id}: {measured:.1f} times a memcpy, limit {limit}")
     return missed
 
 
 def imports(folder: str, rounds: int) -> list[str]:
-    """Whole processes; what misses its limit."""
+    """Measure imports in whole processes, and return the exceeded limits."""
     programs = {
         "pass": "pass",
         "the package": f"import {PACKAGE}",
@@ -180,8 +189,8 @@ def imports(folder: str, rounds: int) -> list[str]:
     print("\n| import | ms |\n|---|---|")
     for name, values in times.items():
         print(f"| {name} | {statistics.median(values) - none:.1f} |")
-    found = statistics.median(times["the package"]) - none
-    return [f"importing the package: {found:.1f} ms, limit {IMPORT}"] if found > IMPORT else []
+    import_time = statistics.median(times["the package"]) - none
+    return [f"importing the package: {import_time:.1f} ms, limit {IMPORT}"] if import_time > IMPORT else []
 
 
 def main() -> int:
@@ -197,7 +206,7 @@ def main() -> int:
         acp = import_module(f"{PACKAGE}.cubeacp")
         print(f"Python {sys.version.split()[0]}, medians of {options.rounds} rounds\n")
         missed = [*single(acp, options.rounds), *many(acp, options.rounds), *imports(folder, options.rounds)]
-    print("\n" + ("\n".join(f"missed: {one}" for one in missed) or "all limits are kept"))
+    print("\n" + ("\n".join(f"missed: {limit}" for limit in missed) or "all limits are kept"))
     return 1 if missed and options.check else 0
 
 

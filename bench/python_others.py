@@ -1,4 +1,4 @@
-"""Frames as users of other libraries would have them decoded, made from what a generated class says of its fields."""
+"""Decoders by other libraries, built from the field descriptions of a generated class."""
 
 from __future__ import annotations
 
@@ -8,7 +8,10 @@ from typing import Any
 
 
 def by_construct(cls: Any) -> Callable[[bytes], Any]:
-    """The frame as a user of construct would write it. Bits come most significant first: a byte of them is swapped."""
+    """Return a decoder as a user of construct would write it.
+
+    Construct reads bits most significant first, so the bits of each byte are swapped.
+    """
     import construct
 
     integers = {8: construct.Int8ul, 16: construct.Int16ul, 32: construct.Int32ul, 64: construct.Int64ul}
@@ -43,7 +46,10 @@ def by_construct(cls: Any) -> Callable[[bytes], Any]:
 
 
 def by_kaitaistruct(cls: Any) -> Callable[[bytes], Any]:
-    """The class that the Kaitai Struct compiler makes of the frame; of structs one each, as many as the field before says."""
+    """Return the decoder that the Kaitai Struct compiler would generate for the frame.
+
+    Structs have a class each; the preceding field determines their number.
+    """
     from kaitaistruct import KaitaiStream, KaitaiStruct
 
     names: dict[str, Any] = {"KaitaiStruct": KaitaiStruct, "KaitaiStream": KaitaiStream}
@@ -56,7 +62,9 @@ def by_kaitaistruct(cls: Any) -> Callable[[bytes], Any]:
 
 
 def _kaitai_class(title: str, cls: Any, enums: dict[str, Any]) -> str:
-    """The text of the class of a frame or a struct, those of its structs before it."""
+    """Return the source of the class of a frame or struct, preceded by the classes of
+    its structs.
+    """
     lines, structs, reached = [], "", 0
     for info in cls.FIELDS:
         if info.at > reached and (info.at % 8 or reached % 8):
@@ -67,9 +75,9 @@ def _kaitai_class(title: str, cls: Any, enums: dict[str, Any]) -> str:
         reached = info.at + info.bits
         if info.struct:
             structs += _kaitai_class(info.struct.__name__, info.struct, enums)
-            made = f"{info.struct.__name__}(self._io, self, self._root)"
+            struct_call = f"{info.struct.__name__}(self._io, self, self._root)"
             count = f"range(self.{cls.TAIL.counter})" if info.is_open else f"range({info.elements})"
-            read = f"[{made} for _ in {count}]" if info.elements else made
+            read = f"[{struct_call} for _ in {count}]" if info.elements else struct_call
         elif info.type == "bytes":
             read = f"self._io.read_bytes({info.bits // 8})"
         elif info.bits % 8:

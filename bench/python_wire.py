@@ -1,4 +1,5 @@
-"""Speed of the generated Python package's wire layer: streams, checksums, logs, CAN, and what its import takes.
+"""Measure the speed of the wire layer of the generated Python package: streams,
+checksums, logs, CAN, and its import.
 
 ``python bench/python_wire.py [--rounds N]``
 """
@@ -26,7 +27,7 @@ STREAM = 2_000_000  # bytes, about
 
 
 def rate(run: Callable[[], object], size: int, rounds: int) -> float:
-    """Megabytes a second, the median of some rounds."""
+    """Return the megabytes per second, as median of several rounds."""
     times = []
     for _ in range(rounds):
         start = time.perf_counter()
@@ -36,7 +37,7 @@ def rate(run: Callable[[], object], size: int, rounds: int) -> float:
 
 
 def in_pieces(make: Callable[[], object], data: bytes, size: int) -> Callable[[], object]:
-    """Feeds a fresh decoder in pieces of that size."""
+    """Return a function that feeds a new decoder in pieces of ``size`` bytes."""
     pieces = [data[at : at + size] for at in range(0, len(data), size)]
 
     def run() -> None:
@@ -48,7 +49,7 @@ def in_pieces(make: Callable[[], object], data: bytes, size: int) -> Callable[[]
 
 
 def streams(acp, wire, rounds: int) -> None:
-    """The UART decoder."""
+    """Measure the UART decoder."""
     source, link = random.Random(1), acp.LINK
     frames = {id: length for id, length in link.frames.items() if length}
     mixed, ids = [], list(frames)
@@ -56,7 +57,7 @@ def streams(acp, wire, rounds: int) -> None:
         id = source.choice(ids)
         mixed.append(wire.uart_encode(link, bytes((id,)) + source.randbytes(frames[id])))
     packet = wire.uart_encode(link, bytes((119, 0, 0)) + bytes(20))
-    made = [
+    cases = [
         ("frames of all lengths", b"".join(mixed), len(mixed)),
         ("download packets", packet * (STREAM // len(packet)), STREAM // len(packet)),
         ("random bytes", source.randbytes(STREAM), 0),
@@ -66,7 +67,7 @@ def streams(acp, wire, rounds: int) -> None:
     print(
         "| UART decoder | 4096 bytes a piece, MB/s | 64 bytes, MB/s | 1 byte, MB/s | messages a second |\n|---|---|---|---|---|"
     )
-    for name, data, count in made:
+    for name, data, count in cases:
         speed = {
             size: rate(in_pieces(lambda: wire.UartDecoder(link), data, size), len(data), rounds) for size in (4096, 64)
         }
@@ -76,8 +77,8 @@ def streams(acp, wire, rounds: int) -> None:
         print(f"| {name} | {speed[4096]:.1f} | {speed[64]:.1f} | {speed[1]:.2f} | {each} |")
 
 
-def others(acp, wire, rounds: int) -> None:
-    """Checksums, logs, CAN."""
+def checksums_logs_and_can(acp, wire, rounds: int) -> None:
+    """Measure checksums, logs and CAN."""
     source, link = random.Random(2), acp.LINK
     block = source.randbytes(link.files.block_bytes)
     writer = wire.LogWriter(link, bytes([255, 255, 255]) + bytes(7))
@@ -131,7 +132,7 @@ def main() -> None:
         acp, wire = import_module(f"{PACKAGE}.cubeacp"), import_module(f"{PACKAGE}.wire")
         print(f"Python {sys.version.split()[0]}, medians of {options.rounds} rounds\n")
         streams(acp, wire, options.rounds)
-        others(acp, wire, options.rounds)
+        checksums_logs_and_can(acp, wire, options.rounds)
         imports(folder, options.rounds)
 
 

@@ -1,10 +1,15 @@
-"""Instructions per call of the generated Rust decoders, beside hand-written code (``rust_by_hand.rs``).
+"""Count the instructions per call of the generated Rust decoders and of hand-written
+code (``rust_by_hand.rs``).
+
+Usage::
 
     python bench/rust_instructions.py [--opt 3] [--check]
 
-Counts come from valgrind --tool=callgrind, so they do not depend on the machine's load. Both sides check the length and
-return a ``Result``; the generated side also makes enumerations of its raw values, which the hand-written one leaves as
-bytes. Needs Rust 1.66 or later (``black_box``). ``--check`` ends with status 1 where a limit is missed.
+The counts come from valgrind --tool=callgrind and do not depend on the load of the
+machine. Both sides check the length and return a ``Result``. The generated side also
+converts raw values to enumerations; the hand-written side leaves them as bytes. Rust
+1.66 or later is required (``black_box``). With ``--check``, the exit status is 1 if a
+limit is exceeded.
 """
 
 from __future__ import annotations
@@ -83,7 +88,7 @@ fn main() {{
 
 
 def build(folder: Path, opt: str, target: Path) -> Path:
-    """The program with both decoders of every frame."""
+    """Build the program with both decoders of each frame, and return its path."""
     icd = load([BENCH.parent / "icd"], check=False).icd
     for path, text in RustBackend().files(icd, Renderer("rust")):
         file = folder / "rust" / path
@@ -92,7 +97,7 @@ def build(folder: Path, opt: str, target: Path) -> Path:
     functions = "".join(FUNCTIONS.format(id=id, type=type) for id, (type, _) in FRAMES.items())
     calls = "".join(CALL.format(id=id, type=type) for id, (type, _) in FRAMES.items())
     by_hand = (BENCH / "rust_by_hand.rs").resolve()
-    home = folder / "program"  # beside the crate: below it, cargo would want the crate's optional dependencies
+    home = folder / "program"  # next to the crate: inside of it, cargo would need the crate's optional dependencies
     (home / "src").mkdir(parents=True, exist_ok=True)
     program = PROGRAM.format(functions=functions, calls=CALLS, calls_of_all=calls, by_hand=by_hand)
     (home / "src" / "main.rs").write_text(program, encoding="utf-8")
@@ -103,11 +108,11 @@ def build(folder: Path, opt: str, target: Path) -> Path:
 
 
 def counts(program: Path, folder: Path) -> dict[str, float]:
-    """Instructions per call of each decoder, with all that it calls."""
+    """Return the instructions per call of each decoder, called functions included."""
     file = folder / "callgrind.out"
     command = ["valgrind", "--tool=callgrind", "--quiet", f"--callgrind-out-file={file}", str(program)]
     subprocess.run(command, check=True, stderr=subprocess.DEVNULL)
-    found: dict[str, int] = {}
+    cost_by_function: dict[str, int] = {}
     names: dict[str, str] = {}
     current = ""
     for line in file.read_text().splitlines():
@@ -115,11 +120,11 @@ def counts(program: Path, folder: Path) -> dict[str, float]:
             number, _, name = line.partition("=")[2].partition(" ")
             name = names.setdefault(number, name)
             current = name if line.startswith("fn=") else current
-        elif re.match(r"[-+*0-9]", line):  # its own instructions, or after `calls=` those of what it called
-            found[current] = found.get(current, 0) + int(line.split()[1])
+        elif re.match(r"[-+*0-9]", line):  # own instructions, or after `calls=` those of the called function
+            cost_by_function[current] = cost_by_function.get(current, 0) + int(line.split()[1])
     return {
         match.group(1): cost / CALLS
-        for name, cost in found.items()
+        for name, cost in cost_by_function.items()
         if (match := re.search(r"((?:generated|by_hand)_\d+)", name))
     }
 
@@ -132,11 +137,11 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         target = Path(os.environ.get("CARGO_TARGET_DIR", folder / "target"))
-        found = counts(build(folder, options.opt, target), folder)
+        measured = counts(build(folder, options.opt, target), folder)
     print("| frame | generated | by hand | ratio | limit |\n|---|---|---|---|---|")
     missed = False
     for id, (_, limit) in FRAMES.items():
-        ours, theirs = found[f"generated_{id}"], found[f"by_hand_{id}"]
+        ours, theirs = measured[f"generated_{id}"], measured[f"by_hand_{id}"]
         missed |= ours > limit
         print(f"| {id} | {ours:.0f} | {theirs:.0f} | {ours / theirs:.2f} | {limit} |")
     sys.exit(options.check and missed)

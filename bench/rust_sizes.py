@@ -1,10 +1,12 @@
-"""Bytes of code of generated Rust on a Cortex-M4: the dispatcher of all telemetry, and a client that requests one frame.
+"""Measure the code size of generated Rust on a Cortex-M4: the dispatcher of all
+telemetry, and a client that requests one frame.
 
-    rustup target add thumbv7em-none-eabihf
-    python bench/rust_sizes.py [--opt s]
+Usage::
 
-Each is a static library of its own, optimised as a whole; the compiler's own functions (memcpy, division) do not count, nor do they
-where C is measured (``c_units.py``).
+    rustup target add thumbv7em-none-eabihf && python bench/rust_sizes.py [--opt s]
+
+Each program is a static library with link-time optimization. Functions of the compiler
+(memcpy, division) are not counted, as in ``c_units.py``.
 """
 
 from __future__ import annotations
@@ -60,18 +62,18 @@ PROGRAMS = {"dispatcher": DISPATCHER, "client": CLIENT}
 
 
 def compiled(folder: Path, opt: str, name: str, *more: str) -> None:
-    """Compiles ``name.rs`` of the folder, or the file among the options."""
+    """Compile ``name.rs`` of the folder, or the file among the options."""
     command = ["rustc", "--edition", "2021", "--target", TARGET, "-C", "panic=abort", "-C", f"opt-level={opt}"]
     subprocess.run([*command, "--crate-name", name, "--out-dir", str(folder), *more], check=True)
 
 
 def text_bytes(folder: Path, name: str) -> int:
-    """Bytes of code and constants that are the program's own."""
+    """Return the bytes of code and constants of the program itself."""
     archive = folder / f"lib{name}.a"
     names = subprocess.run(
         ["arm-none-eabi-ar", "t", archive], check=True, capture_output=True, text=True
     ).stdout.split()
-    own = next(one for one in names if one.removeprefix("lib").startswith(f"{name}."))
+    own = next(member for member in names if member.removeprefix("lib").startswith(f"{name}."))
     subprocess.run(["arm-none-eabi-ar", "x", archive, own], cwd=folder, check=True)
     size = subprocess.run(["arm-none-eabi-size", folder / own], check=True, capture_output=True, text=True).stdout
     return int(size.splitlines()[1].split()[0])
@@ -90,8 +92,8 @@ def main() -> None:
         for program, source in PROGRAMS.items():
             file = folder / f"{program}.rs"
             file.write_text(HEAD + source, encoding="utf-8")
-            whole = ("--crate-type", "staticlib", "-C", "lto=fat", "-C", "codegen-units=1")
-            compiled(folder, opt, program, *whole, "--extern", f"icd={folder / 'libicd.rlib'}", str(file))
+            options = ("--crate-type", "staticlib", "-C", "lto=fat", "-C", "codegen-units=1")
+            compiled(folder, opt, program, *options, "--extern", f"icd={folder / 'libicd.rlib'}", str(file))
             print(f"{program}: {text_bytes(folder, program)} bytes")
 
 

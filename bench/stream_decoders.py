@@ -1,10 +1,14 @@
-"""The decoder of envelopes in C beside the parser that MAVLink's own generator emits, on one stream of all messages of `common`.
+"""Compare the packet decoder in C with the parser that MAVLink's generator emits, on
+one stream of all messages of `common`.
+
+Usage::
 
     pip install pymavlink && python bench/stream_decoders.py [--messages 2000] [--noise 0.1]
 
-Both are made of the same XML and are given the same bytes; each must find all messages. Counted in instructions (valgrind) and
-timed, taking turns, as the least of many rounds. Ours also tells of gaps and of what it drops; theirs does not look for a
-frame within bytes that turned out to be none.
+Both are generated from the same XML file, get the same bytes and must find all
+messages. They are measured in instructions (valgrind) and in time, taking turns, as the
+minimum of many rounds. The decoder of icdgen also reports gaps and discarded bytes. The
+parser of MAVLink does not search for a frame within bytes that are no frame.
 """
 
 from __future__ import annotations
@@ -103,23 +107,26 @@ int main(int count, char **words)
 
 
 def stream(dialect: Any, messages: int, noise: float, chance: random.Random) -> bytes:
-    """Frames of random messages and values; bytes of noise between some of them, none of which begins a frame."""
-    made = bytearray()
-    kinds_of = sorted(dialect.mavlink_map.values(), key=lambda one: one.id)
+    """Return frames of random messages and values, with noise between some of them.
+
+    No noise byte starts a frame.
+    """
+    output = bytearray()
+    kinds_of = sorted(dialect.mavlink_map.values(), key=lambda message: message.id)
     for number in range(messages):
-        one = chance.choice(kinds_of)
-        data = chance.randbytes(one.unpacker.size).rstrip(b"\0") or b"\0"
-        head = bytes([len(data), 0, 0, number & 0xFF, 1, 1]) + one.id.to_bytes(3, "little")
+        message = chance.choice(kinds_of)
+        data = chance.randbytes(message.unpacker.size).rstrip(b"\0") or b"\0"
+        head = bytes([len(data), 0, 0, number & 0xFF, 1, 1]) + message.id.to_bytes(3, "little")
         crc = dialect.x25crc(head + data)
-        crc.accumulate(bytes([one.crc_extra]))
-        made += b"\xfd" + head + data + struct.pack("<H", crc.crc)
+        crc.accumulate(bytes([message.crc_extra]))
+        output += b"\xfd" + head + data + struct.pack("<H", crc.crc)
         if chance.random() < noise:
-            made += bytes(chance.choices(range(0xFD), k=chance.randrange(40)))
-    return bytes(made)
+            output += bytes(chance.choices(range(0xFD), k=chance.randrange(40)))
+    return bytes(output)
 
 
 def build(folder: Path) -> Path:
-    """The program with both decoders."""
+    """Build the program with both decoders, and return its path."""
     dialect = import_module("pymavlink.dialects.v20.common")
     xml = Path(str(dialect.__file__)).with_suffix(".xml")
     (tree,) = run.read(xml, kinds.get("mavlink")).trees.values()
@@ -152,10 +159,10 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         program = build(folder)
-        said = subprocess.run(
+        words = subprocess.run(
             [program, str(options.rounds)], input=data, capture_output=True, check=True
         ).stdout.split()
-        found, least = [int(word) for word in said[1:4]], [float(word) for word in said[4:]]
+        counts_of_messages, least = [int(word) for word in words[1:4]], [float(word) for word in words[4:]]
         out = folder / "counts"
         valgrind = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", str(program)]
         subprocess.run(valgrind, input=data, check=True, capture_output=True)
@@ -165,7 +172,7 @@ def main() -> None:
         word: int(number.replace(",", ""))
         for number, word in re.findall(r"^\s*([\d,]+) .*?:(ours|theirs)\b", text, re.M)
     }
-    print(f"{len(data):,} bytes, {options.messages:,} messages; found {found}")
+    print(f"{len(data):,} bytes, {options.messages:,} messages; found {counts_of_messages}")
     print(
         f"instructions a byte: ours {counts['ours'] / 2 / len(data):.1f}, MAVLink's {counts['theirs'] / len(data):.1f}"
     )

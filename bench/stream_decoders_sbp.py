@@ -1,10 +1,14 @@
-"""The decoder of envelopes in Rust beside the framer of Swift Navigation's own crate `sbp`, on one stream.
+"""Compare the packet decoder in Rust with the framer of the crate `sbp` of Swift
+Navigation, on one stream.
+
+Usage::
 
     python bench/stream_decoders_sbp.py [--messages 2000] [--noise 0.1]
 
-It needs cargo and its registry. Both are given the same bytes and must find all messages, ours by the envelope of
-`examples/links/sbp.yaml` with messages of 0 to 255 bytes, theirs with the checksum looked at, as its reader of messages
-does. Timed by the time of the processor, taking turns, as the least of many rounds.
+The program needs cargo and its registry. Both get the same bytes and must find all
+messages: icdgen by the packet format of `examples/links/sbp.yaml` with messages of 0 to
+255 bytes, `sbp` with its check of the checksum, as in its message reader. Times are
+processor times, taking turns, as the minimum of many rounds.
 """
 
 from __future__ import annotations
@@ -68,15 +72,18 @@ fn main() {
 
 
 def stream(messages: int, noise: float, chance: random.Random) -> bytes:
-    """Frames of random ids and data; bytes of noise between some of them, none of which begins a frame."""
-    made = bytearray()
+    """Return frames of random ids and data, with noise between some of them.
+
+    No noise byte starts a frame.
+    """
+    output = bytearray()
     for _ in range(messages):
         data = chance.randbytes(chance.randrange(256))
         body = chance.choice(IDS).to_bytes(2, "little") + b"\x42\0" + bytes([len(data)]) + data
-        made += b"\x55" + body + _crc(body).to_bytes(2, "little")
+        output += b"\x55" + body + _crc(body).to_bytes(2, "little")
         if chance.random() < noise:
-            made += bytes(byte for byte in chance.randbytes(40) if byte != 0x55)
-    return bytes(made)
+            output += bytes(byte for byte in chance.randbytes(40) if byte != 0x55)
+    return bytes(output)
 
 
 def _crc(data: bytes) -> int:
@@ -89,7 +96,7 @@ def _crc(data: bytes) -> int:
 
 
 def build(folder: Path) -> Path:
-    """The program with both."""
+    """Build the program with both decoders, and return its path."""
     tree = yaml.safe_load((ROOT / "examples" / "links" / "sbp.yaml").read_text(encoding="utf-8"))
     field = {"at": 0, "name": "Data", "type": "bytes", "size": "rest", "up_to": 255}
     tree["messages"] = [

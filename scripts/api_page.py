@@ -1,4 +1,5 @@
-"""Writes docs/reference/api.md, the table of the API, from the programs beside it: what stands there is built and run by a test.
+"""Write docs/reference/api.md, the table of the API, from the programs in
+docs/reference/api, which a test builds and runs.
 
 python -m scripts.api_page
 """
@@ -40,7 +41,10 @@ Rust, a message of another node does not compile.
 
 
 class Row(NamedTuple):
-    """What a user does; ``without``: languages that do not have it, and why."""
+    """Row of the table: a task of the user.
+
+    ``without``: languages without it, with the reason.
+    """
 
     key: str
     does: str
@@ -48,52 +52,59 @@ class Row(NamedTuple):
 
 
 def rows() -> list[Row | str]:
-    """The rows, and the headings between them."""
-    found: list[Any] = yaml.safe_load((FOLDER / "rows.yaml").read_text("utf-8"))
-    return [one if isinstance(one, str) else Row(one["key"], one["does"], one.get("without", {})) for one in found]
+    """Return the rows and the headings between them."""
+    items: list[Any] = yaml.safe_load((FOLDER / "rows.yaml").read_text("utf-8"))
+    return [
+        item if isinstance(item, str) else Row(item["key"], item["does"], item.get("without", {})) for item in items
+    ]
 
 
 def snippets(language: str) -> dict[str, str]:
-    """The code of a program by the keys of rows, each on one line; what another row has within it is left out."""
-    found: dict[str, list[str]] = {}
+    """Return the code of a program by key, each on one line; code of an inner key is
+    omitted.
+    """
+    lines_by_key: dict[str, list[str]] = {}
     open_keys: list[str] = []
     for line in (FOLDER / PROGRAMS[language]).read_text("utf-8").splitlines():
         mark = _MARK.fullmatch(line)
         if mark is None:
             if open_keys:
-                found[open_keys[-1]].append(line)
+                lines_by_key[open_keys[-1]].append(line)
         elif key := mark["key"]:
-            if key in found:
+            if key in lines_by_key:
                 raise ValueError(f"{PROGRAMS[language]} has [{key}] twice")
             if open_keys:
-                found[open_keys[-1]].append("...")
-            found[key] = []
+                lines_by_key[open_keys[-1]].append("...")
+            lines_by_key[key] = []
             open_keys.append(key)
         else:
             open_keys.pop()
     if open_keys:
         raise ValueError(f"[{open_keys[-1]}] of {PROGRAMS[language]} does not end")
-    return {key: " ".join(line.strip() for line in lines) for key, lines in found.items()}
+    return {key: " ".join(line.strip() for line in lines) for key, lines in lines_by_key.items()}
 
 
 def page() -> str:
-    """The text of the page. Raises `ValueError` for a row that a program lacks without a reason."""
+    """Return the text of the page.
+
+    Raises `ValueError` for a row that a program lacks without a reason.
+    """
     code = {language: snippets(language) for language in LANGUAGES}
-    lines, known = [BEGIN], set()
+    lines, keys = [BEGIN], set()
     for row in rows():
         if isinstance(row, str):
             lines += [
-                f"\n## {row}\n" if known else f"## {row}\n",
+                f"\n## {row}\n" if keys else f"## {row}\n",
                 f"| | {' | '.join(LANGUAGES.values())} |",
                 "|---|---|---|---|",
             ]
             continue
-        known.add(row.key)
+        keys.add(row.key)
         cells = [_cell(row, language, code[language]) for language in LANGUAGES]
         lines.append(f"| {row.does} | {' | '.join(cells)} |")
-    for language, some in code.items():
-        if left := some.keys() - known:
-            raise ValueError(f"{PROGRAMS[language]} has {sorted(left)}, of which rows.yaml knows nothing")
+    for language, snippets_of_language in code.items():
+        if unknown_keys := snippets_of_language.keys() - keys:
+            raise ValueError(f"{PROGRAMS[language]} has {sorted(unknown_keys)}, of which rows.yaml knows nothing")
     return "\n".join(lines) + "\n" + END
 
 

@@ -1,9 +1,12 @@
-"""Prints the commands of Markdown pages as one shell script, in the order of the pages.
+"""Print the commands of Markdown pages as one shell script, in the order of the pages.
+
+Usage::
 
     bash <(python3 scripts/page_commands.py README.md)
 
-Needs only Python's standard library, so that it runs on a bare machine. The script stops at the first command that fails.
-Before each command it prints a line with MARK and the number of the command.
+The program needs only Python's standard library, so that it runs on a bare machine. The
+script stops at the first failing command. Before each command it prints a line with
+MARK and the number of the command.
 """
 
 from __future__ import annotations
@@ -19,14 +22,16 @@ _BLOCK = re.compile(r"^```(console|sh)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 
 
 class Step(NamedTuple):
-    """A command of a page, and the output that the page shows of it."""
+    """Command of a page with the shown output."""
 
     command: str
     shown: str
 
 
 def steps(page: str) -> Iterator[Step]:
-    """Commands of the `sh` and `console` blocks of a page; only `console` blocks show output."""
+    """Yield the commands of the `sh` and `console` blocks of a page; only `console`
+    blocks show output.
+    """
     for language, block in _BLOCK.findall(page):
         # A line of an `sh` block that ends in a backslash goes on in the next one.
         parts = re.split(r"(?<!\\)\n", block) if language == "sh" else re.split(r"^\$ ", block, flags=re.MULTILINE)
@@ -38,7 +43,7 @@ def steps(page: str) -> Iterator[Step]:
 
 
 def script(commands: list[str]) -> str:
-    """A shell script that runs the commands in one shell."""
+    """Return a shell script that runs the commands in one shell."""
     lines = ["set -e"]
     for number, command in enumerate(commands):
         lines += [f"echo '{MARK} {number}'", command]

@@ -1,4 +1,5 @@
-"""Writes what is declared of the protocol into the JSON Schema of an ICD and into the types of `runtime/`.
+"""Write the declared protocol facts into the JSON Schema of ICDs and into the types of
+`runtime/`.
 
 python -m scripts.protocol_facts
 """
@@ -20,9 +21,9 @@ MAKERS = {
 
 
 def out_of_date() -> dict[Path, str]:
-    """The files that are not what is declared, with the text that they should have."""
-    made = {ROOT / path: make((ROOT / path).read_text(encoding="utf-8")) for path, make in MAKERS.items()}
-    return {path: text for path, text in made.items() if text != path.read_text(encoding="utf-8")}
+    """Return the outdated files with their new text."""
+    current_texts = {ROOT / path: make((ROOT / path).read_text(encoding="utf-8")) for path, make in MAKERS.items()}
+    return {path: text for path, text in current_texts.items() if text != path.read_text(encoding="utf-8")}
 
 
 def main() -> None:

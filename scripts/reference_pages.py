@@ -1,4 +1,5 @@
-"""Writes the reference pages that are made from code: keys of the ICD format, commands and rules.
+"""Write the reference pages that are generated from code: keys of the ICD format,
+commands and rules.
 
 python -m scripts.reference_pages
 """
@@ -46,25 +47,27 @@ _TYPES = {"integer": "integer", "string": "text", "array": "list", "object": "ma
 
 
 class Schema:
-    """The JSON Schema of the ICD format."""
+    """JSON Schema of the ICD format."""
 
     def __init__(self) -> None:
         path = ROOT / "codegen" / "icdgen" / "icd" / "schema.json"
         self.objects: dict[str, Any] = json.loads(path.read_text("utf-8"))["$defs"]
 
     def resolved(self, value: dict[str, Any]) -> dict[str, Any]:
-        """A value with the keys of what it refers to; its own keys come first."""
+        """Return a schema with the keys of the referenced schema; own keys have
+        precedence.
+        """
         while reference := value.get("$ref"):
             value = {**self.objects[reference.rpartition("/")[2]], **{k: v for k, v in value.items() if k != "$ref"}}
         return value
 
     def type_of(self, value: dict[str, Any]) -> str:
-        """Type of a value in words, with its limits."""
+        """Return the type of a value as text, with its limits."""
         value = self.resolved(value)
         if "const" in value:
             return f"`{json.dumps(value['const'])}`"
         if "enum" in value:
-            return ", ".join(f"`{json.dumps(one).strip(chr(34))}`" for one in value["enum"])
+            return ", ".join(f"`{json.dumps(constant).strip(chr(34))}`" for constant in value["enum"])
         kinds = value.get("type", "any")
         text = " or ".join(_TYPES.get(kind, kind) for kind in ([kinds] if isinstance(kinds, str) else kinds))
         if kinds == "integer" and "maximum" in value:
@@ -86,7 +89,7 @@ def _cell(text: str) -> str:
 
 
 def keys_page() -> str:
-    """One row for each key of an ICD and of an errata file."""
+    """Return the page of keys: a row for each key of an ICD and of an errata file."""
     schema = Schema()
     lines = [
         "# ICD keys",
@@ -118,17 +121,19 @@ def _rows(schema: Schema, described: dict[str, Any], prefix: str = "") -> Iterat
         yield "|---|---|---|"
     required = described.get("required", [])
     for key, value in described.get("properties", {}).items():
-        whole = schema.resolved(value)
+        resolved = schema.resolved(value)
         name = f"`{prefix}{key}`"
-        meaning = re.sub(r"(^|: )one of [\w, ]+$", "", whole.get("description", ""))  # the values stand beside it
+        meaning = re.sub(
+            r"(^|: )one of [\w, ]+$", "", resolved.get("description", "")
+        )  # the previous column lists the values
         yield f"| {f'**{name}**' if key in required else name} | {_cell(schema.type_of(value))} | {_cell(meaning)} |"
-        # Keys of an object that has no section of its own are rows behind it.
-        if "$ref" not in value and "properties" in whole and prefix.count(".") < 2:
-            yield from _rows(schema, whole, f"{prefix}{key}.")
+        # Keys of an object without its own section follow as rows.
+        if "$ref" not in value and "properties" in resolved and prefix.count(".") < 2:
+            yield from _rows(schema, resolved, f"{prefix}{key}.")
 
 
 def commands_page() -> str:
-    """Help of each command."""
+    """Return the page with the help of each command."""
     from icdgen.cli import icdgen
 
     lines = [
@@ -160,7 +165,7 @@ def _help(command: click.Command, parent: click.Context | None) -> str:
 
 
 def rules_page() -> str:
-    """Title and reason of each rule."""
+    """Return the page with title and reason of each rule."""
     from icdgen.diff.compare import RULES
     from icdgen.icd import rules
     from icdgen.importer import findings
@@ -177,9 +182,11 @@ def rules_page() -> str:
         "Rules of ICDs": ("`icdgen check` and all commands that read an ICD report these.", rules.ALL),
         "Rules of comparisons": ("`icdgen diff` reports these.", RULES),
     }
-    for title, (about, some) in groups.items():
+    for title, (about, rules_of_group) in groups.items():
         lines += ["", f"## {title}", "", about, "", "| code | severity | title | reason |", "|---|---|---|---|"]
-        lines += [f"| {r.code} | {r.severity} | {_cell(r.title)} | {_cell(r.page.why)} |" for r in some.values()]
+        lines += [
+            f"| {r.code} | {r.severity} | {_cell(r.title)} | {_cell(r.page.why)} |" for r in rules_of_group.values()
+        ]
     about = "`icdgen import` reports these."
     lines += ["", "## Findings of an import", "", about, "", "| code | severity | title |", "|---|---|---|"]
     lines += [f"| {code} | {page.severity} | {_cell(page.title)} |" for code, page in findings.pages().items()]
@@ -187,7 +194,7 @@ def rules_page() -> str:
 
 
 def pages() -> dict[Path, str]:
-    """Text of each generated page."""
+    """Return the text of each generated page."""
     return {
         FOLDER / "icd-keys.md": keys_page(),
         FOLDER / "commands.md": commands_page(),

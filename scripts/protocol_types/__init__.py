@@ -1,1 +1,1 @@
-"""The declared facts of the protocol in the words of each language."""
+"""Declared protocol facts in the notation of each language."""

@@ -1,4 +1,4 @@
-"""The facts as members of the structs of the C runtime."""
+"""Protocol facts as members of the structs of the C runtime."""
 
 from __future__ import annotations
 
@@ -17,26 +17,26 @@ _MEMBER = re.compile(r"(?:    /\*\*(?:(?!\*/).|\n)*\*/\n)?    [\w ]+[ *](\w+)(?:
 
 
 def written(text: str) -> str:
-    """The header with the members of all facts. Members that are no facts stand behind them."""
+    """Return the header with the members of all facts. Other members follow them."""
     for part, name in TYPES.items():
         end = f"}} {name};\n"
-        before, found, after = text.partition(end)
-        if found:
+        before, separator, after = text.partition(end)
+        if separator:
             before, start, body = before.rpartition("typedef struct {\n")
             facts = facts_of(part)
             names = {member for fact in facts for member, _ in _members(fact)}
-            others = (one.group() for one in _MEMBER.finditer(body) if one.group(1) not in names)
-            made = (
+            other_members = (match.group() for match in _MEMBER.finditer(body) if match.group(1) not in names)
+            fact_members = (
                 comment([f"{about[0].upper()}{about[1:]}."], "    ") + f"\n    {text};\n"
                 for fact in facts
                 for text, about in _declared(fact)
             )
-            text = before + start + "".join([*made, *others]) + end + after
+            text = before + start + "".join([*fact_members, *other_members]) + end + after
     return text
 
 
 def _members(fact: Fact) -> Iterator[tuple[str, str]]:
-    """Names and types of the members of a fact, each type with the space behind it."""
+    """Yield names and types of the members of a fact, each type with a trailing space."""
     if is_told_apart(fact):
         yield f"has_{fact.name}", "bool "
     yield fact.name, _type(fact)

@@ -1,4 +1,4 @@
-"""The facts as members of the named tuples of the Python runtime."""
+"""Protocol facts as members of the named tuples of the Python runtime."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _TYPES = {
 
 
 def written(text: str) -> str:
-    """The module with the members of all facts. Members that are no facts stand behind them."""
+    """Return the module with the members of all facts. Other members follow them."""
     for part in dict.fromkeys(part for _, part in PLACES):
         text = _with_facts(text, part)
     return text
@@ -25,37 +25,39 @@ def written(text: str) -> str:
 
 def _with_facts(text: str, part: type) -> str:
     name, facts = type_name(part), facts_of(part)
-    one = next((node for node in ast.parse(text).body if isinstance(node, ast.ClassDef) and node.name == name), None)
-    if one is None:
+    class_node = next(
+        (node for node in ast.parse(text).body if isinstance(node, ast.ClassDef) and node.name == name), None
+    )
+    if class_node is None:
         return text
     lines, names = text.splitlines(), {fact.name for fact in facts}
-    members, begin, end = {}, one.body[0].end_lineno or 0, one.body[0].end_lineno or 0
-    for statement, after in zip(one.body[1:], [*one.body[2:], None], strict=True):
+    members, begin, end = {}, class_node.body[0].end_lineno or 0, class_node.body[0].end_lineno or 0
+    for statement, after in zip(class_node.body[1:], [*class_node.body[2:], None], strict=True):
         if isinstance(statement, ast.FunctionDef):
             break
         end = statement.end_lineno or end
         if isinstance(statement, ast.AnnAssign) and isinstance(statement.target, ast.Name):
-            is_told = isinstance(after, ast.Expr)
-            own = lines[statement.lineno - 1 : after.end_lineno if is_told and after else statement.end_lineno]
+            has_docstring = isinstance(after, ast.Expr)
+            own = lines[statement.lineno - 1 : after.end_lineno if has_docstring and after else statement.end_lineno]
             members[statement.target.id] = own, statement.value is not None
-    rest = [own for key, own in members.items() if key not in names]
-    made = [([_member(fact, part), *_about(fact)], fact.default in (None, ())) for fact in facts]
-    ordered = sorted([*made, *rest], key=lambda member: member[1])
-    found = [line for own, _ in ordered for line in own]
-    return "\n".join([*lines[:begin], "", *found, *lines[end:]]) + "\n"
+    other_members = [own for key, own in members.items() if key not in names]
+    fact_members = [([_member(fact, part), *_about(fact)], fact.default in (None, ())) for fact in facts]
+    ordered = sorted([*fact_members, *other_members], key=lambda member: member[1])
+    member_lines = [line for own, _ in ordered for line in own]
+    return "\n".join([*lines[:begin], "", *member_lines, *lines[end:]]) + "\n"
 
 
 def _member(fact: Fact, part: type) -> str:
     kind = _TYPES.get(fact.kind, "int")
     if part is Settings and fact.kind is Kind.TIME:
-        kind = "Number"  # users set it, in fractions if they like
+        kind = "Number"  # users can set it, also to fractions
     if fact.is_optional:
         return f"    {fact.name}: Optional[{kind}] = None"
     return f"    {fact.name}: {kind}" + (" = ()" if fact.default == () else "")
 
 
 def _about(fact: Fact) -> list[str]:
-    """The docstring of a member."""
+    """Return the docstring of a member."""
     meaning = fact.meaning[0].upper() + fact.meaning[1:]
-    first, *rest = textwrap.wrap(f'"""{meaning}."""', 84)
-    return [f"    {line}" for line in (first, *rest)]
+    first, *following = textwrap.wrap(f'"""{meaning}."""', 84)
+    return [f"    {line}" for line in (first, *following)]

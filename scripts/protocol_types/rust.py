@@ -1,4 +1,4 @@
-"""The facts as fields of the structs of the Rust runtime."""
+"""Protocol facts as fields of the structs of the Rust runtime."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ _FIELD = re.compile(r"(?:    ///.*\n)*    pub (\w+): .*,\n")
 
 
 def written(text: str) -> str:
-    """The module with the fields of all facts. Fields that are no facts stand behind them."""
+    """Return the module with the fields of all facts. Other fields follow them."""
     for part in dict.fromkeys(part for _, part in PLACES):
         start = f"pub struct {type_name(part)} {{\n"
-        before, found, rest = text.partition(start)
-        if found:
-            body, end, after = rest.partition("}\n")
+        before, separator, following = text.partition(start)
+        if separator:
+            body, end, after = following.partition("}\n")
             facts = facts_of(part)
             names = {member_name(fact) for fact in facts}
-            others = (field.group() for field in _FIELD.finditer(body) if field.group(1) not in names)
-            text = before + start + "".join([*map(_field, facts), *others]) + end + after
+            other_fields = (field.group() for field in _FIELD.finditer(body) if field.group(1) not in names)
+            text = before + start + "".join([*map(_field, facts), *other_fields]) + end + after
     return text
 
 
 def _field(fact: Fact) -> str:
-    # A time has its unit in its name.
+    # The name of a time contains its unit.
     about = doc([f"{fact.about[0].upper()}{fact.about[1:]}."], "    ", "///")
     return f"{about}\n    pub {member_name(fact)}: {_type(fact)},\n"
 

@@ -1,4 +1,4 @@
-"""The facts in the JSON Schema of an ICD's protocol section."""
+"""Protocol facts in the JSON Schema of the protocol section."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from icdgen.protocol.declared import Fact, Kind, facts_of
 from icdgen.protocol.places import PLACES
 
 Schema = dict[str, Any]
-_LAST = "assumptions"  # the key before which a new one is put
+_LAST = "assumptions"  # last key of a section; new keys are inserted before it
 
 
 def written(text: str) -> str:
-    """The schema with the keys of all facts; what else it says of the protocol stays."""
+    """Return the schema with the keys of all facts; other keys are unchanged."""
     schema = json.loads(text)
     for path, part in PLACES:
         for fact in facts_of(part):
@@ -30,14 +30,14 @@ def _section(schema: Schema, path: list[str]) -> Schema:
 
 
 def _put(section: Schema, key: str, fragment: Schema) -> None:
-    known = section["properties"]
-    last = {} if key in known or _LAST not in known else {_LAST: known.pop(_LAST)}
-    known[key] = fragment
-    known.update(last)
+    properties = section["properties"]
+    last = {} if key in properties or _LAST not in properties else {_LAST: properties.pop(_LAST)}
+    properties[key] = fragment
+    properties.update(last)
 
 
 def fragment(fact: Fact) -> Schema:
-    """What may stand under the key of a fact."""
+    """Return the schema of the key of a fact."""
     about = fact.key_about or fact.about
     if fact.kind is Kind.OCTET:
         return {"$ref": "#/$defs/byte", "description": about}
