@@ -162,7 +162,8 @@ def many(acp: Any, rounds: int) -> list[str]:
         measured = ratio(times["raw"], times["memcpy"])
         print(
             f"| {id} | {len(frames):,} "
-            f"| {micro['memcpy']:.0f} | {ratio(times['passes'], times['memcpy']):.1f} | {micro['raw']:.0f} | {measured:.1f} | {limit} "
+            f"| {micro['memcpy']:.0f} | {ratio(times['passes'], times['memcpy']):.1f} "
+            f"| {micro['raw']:.0f} | {measured:.1f} | {limit} "
             f"| {micro['physical']:.0f} | {ratio(times['physical'], times['memcpy']):.1f} |"
         )
         if measured > limit:
