@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from icdgen.icd.layout import Layout, Scalar, overlay_of
+from icdgen.icd.lines import lines
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, Message
 from icdgen.layout import gaps
 from tests.diff.edits.edit import (
@@ -73,7 +74,7 @@ def insert_field(icd, rng):
 
 def _cut_at(message: Message, bit: int) -> bool:
     """Whether no field lies across the bit."""
-    return not any(f.at < bit < f.at + f.bits for f in message.layout.fixed)
+    return not any(f.at < bit < f.at + f.width for f in lines(message.layout))
 
 
 @on_message(lambda m: is_free(m, "Appended"))
