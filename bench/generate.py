@@ -68,7 +68,8 @@ def main() -> None:
             for title, command, its_environment in rows:
                 shutil.rmtree(empty, ignore_errors=True)
                 spent = seconds(command(), its_environment)
-                times[title] += [spent] if turn else []  # the first turn fills the caches
+                # The first turn fills the caches
+                times[title] += [spent] if turn else []
         print(
             f"| {'+'.join(languages)}, {options.runs} runs | median, s | least, s | times bare Python |\n|---|---|---|---|"
         )

@@ -34,7 +34,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         pdf = options.pdf or draw(Path(folder, "registers.pdf"), options.pages)
         seconds = {}
-        for part in PARTS:  # separate processes, so that no part finds modules loaded by another
+        # Separate processes, so that no part finds modules loaded by another
+        for part in PARTS:
             command = [sys.executable, __file__, str(pdf), "--part", part, "--jobs", str(options.jobs)]
             seconds[part] = float(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
             print(f"{part}: {seconds[part]:.1f} s of processor time")

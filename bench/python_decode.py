@@ -43,10 +43,12 @@ from python_others import by_construct, by_kaitaistruct
 
 ROOT = Path(__file__).parent.parent
 PACKAGE = "icdgen_messages"
-DECODE = {132: 3.6, 190: 2.5, 206: 1.9, 207: 1.9, 146: 1.9}  # times bare struct.unpack, at most
+# Times bare struct.unpack, at most
+DECODE = {132: 3.6, 190: 2.5, 206: 1.9, 207: 1.9, 146: 1.9}
 MANY = {132: 10, 190: 25, 206: 13, 207: 3, 146: 3}  # times a memcpy, at most
 IMPORT = 30  # ms, at most
-OTHERS = {"construct": 60, "kaitaistruct": 20}  # times slower than generated code on the first three, at least
+# Times slower than generated code on the first three, at least
+OTHERS = {"construct": 60, "kaitaistruct": 20}
 FRAMES = 100_000
 
 

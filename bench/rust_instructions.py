@@ -97,7 +97,9 @@ def build(folder: Path, opt: str, target: Path) -> Path:
     functions = "".join(FUNCTIONS.format(id=id, type=type) for id, (type, _) in FRAMES.items())
     calls = "".join(CALL.format(id=id, type=type) for id, (type, _) in FRAMES.items())
     by_hand = (BENCH / "rust_by_hand.rs").resolve()
-    home = folder / "program"  # next to the crate: inside of it, cargo would need the crate's optional dependencies
+    # Next to the crate: inside of it, cargo would need the crate's optional
+    # dependencies
+    home = folder / "program"
     (home / "src").mkdir(parents=True, exist_ok=True)
     program = PROGRAM.format(functions=functions, calls=CALLS, calls_of_all=calls, by_hand=by_hand)
     (home / "src" / "main.rs").write_text(program, encoding="utf-8")
@@ -120,7 +122,8 @@ def counts(program: Path, folder: Path) -> dict[str, float]:
             number, _, name = line.partition("=")[2].partition(" ")
             name = names.setdefault(number, name)
             current = name if line.startswith("fn=") else current
-        elif re.match(r"[-+*0-9]", line):  # own instructions, or after `calls=` those of the called function
+        elif re.match(r"[-+*0-9]", line):
+            # Own instructions, or after `calls=` those of the called function
             cost_by_function[current] = cost_by_function.get(current, 0) + int(line.split()[1])
     return {
         match.group(1): cost / CALLS

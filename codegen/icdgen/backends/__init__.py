@@ -104,6 +104,7 @@ def get(name: str) -> Backend:
     points_by_name = plug_ins()
     if name not in points_by_name:
         available = sorted({*_BUILT_IN, *points_by_name})
+        # A prefix such as `py` is too short for a similarity search.
         close = close_words(name, available, 1) or [
             candidate for candidate in available if candidate.startswith(name.lower())
         ]

@@ -12,7 +12,8 @@ from collections.abc import Iterable, Sequence
 from icdgen.describe.comments import one_line
 
 STEP = "    "
-_BLOCK = re.compile(r"(\d*)([-+*=#]+\Z|[.)]\Z|>)")  # start of a list, heading or quotation
+# Start of a list, heading or quotation
+_BLOCK = re.compile(r"(\d*)([-+*=#]+\Z|[.)]\Z|>)")
 
 
 def bracketed(head: str, items: Sequence[str], tail: str, width: int, indent: str = "", last: str = ",") -> str:
@@ -55,6 +56,7 @@ def plain(text: str) -> str:
     """Return the text as one line without control, invisible and direction-changing
     characters.
     """
+    # Bidirectional control characters can disguise code in comments (CVE-2021-42574).
     text = one_line(text)
     return text if text.isprintable() else "".join(c if c.isprintable() else f"U+{ord(c):04X}" for c in text)
 

@@ -12,10 +12,12 @@ from icdgen.frozen import dataclass
 
 _LOWER = re.compile(r"[a-z][a-z0-9_]*")
 _PROJECT = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
-_LONGEST = 40  # characters: C compilers distinguish at least the first 63 of a name (C11 5.2.4.1)
+# C compilers distinguish at least the first 63 of a name (C11 5.2.4.1)
+_LONGEST = 40
 _FORM = "lower-case letters, digits and _, a letter first"
 _OURS = ("icdgen", "icdgen_runtime")
-_CRATES = ("alloc", "core", "proc_macro", "std", "test")  # crates that are part of the compiler
+# Crates that are part of the compiler
+_CRATES = ("alloc", "core", "proc_macro", "std", "test")
 
 
 @dataclass(frozen=True)
@@ -46,6 +48,7 @@ def of_project(config: Config) -> Packages:
         if not _PROJECT.fullmatch(config.name):
             problem = "takes letters, digits, - and _, a letter first"
             raise _refused(config, "", "name", config.name, problem)
+        # Distribution names contain hyphens, module names cannot.
         derived = config.name.replace("-", "_").lower()
         for section in ("python", "rust"):
             if section not in names and (problem := _problem(section, derived)):

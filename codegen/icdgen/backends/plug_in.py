@@ -30,6 +30,7 @@ class PlugIn:
             self.runtime: Path | None = getattr(backend, "runtime", None)
             self.reserved = frozenset(backend.reserved)
             self._files, self._identifiers = backend.files, backend.identifiers
+        # Otherwise `--lang` and the template folder would have different names.
         if self.name != point.name:
             raise UserError(
                 f"the entry point `{point.name} = {point.value}`{_package(point)} leads to a backend called `{self.name}`",

@@ -35,7 +35,8 @@ class _Path(click.Path):
         return super().convert(value, param, ctx)
 
 
-_CONFIG_KEY = "icdgen.config"  # key in a click context: `Config` that selected the ICDs, if the user gave none
+# Key in a click context: `Config` that selected the ICDs, if the user gave none
+_CONFIG_KEY = "icdgen.config"
 PATH = _Path(path_type=Path)
 
 
@@ -188,6 +189,7 @@ def write_file(path: Path, text: str, help: str) -> None:
     from icdgen.generation.write import replace
 
     try:
+        # Replacing the link itself would detach it from its target.
         replace(Path(os.path.realpath(path)), text.encode("utf-8"))
     except OSError as error:
         raise UserError(f"cannot write {path}: {error.strerror}", help) from None
@@ -197,6 +199,7 @@ def print_findings(findings: list[Finding], texts: dict[str, str], form: str, er
     """Print findings in one of ``reports.FORMATS``."""
     from icdgen import reports
 
+    # Commands with their own output print findings to standard error.
     stream = sys.stderr if err else sys.stdout
     colour = form == "text" and in_colour(stream)
     findings, texts = _where_named(findings, texts)

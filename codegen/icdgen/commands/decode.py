@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from icdgen.icd.model import Icd, Message
     from icdgen.recognize import Reading
 
-_LONGEST_ID, _OF_BYTE = 10, (1, 2, 3)  # digits of a 32-bit id, and of a byte in hexadecimal or decimal notation
+# Digits of a 32-bit id, and of a byte in hexadecimal or decimal notation
+_LONGEST_ID, _OF_BYTE = 10, (1, 2, 3)
 _MOST = 1_000_000  # maximum size of an input in bytes
 _CSV = ("frame", "node", "message", "direction", "id", "field", "raw", "value", "unit", "remarks", "time")
 
@@ -42,6 +43,7 @@ def decode(arguments: tuple[str, ...], icds: tuple[Path, ...], kind: str | None,
     icd = load_or_exit(icds).icd
     node, message, frame = _split_arguments(icd, list(arguments), kind)
     readings = recognize.recognize(icd, frame, node, message, kind)
+    # The user may have meant an id that the node does not have.
     if node is not None and message is None and arguments[0].lower() == node and arguments[1].isdecimal():
         readings = [
             reading if reading.id is not None else reading.noted(_no_id(arguments[1], node)) for reading in readings
@@ -67,6 +69,7 @@ def _split_arguments(icd: Icd, words: list[str], kind: str | None) -> tuple[str 
     from icdgen.values.find import find_message, find_node, find_sharing, only_node
 
     node = message = None
+    # With a single node, its name may be omitted.
     only = only_node(icd)
     if len(words) == 1 and words[0].lower() in {n.name for n in icd.nodes}:
         raise UserError(f"there is no frame for {words[0]}", "give it after the node, or - for standard input")
@@ -89,6 +92,7 @@ def _split_arguments(icd: Icd, words: list[str], kind: str | None) -> tuple[str 
             # the frame.
             if _is_id(words):
                 raise NotFound(str(error), f"{error.help}; a frame that begins so is given as one word") from None
+        # Several messages share the id; the frame decides which one it is.
         except Ambiguous:
             if not find_sharing(icd, node, words[0], kind):
                 raise
@@ -151,6 +155,7 @@ def _is_frame(words: list[str]) -> bool:
 def _content(words: list[str]) -> str | bytes:
     """Return the frame itself, or the content of the named file."""
     name = words[0]
+    # A file named like hex digits needs the prefix @.
     if len(words) > 1 or (name != "-" and not name.startswith("@") and (_is_bytes(name) or not _is_file(name))):
         return " ".join(words)
     if name == "-":
@@ -188,6 +193,7 @@ def _frames_in(file: BinaryIO, name: str) -> str | bytes:
     if len(data) > _MOST:
         help = "give fewer frames; `icdgen log` takes recordings of any size"
         raise UserError(f"{name} holds more than {_MOST:,} bytes", help)
+    # Received bytes may be ASCII by chance; then they are read as hex or base64.
     if all(byte in b"\t\n\r" or 32 <= byte < 127 for byte in data):
         return data.decode("ascii")
     return data

@@ -76,6 +76,7 @@ def diff(
     except Findings as error:
         print_findings(error.findings, {}, "text", err=True)
         sys.exit(2)
+    # Findings are printed even with --unchecked.
     for side in (old, new):
         if not side.is_comparable():
             print_findings(side.findings, side.texts, "text", err=True)
@@ -109,6 +110,7 @@ def _acceptances(path: Path | None) -> list[Acceptance]:
 def _write(comparison_report: Report, form: str, out: Path | None, everything: bool) -> None:
     from icdgen import tables
 
+    # A file has neither colors nor a width.
     stream = sys.stdout if out is None else None
     colour = form == "text" and in_colour(stream)
     text = reports.get(form)(comparison_report, colour, tables.width_of(stream), everything)

@@ -26,6 +26,7 @@ def encode(words: tuple[str, ...], icds: tuple[Path, ...], kind: str | None, for
 
     icd = load_or_exit(icds).icd
     node, message, assignments = find_frame(icd, words)
+    # Values out of the limits of the ICD are errors, unless --raw is given.
     frame = encode(icd, node.name, message, assignments, raw=raw, kind=kind)
     if form == "json":
         click.echo(json.dumps(frame.to_json(), indent=1))

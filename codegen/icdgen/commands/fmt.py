@@ -29,8 +29,10 @@ def fmt(icds: tuple[Path, ...], check: bool) -> None:
         try:
             data = source.contents(path, str(path))
             text = data.decode("utf-8", "replace")
+            # Formatting must not replace invalid bytes silently.
             if text.encode("utf-8") != data:
-                source.parse(data, str(path))  # raises a finding that shows the invalid byte
+                # Raises a finding that shows the invalid byte
+                source.parse(data, str(path))
             formatted = format_text(text, str(path))
         except Findings as error:
             print_findings(error.findings, {str(path): text} if text else {}, "text", err=True)

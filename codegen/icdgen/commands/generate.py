@@ -52,6 +52,8 @@ def generate(
         raise UserError("no language to generate", "for instance `icdgen --lang c`; or set `lang` in icdgen.toml")
     if out is None:
         base = config.out or Path("generated")
+        # A single language has its own folder; several languages get subfolders of
+        # `base`.
         out = base / languages_to_generate[0] if len(set(languages_to_generate)) == 1 else base
     with progress.items(", ".join(dict.fromkeys(languages_to_generate)), "files") as watch:
         job = Job(

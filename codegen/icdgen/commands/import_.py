@@ -307,6 +307,7 @@ def _refuse(error: Findings, manual: Path, form: str) -> None:
             say(f"{place}: error[{finding.code}]: {finding.message}{remedy}", err=True)
     if about_lines:
         texts = {}
+        # An excerpt is helpful but not essential, so unreadable files are skipped.
         for name in {finding.place.file for finding in about_lines}:
             with suppress(OSError, UnicodeDecodeError):
                 texts[name] = Path(name).read_text(encoding="utf-8")

@@ -50,6 +50,7 @@ def _style(origin: str, icds: tuple[Path, ...]) -> Style:
     except NotFound:
         if icds:
             raise
+        # The node may be a shipped one that icdgen.toml does not name.
         loaded = load([*paths, shipped.icds()])
         node = find_node(loaded.icd, origin)
     return style.of(loaded.icd, node, loaded.texts)

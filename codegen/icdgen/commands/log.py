@@ -75,6 +75,7 @@ def log(
         for note in recording.prepare(head, done):
             click.echo(f"icdgen: {file}: {note}", err=True)
         _convert(recording, form, out, head, done)
+    # Damage is no failure of the command, but scripts must notice it.
     sys.exit(recording.is_damaged(head))
 
 
@@ -84,6 +85,7 @@ def _split_arguments(icd: Icd, words: Sequence[str], name: str | None) -> tuple[
     from icdgen.values.find import find_message
 
     names = {node.name for node in icd.nodes}
+    # With a single word, it is the file; the ICD then has only one node.
     first = words[0].strip().lower() if name is None and len(words) > 1 else ""
     if first in names:
         name, words = first, words[1:]

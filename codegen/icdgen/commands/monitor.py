@@ -73,6 +73,7 @@ def monitor(
                     while not rounds.over:
                         rounds.run(session, screen)
             except PortError as error:
+                # A connection that never worked is an error; a lost one is reopened.
                 if not reached or rounds.last == 1:
                     raise
                 if not lost:
@@ -134,6 +135,7 @@ class _Rounds:
 
 
 def _print_json(watched: Monitor) -> None:
+    # RFC 3339 with Z instead of +00:00.
     now = datetime.now(UTC).isoformat(timespec="milliseconds")[:-6] + "Z"
     for frame in watched.frames():
         click.echo(json.dumps({"time": now, **frame.to_json()}))

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 if TYPE_CHECKING:
     from rich.progress import Progress
 
-DELAY = 1.0  # seconds before progress is shown: most commands end earlier, and need not import rich
+# Seconds before progress is shown: most commands end earlier, and need not import rich
+DELAY = 1.0
 LEAST_BYTES = 10_000_000  # of a log whose conversion takes longer than that
 
 T = TypeVar("T")
@@ -106,6 +107,7 @@ def _bar(name: str, *columns: str, is_shown: bool = True) -> Iterator[_Bar]:
     if not is_shown or sys.stderr is None or not sys.stderr.isatty():
         yield bar
         return
+    # Importing rich in a thread avoids its cost for short commands.
     timer = Timer(DELAY, bar.start)
     timer.daemon = True
     timer.start()

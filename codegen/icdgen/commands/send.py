@@ -51,6 +51,7 @@ def send(words: tuple[str, ...], icds: tuple[Path, ...], raw: bool, yes: bool, f
     node, message, assignments = find_frame(icd, words)
     frame = encode(icd, node.name, message, assignments, raw=raw, kind="telecommand")
     assert frame.message.telecommand_id is not None
+    # The check comes before the port is opened.
     if frame.message.hazard and not yes and not _is_confirmed(frame):
         say(f"{frame.message.name}: not sent", err=True)
         sys.exit(1)

@@ -24,6 +24,8 @@ class _Sim(click.Command):
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         expanded: list[str] = []
         message = ""
+        # A word after `--set MESSAGE VALUE` belongs to the same message until the next
+        # option.
         for index, word in enumerate(args):
             if index > 1 and args[index - 2] == "--set":
                 message = args[index - 1]

@@ -37,6 +37,7 @@ class Acceptance(NamedTuple):
 
     def covers(self, change: Change) -> bool:
         """Whether the entry accepts this change."""
+        # An entry needs only the attributes that identify the change.
         attributes = {**change.where._asdict(), "was": change.was, "now": change.now}
         return self.code == change.code and all(attributes[key] == value for key, value in self.criteria.items())
 
@@ -48,6 +49,7 @@ def find_file(start: Path) -> Path | None:
     """Return the file in the nearest parent folder that contains one, within the
     repository; None if there is none.
     """
+    # Like icdgen.toml, the file applies to the folders below it.
     for folder in (start, *start.parents):
         if os.path.isfile(folder / NAME):
             return folder / NAME

@@ -9,7 +9,8 @@ from icdgen.diff.pairs import Pair
 from icdgen.diff.rule import Rule
 from icdgen.diff.where import Where
 
-CERTAIN, LIKELY = 0.95, 0.7  # lower limits of the confidence of certain and likely matches
+# Lower limits of the confidence of certain and likely matches
+CERTAIN, LIKELY = 0.95, 0.7
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +46,7 @@ class Change:
     @property
     def breaks(self) -> bool:
         """Whether the change can break software that uses the old ICD."""
+        # Additions extend the interface; existing software ignores them.
         return self.severity != "note" and not self.addition
 
     @property

@@ -28,7 +28,8 @@ from icdgen.icd.model import Icd
 from icdgen.icd.rules.wording import listing, quote
 
 RULES: dict[str, Rule] = dict(sorted(REGISTERED.items()))
-_CHECKS: dict[tuple[str, str], dict[Check, str]] = {}  # (kind of pair, presence) -> check -> default code
+# (kind of pair, presence) -> check -> default code
+_CHECKS: dict[tuple[str, str], dict[Check, str]] = {}
 for _rule in RULES.values():
     for _of in _rule.of:
         _CHECKS.setdefault((_of, _rule.when), {})[_rule.check] = _rule.code
@@ -52,6 +53,7 @@ def compare(old: Icd, new: Icd) -> Comparison:
     Order, formatting and spelling of formulas are ignored.
     """
     context = Context(match(old, new))
+    # The sort is stable: within a layer, changes keep the order of the ICD.
     changes = sorted(_merge_struct_changes(_all_changes(context)), key=lambda c: LAYERS.index(c.layer))
     return Comparison(context.match, changes, context)
 
@@ -84,7 +86,8 @@ def _struct_key(change: Change) -> object:
     other changes.
     """
     pair: object = change.pair
-    if isinstance(pair, MessagePair):  # some checks evaluate all fields of a message at once
+    # Some checks evaluate all fields of a message at once
+    if isinstance(pair, MessagePair):
         pair = next((part for part in pair.parts if part.any.name == change.where.field), None)
     if not isinstance(pair, FieldPair) or not pair.is_of_struct:
         return None
@@ -93,6 +96,7 @@ def _struct_key(change: Change) -> object:
 
 
 def _all_changes(context: Context) -> Iterator[Change]:
+    # Checks of whole ICDs name the pair of each result themselves.
     for check, code in _CHECKS["icd", "both"].items():
         for finding in check(context):
             assert finding.pair is not None
@@ -110,6 +114,7 @@ def _all_changes(context: Context) -> Iterator[Change]:
 
 
 def _run(of: str, pair: Pair, context: Context) -> Iterator[Change]:
+    # Rules are registered for pairs with both sides, or with one side only.
     when = "both" if pair.both else "gone" if pair.after is None else "come"
     checks = _CHECKS.get((of, when), {})
     results = [(result.code or code, result) for check, code in checks.items() for result in check(pair, context)]

@@ -119,7 +119,8 @@ def _frames(comparison: Comparison, key: str, judge: Judge, logged: bool = False
             continue
         old = [(number, m) for m in match.old.messages_of(node.old) if (number := getattr(m, key)) is not None]
         new = by_id(match.new.messages_of(node.new) if node.both else (), key)
-        wanted = {row.id for row in node.old.loggable} if logged else set()  # empty: the node logs all frames
+        # Empty: the node logs all frames
+        wanted = {row.id for row in node.old.loggable} if logged else set()
         changed_formats = () if logged else comparison.context.changed_packet_formats(node)
         for number, message in old:
             if wanted and number not in wanted:
@@ -128,6 +129,7 @@ def _frames(comparison: Comparison, key: str, judge: Judge, logged: bool = False
             verdict, reasons = _verdict(comparison, key, message, now, judge)
             if verdict != NO and key.removesuffix("_id") in changed_formats:
                 verdict, reasons = NO, ("its envelope is another",)
+            # Nodes that include the same ICD share its messages.
             if (id(message), verdict) in seen:
                 continue
             seen.add((id(message), verdict))
@@ -152,6 +154,7 @@ def _verdict(
     if new is None:
         after = getattr(pair.after, key, None)
         return NO, (f"its id is {after} now" if after is not None else "it is gone",)
+    # Another message took over the id.
     if comparison.match.messages.get(id(new)) is not pair:
         return NO, (f"the id means {quote(new.name)} now",)
     if not pair.changed:
@@ -166,8 +169,10 @@ def _read(pair: MessagePair, sent: Message, reader: Message) -> tuple[str, tuple
     lengths, length_reasons = _lengths(sent, reader, "come")
     if lengths == NO:
         return NO, length_reasons
-    own = [p for p in pair.parts if not p.any.view]  # overlays repeat bits of other fields
+    # Overlays repeat bits of other fields
+    own = [p for p in pair.parts if not p.any.view]
     derived = [(p, "another formula") for p in pair.common if is_derived_otherwise(p)]
+    # Fields that the reader expects but the sender does not have.
     absent = [p.any for p in own if not p.both and (p.before if reader is pair.old else p.after) is not None]
     wrong = [(p, why) for p in pair.common if (why := _misread(p))]
     if not absent and not wrong and not derived:
@@ -194,6 +199,8 @@ def _misread(pair: FieldPair) -> str:
     not.
     """
     old, new = pair.old, pair.new
+    # The order of these checks is from the wire to the meaning: the first difference
+    # explains the others.
     if not pair.same_bits:
         return "other bits"
     if set(old.when) != set(new.when):

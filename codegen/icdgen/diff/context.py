@@ -19,6 +19,7 @@ class Context:
 
     def __init__(self, match: Match) -> None:
         self.match = match
+        # `cache` by identity: pairs compare by identity (`eq=False`).
         self.moves = cache(moves)  # moved fields of a message
         self.changed_packet_formats = cache(self._other_envelopes)
 
@@ -69,6 +70,8 @@ class Context:
         """
         if pair.old.length == pair.new.length:
             return []
+        # Only fields beyond the shorter frame; a moved field may lie there too
+        # (`causes`).
         end = min(pair.old.length, pair.new.length) * 8
         causes = self.moves(pair).causes
         rows = pair.gained if pair.new.length > pair.old.length else pair.lost
@@ -107,6 +110,7 @@ def free_before(pair: FieldPair) -> bool:
 def _bits(position: Position) -> set[tuple[int, int]]:
     bits = set()
     for part in position:
+        # Byte strings are ranges of bytes, numbers are pieces of bits.
         if isinstance(part, range):
             bits |= {(byte, bit) for byte in part for bit in range(8)}
         else:

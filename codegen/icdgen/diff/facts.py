@@ -16,7 +16,8 @@ from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Icd, Node
 from icdgen.protocol import facts as protocol
 
-WORDS = frozenset(("source", "summary", "printed_constant"))  # keys that describe the manual, not the device
+# Keys that describe the manual, not the device
+WORDS = frozenset(("source", "summary", "printed_constant"))
 NAMES = ("name", "role", "value")  # keys that identify the rows of a list
 PART = re.compile(
     r"protocol\.stream(\.(header|trailer)(\.[^.]+)?)?"
@@ -61,11 +62,13 @@ class _Side(NamedTuple):
 
 def _compare(path: str, before: _Side, after: _Side, is_word: bool) -> Iterator[Fact]:
     old, new = before.value, after.value
+    # True equals 1 in Python, but not in YAML.
     if old == new and type(old) is type(new):
         return
     if isinstance(old, dict) and isinstance(new, dict):
         for key in old | new:
             yield from _compare(f"{path}.{key}", before.inside(key), after.inside(key), is_word or key in WORDS)
+    # Lists of mappings are compared by name, so that an insertion is one difference.
     elif isinstance(old, list) and isinstance(new, list) and any(isinstance(v, dict) for v in (*old, *new)):
         was, now = _row_names(old), _row_names(new)
         for name in was | now:
@@ -94,6 +97,7 @@ def shown(value: object) -> str:
         return ""
     if isinstance(value, bool):
         return str(value).lower()
+    # Manuals print bytes and masks in hexadecimal.
     if isinstance(value, int) and value > 9:
         return f"{value} (0x{value:02X})"
     if isinstance(value, list):

@@ -56,7 +56,8 @@ class SourceMarks(Generic[Marked]):
     """
 
     def __init__(self) -> None:
-        self._parts: dict[int, tuple[Map, Marked]] = {}  # by identity: marks must stay alive, so that ids stay unique
+        # By identity: marks must stay alive, so that ids stay unique
+        self._parts: dict[int, tuple[Map, Marked]] = {}
 
     def of(self, thing: Marked) -> Map:
         """Return a new mark for a part."""
@@ -145,6 +146,8 @@ class Generated:
         changes: list[tuple[Name | None, Name | None]] = []
         for key in sorted({_sort(name) for name in (*old, *new)}):
             before, later = ([name for name in names if _sort(name) == key] for names in (old, new))
+            # Equal numbers of names correspond in order; otherwise names are added or
+            # removed.
             if len(before) == len(later):
                 changes += [(a, real.get(b, b)) for a, b in zip(before, later, strict=True) if a.text != b.text]
             else:
@@ -156,6 +159,7 @@ class Generated:
         """Return language, old and new type of the raw value for each language where
         they differ.
         """
+        # With --unchecked, an ICD may contain fields that backends reject.
         if not _is_sound(pair.old) or not _is_sound(pair.new) or pair.is_of_struct:
             return []
         before, after = self._before, self._under_old_owners
@@ -181,7 +185,8 @@ def may_rename(pair: IdentifiedPair) -> bool:
     return pair.is_of_another_node or pair.has_another_vocabulary
 
 
-Difference = tuple[object, object, tuple[str, ...]]  # relevant attributes of a field, old and new, and the vocabulary
+# Relevant attributes of a field, old and new, and the vocabulary
+Difference = tuple[object, object, tuple[str, ...]]
 
 
 def difference_in_meaning(pair: IdentifiedPair) -> Difference | None:
@@ -344,6 +349,8 @@ class _ReducedIcd:
         derived = [nodes[id(node)] for node in layout.derived if id(node) in nodes]
         sequence: tuple[VariableNode, ...] = tuple(nodes[id(node)] for node in layout.sequence if id(node) in nodes)
         length = layout.length
+        # A counter that is unaffected is not part of the copy; then the part has a
+        # fixed size.
         if any(part.name not in names or part.counter not in names for part in layout.parts):
             begins = {part.name: part.begin for part in layout.parts}
             fixed += [_of_full_size(node, 8 * begins[node.name]) for node in sequence]
@@ -365,7 +372,9 @@ class _ReducedIcd:
             for pair, identifier in self.marks.names(self.icd, language):
                 text, stem = identifier.text, _stem(language, identifier.scope)
                 owner = pair.owner if isinstance(pair, (FieldPair, MemberPair)) else None
-                is_guard = owner is None and language == "c" and text.endswith("_H")  # of a header
+                # Of a header
+                is_guard = owner is None and language == "c" and text.endswith("_H")
+                # File names, include guards and keywords are no names of the API.
                 if stem is None or is_guard or not text.isidentifier():
                     continue
                 if language == "rust":

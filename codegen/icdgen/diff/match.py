@@ -72,6 +72,7 @@ def _side_by_side(
     """Return pairs of equal names, then ``likely`` pairs of the remaining objects, then
     objects of one side only.
     """
+    # Without a rest on one side, no renaming is possible.
     pairs, remaining = _by_name(old, new)
     if all(remaining):
         pairs += likely(pairs, *remaining)
@@ -117,6 +118,7 @@ def _best_pairs(
             value = score(thing, new[j])
             if value >= least:
                 candidates.append((-value, abs(i - j), i + j, i, j))
+    # Highest score first, then the smallest distance of positions.
     candidates.sort()
     pairs: list[Two[Thing]] = []
     taken_old: set[int] = set()
@@ -195,6 +197,7 @@ def _paired(
         yield from (paired(node, node, *pair) for pair in pairs)
         left_old += [_Unmatched(node, thing) for thing in sorted(old, key=rank)]
         left_new += [_Unmatched(node, thing) for thing in sorted(new, key=rank)]
+    # Each score only sees the objects that earlier scores left unmatched.
     for score, keys, least in likely:
         taken: set[_Unmatched[Declared]] = set()
         for old_item, new_item, sure in _best_pairs(left_old, left_new, score, least, keys):
@@ -237,6 +240,7 @@ def _members(pair: EnumPair) -> list[MemberPair]:
         for member in list(old):
             twins = [m for m in old if key(m) == key(member)]
             matches = [m for m in new if key(m) == key(member)]
+            # An ambiguous key (a repeated value or name) proves nothing.
             if len(matches) == 1 and len(twins) == 1:
                 pairs.append(MemberPair(member, matches[0], owner=pair))
                 old.remove(member)
@@ -273,9 +277,11 @@ def _renamed_message(left: _Unmatched[Message], right: _Unmatched[Message]) -> f
         return 0.0
     same_id = any(a is not None and a == b for a, b in zip(_ids(old), _ids(new), strict=True))
     names = overlap(left.field_names, right.field_names)
+    # The layout counts most, then the id: names change more often than both.
     layout = 0.4 * _layouts_alike(left, right) + 0.2 * names + 0.25 * same_id
     if layout + 0.15 < SAME_MESSAGE:
-        return 0.0  # even equal names could not reach the minimum; their comparison is slow
+        # Even equal names could not reach the minimum; their comparison is slow
+        return 0.0
     alike = likeness(old.name, new.name)
     if not same_id and min(len(lines(old.layout)), len(lines(new.layout))) < 2 and alike < 0.6:
         return 0.0  # too few fields for a match by layout alone
@@ -293,6 +299,7 @@ def _ids(message: Message) -> tuple[int | None, int | None]:
 def _layouts_alike(old: _Unmatched[Message], new: _Unmatched[Message]) -> float:
     if old.shape or new.shape:
         return overlap(old.shape, new.shape)
+    # Messages without fields can only agree in their length.
     return 0.75 if old.thing.length == new.thing.length else 0.0
 
 
@@ -336,6 +343,7 @@ def _renamed_fields(
 
     def score(old_line: Line, new_line: Line) -> float:
         same_kind, same_span = kind(old_line) == kind(new_line), spans[id(old_line)] == spans[id(new_line)]
+        # A field that changed both position and size has no evidence left but its name.
         if not same_span and (old_line.bits != new_line.bits or not same_kind):
             return 0.0
         alike = likeness(old_line.name, new_line.name)
@@ -368,6 +376,7 @@ class _Shifts:
         """
         for rows, at in ((self.old, old_at), (self.new, new_at)):
             index = bisect_left(rows, (at,))
+            # The nearest matched field before it moved by the same distance.
             if index and rows[index - 1][1] == new_at - old_at:
                 return True
         return False

@@ -20,7 +20,9 @@ class Move:
     gained: list[FieldPair] = field(default_factory=list)
     lost: list[FieldPair] = field(default_factory=list)
     resized: list[FieldPair] = field(default_factory=list)
-    reserved: bool = False  # reserved bits were added or removed before them, and the length of the frame changed
+    # Reserved bits were added or removed before them, and the length of the frame
+    # changed
+    reserved: bool = False
 
     @property
     def is_shift(self) -> bool:
@@ -58,6 +60,7 @@ def moves(message: MessagePair) -> Moves:
         return result
     old, new = _Order(message.common, lambda pair: pair.old), _Order(message.common, lambda pair: pair.new)
     groups: dict[int, list[FieldPair]] = {}
+    # Fields that moved by the same distance may belong to one move.
     for pair in old.rows:
         if pair.moved:
             groups.setdefault(pair.new.at - pair.old.at, []).append(pair)
@@ -89,13 +92,16 @@ def _runs(rows: list[FieldPair], old: _Order, new: _Order) -> list[list[FieldPai
 def _causes(message: MessagePair, move: Move, old: _Order, new: _Order) -> None:
     first, last = move.fields[0], move.fields[-1]
     before_old, before_new = old.before(first), new.before(first)
+    # Only fields between the previous common field and the move can have caused it.
     start_old = before_old.old.at if before_old else -1
     start_new = before_new.new.at if before_new else -1
     lost, gained = ([pair for pair in side if not pair.any.view] for side in (message.lost, message.gained))
     move.lost = [pair for pair in lost if start_old <= pair.old.at < first.old.at]
     move.gained = [pair for pair in gained if start_new <= pair.new.at < first.new.at]
+    # A field that only changed its width shifts all fields behind it.
     if before_old is not None and before_old is before_new and before_old.old.width != before_old.new.width:
         move.resized = [before_old]
     longer = (message.new.layout.length - message.old.layout.length) * 8
     at_the_end = last is old.rows[-1] or last is new.rows[-1]
+    # Without another cause, reserved bits were inserted or removed.
     move.reserved = not move.is_shift and at_the_end and longer == move.by

@@ -43,7 +43,8 @@ class SideBySide(Generic[Thing]):
     before: Thing | None
     after: Thing | None
     sure: float = 1.0
-    is_of_another_node: bool = field(default=False, kw_only=True)  # declaration that moved to another node
+    # Declaration that moved to another node
+    is_of_another_node: bool = field(default=False, kw_only=True)
 
     @property
     def old(self) -> Thing:
@@ -218,7 +219,8 @@ class NodePair(SideBySide[Node]):
 
 
 DeclaredPair = MessagePair | EnumPair
-IdentifiedPair = MessagePair | FieldPair | EnumPair | MemberPair  # pairs with names in generated code
+# Pairs with names in generated code
+IdentifiedPair = MessagePair | FieldPair | EnumPair | MemberPair
 Pair = NodePair | MessagePair | FieldPair | EnumPair | MemberPair
 
 
@@ -252,6 +254,7 @@ def position(node: Node, line: Line, first_only: bool = False) -> Position:
 
     With ``first_only``, bits of the first element of a variable-length part.
     """
+    # A derived value has no bits.
     if line.derived is not None:
         return ()
     starts = line.starts(first_only)

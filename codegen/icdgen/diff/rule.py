@@ -45,12 +45,14 @@ class Rule:
 
     code: str
     layer: str  # one of `LAYERS`
-    of: tuple[str, ...]  # kinds of pairs that it checks: "icd", "node", "message", "field", "enum", "member"
+    # Kinds of pairs that it checks: "icd", "node", "message", "field", "enum", "member"
+    of: tuple[str, ...]
     theme: str
     check: Check
     severity: str = "error"  # "error" | "warning" | "note"
     addition: bool = False  # new object that existing software does not depend on
-    when: str = "both"  # pairs on both sides, "gone": only in the old ICD, "come": only in the new one
+    # Pairs on both sides, "gone": only in the old ICD, "come": only in the new one
+    when: str = "both"
 
     @property
     def page(self) -> pages.Page:

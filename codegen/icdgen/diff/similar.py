@@ -16,6 +16,7 @@ def likeness(first_name: str, second_name: str) -> float:
     The measure is symmetric: the Dice coefficient of their pairs of letters.
     """
     first, second = letters(first_name), letters(second_name)
+    # Sørensen–Dice coefficient of bigrams: tolerant of inserted words and plural forms.
     return 2 * len(first & second) / (len(first) + len(second)) if first or second else 1.0
 
 
@@ -50,6 +51,7 @@ def same_sense(first_name: str, second_name: str) -> bool:
     Cautious: a possible other word counts as another meaning.
     """
     first, second = words(first_name), words(second_name)
+    # "BatteryVoltage", "Battery voltage" and "Voltage Battery" are the same words.
     if "".join(first) == "".join(second) or sorted(first) == sorted(second):
         return True
     if len(first) != len(second):
@@ -76,6 +78,7 @@ def _is_slip(first: str, second: str) -> bool:
 
     Numbers and first letters must be equal.
     """
+    # "roll" and "poll" differ by a letter but are different words.
     if min(len(first), len(second)) < _SHORTEST or first[0] != second[0] or any(c.isdigit() for c in first + second):
         return False
     if len(first) == len(second):

@@ -21,7 +21,8 @@ SUFFIXES = {
     **dict.fromkeys((".py", ".pyi"), "python"),
     ".rs": "rust",
 }
-MARK = "enerated by icdgen"  # at the beginning of a generated file, which is not searched
+# At the beginning of a generated file, which is not searched
+MARK = "enerated by icdgen"
 _HEAD = 400
 _MOST = 8_000_000  # bytes of a source file that are searched
 _SKIPPED = frozenset((".git", ".hg", ".svn", "node_modules", "__pycache__", ".venv", "target"))
@@ -58,7 +59,8 @@ class Use(NamedTuple):
         return list(dict.fromkeys(change.message for change in self.changes))
 
 
-_ChangesByName = dict[str, dict[str, list[Change]]]  # name -> stem that must be mentioned too -> changes
+# Name -> stem that must be mentioned too -> changes
+_ChangesByName = dict[str, dict[str, list[Change]]]
 
 
 def uses(comparison: Comparison, changes: Iterable[Change], paths: Iterable[Path]) -> list[Use]:
@@ -107,6 +109,7 @@ def _sources(top: Path) -> Iterator[Path]:
     if not os.path.isdir(top):
         raise UserError(f"there is no {top}", "give --uses a folder, or a source file")
     for folder, folders, files in os.walk(top):
+        # Assignment to the slice makes `os.walk` skip the other folders.
         folders[:] = sorted(name for name in folders if name not in _SKIPPED)
         yield from (Path(folder, name) for name in sorted(files) if Path(name).suffix.lower() in SUFFIXES)
 
@@ -117,6 +120,7 @@ def _in_file(path: Path, language: str, changed_names: _ChangesByName) -> Iterat
             text = file.read(_MOST).decode("utf-8", "replace")
     except OSError as error:
         raise UserError(f"cannot read {path}: {error.strerror}", "make it readable, or leave it out") from None
+    # Generated code is regenerated, so its uses are not the user's concern.
     if MARK in text[:_HEAD]:
         return
     tokens = list(_tokens(text, _LEXERS[language]))
@@ -143,6 +147,8 @@ def _tokens(text: str, lexer: re.Pattern[str]) -> Iterator[tuple[str, int]]:
 
 def _mentions(language: str, mentioned: set[str], stem: str) -> bool:
     """Return whether the source mentions the type of a member."""
+    # C names have the type as prefix, in any case (`demo_status_t`,
+    # `DEMO_STATUS_LENGTH`).
     if language != "c":
         return stem in mentioned
     return any(name == stem or name.lower().startswith(f"{stem}_") for name in mentioned)

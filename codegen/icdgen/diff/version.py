@@ -28,6 +28,7 @@ def step(changes: list[Change]) -> Step:
     """Return the step of Semantic Versioning. Accepted changes count too."""
     breaking = [change for change in changes if change.breaks]
     additions = [change for change in changes if change.addition]
+    # https://semver.org: an incompatible change of any layer is a major step.
     if breaking:
         counts = Counter(change.layer for change in breaking)
         counts_by_layer = [f"{count(counts[layer], 'change')} of {_OF[layer]}" for layer in LAYERS if counts[layer]]

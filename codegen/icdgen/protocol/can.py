@@ -115,7 +115,8 @@ class _PartialMessage:
     length: int | None  # of the data in bytes; None if the ICD does not define it
     packets: dict[int, bytes]
     last: int  # time of the last packet in ms
-    in_order: int = 0  # length of the last uninterrupted run of packets from packet 0 on
+    # Length of the last uninterrupted run of packets from packet 0 on
+    in_order: int = 0
     completed_by: int | None = None  # number of the packet that completed the message
 
     def record_packet(self, number: int, now: int) -> None:
@@ -137,7 +138,8 @@ class Joiner:
     def __init__(self, facts: Facts, address: int | None = None, senders: int = 4) -> None:
         self.facts, self.can = facts, need(facts.can, "can")
         self.address, self.senders = address, senders
-        self.room = ceil(facts.longest_data / self.can.extended.data_bytes) if self.can.extended else 0  # in packets
+        # In packets
+        self.room = ceil(facts.longest_data / self.can.extended.data_bytes) if self.can.extended else 0
         self.open: list[_PartialMessage] = []
 
     def expire(self, now: int) -> list[Event]:
@@ -153,6 +155,7 @@ class Joiner:
         events = self.expire(now)
         parts = parts_of(self.can, packet.id)
         type_, id, source, destination = (parts[role] for role in ("type", "channel", "source", "destination"))
+        # Packets for other receivers are no errors.
         if self.address is not None and destination != self.address:
             return events
         kind = next((k for k, number in self.can.types.items() if number == type_), None)
@@ -169,6 +172,7 @@ class Joiner:
         form = need(self.can.extended, "can.extended")
         _, id, source, destination = key
         pending = next((message for message in self.open if message.key == key), None)
+        # The counter is the last byte of an extended packet.
         if len(data) != form.left_at + 1:
             return [*self._give_up(pending), Event(MALFORMED, id, source)]
         left, piece = data[form.left_at] - form.left_in_last, data[: form.data_bytes]

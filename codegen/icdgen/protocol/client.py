@@ -61,6 +61,8 @@ class Client:
         self.facts, self.bus, self.address = facts, bus, address
         self.settings = settings or facts.client
         form = facts.checksum
+        # `..._always`: the node rejects messages without checksum, so the client has no
+        # choice.
         self._checks_sent = bool(form and bus in (form.telecommand_buses if crc else form.telecommand_always))
         self._checks_frames = bool(form and bus in (form.telemetry_buses if crc else form.telemetry_always))
         if bus == UART:
@@ -69,7 +71,8 @@ class Client:
             self._joiner = can.Joiner(facts, address, 1)
         else:
             need(facts.i2c_address, "i2c")
-        self.out: list[Any] = []  # UART: bytes; CAN: packets; I2C: (bytes to write, count to read)
+        # UART: bytes; CAN: packets; I2C: (bytes to write, count to read)
+        self.out: list[Any] = []
         # I2C: number of transactions put into `out`, and of those whose result was reported.
         self._transfers_asked = self._transfers_reported = 0
         self.state = IDLE
@@ -78,7 +81,8 @@ class Client:
         self._until = 0  # end of the state in ms, unless an event ends it earlier
         self._is_written = False  # I2C: telecommand is sent, its acknowledge is polled
         self._give_up = 0  # end of polling in ms
-        self._late: tuple[int, int] | None = None  # id of a request with a possible late response, and time limit of it
+        # Id of a request with a possible late response, and time limit of it
+        self._late: tuple[int, int] | None = None
 
     @property
     def deadline(self) -> int | None:
@@ -95,6 +99,7 @@ class Client:
             raise BusyError
         if request.kind == TELECOMMAND and len(request.data) != message.length:
             raise LengthError(message.length, len(request.data))
+        # Reading telemetry or setting the same configuration twice does no harm.
         if request.kind == TELEMETRY or message.kind == CONFIGURATION:
             request = replace(request, repeat=True)
         self.request, self.attempts = request, 0
@@ -108,6 +113,7 @@ class Client:
     def tick(self, now: int) -> list[Event]:
         """Process the passage of time."""
         events = self._line_errors(self._joiner.expire(now)) if self.bus == CAN else []
+        # The state ends only at its deadline; earlier calls only expire CAN packets.
         if self.state == IDLE or now < self._until:
             return events
         if self.state == HOLD:
@@ -147,7 +153,8 @@ class Client:
 
         ``data``: the bytes read; None if the transaction failed.
         """
-        awaited = self._unreported == 1 and self._awaits_transfer  # evaluated before `tick`, which may end the request
+        # Evaluated before `tick`, which may end the request
+        awaited = self._unreported == 1 and self._awaits_transfer
         self._transfers_reported += self._unreported > 0
         events = self.tick(now)
         if not (awaited and self._awaits_transfer):
@@ -177,6 +184,7 @@ class Client:
         if self.bus == I2C:
             self._transfers_asked -= len(self.out)
         self.out.clear()
+        # A request in the state HOLD was never sent, so no response to it can come.
         if self.state != IDLE and self.attempts:
             self._late = (self._current.id, self._until + self.settings.reply_timeout)
         self.state, self.request = IDLE, None
@@ -237,6 +245,7 @@ class Client:
         After a checksum error of the transmission, the request is sent again.
         """
         reason = next((name for name, value in self.facts.errors.items() if value == code), None)
+        # The request itself was valid.
         if reason == "checksum" and self._checks_sent and self.attempts <= self.settings.retries:
             return self._transmit(now)
         return self._end(now, {"event": "refused", "code": code, "reason": reason, "parameter": parameter})
@@ -256,7 +265,8 @@ class Client:
         """Repeat the request or end it, after no usable response."""
         if not self._current.repeat or self.attempts > self.settings.retries:
             return self._timeout(now)
-        if self.bus == I2C:  # I2C reports this at once: the node gets some time before the next attempt
+        # I2C reports this at once: the node gets some time before the next attempt
+        if self.bus == I2C:
             self.state, self._until = PAUSE, now + self.settings.poll_interval
             self._give_up = now + self.settings.poll_timeout
             return []
@@ -297,6 +307,7 @@ class Client:
         mandatory.
         """
         form, length = self.facts.checksum, self.facts.telemetry[id].length
+        # The length of the reply shows whether it has a checksum.
         if form and self.bus in form.telemetry_buses and len(data) == length + form.bytes:
             try:
                 return self._done(now, i2c.reply(self.facts, id, data, True))
@@ -333,6 +344,8 @@ class Client:
         except ValueError:
             return [{"event": "malformed", "id": polled.message.ids[0]}, *self._pause(now)]
         raw = codec.decode(self.facts.node, polled.message, frame)
+        # The frame still describes an earlier telecommand, or this one is not
+        # processed.
         if raw[polled.id] != self._current.id or not raw[polled.processed]:
             return self._pause(now)
         code, parameter = raw[polled.error], raw[polled.parameter]

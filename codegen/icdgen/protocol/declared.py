@@ -19,8 +19,10 @@ from typing import Any, Final
 from icdgen.frozen import dataclass
 
 BYTE, U16, U32 = 0xFF, 0xFFFF, 0xFFFF_FFFF
-MOST_MS = 0x7FFF_FFFF  # upper limit of a time: half of 32 bits, so that times compare across a clock overflow
-REQUIRED: Final = object()  # no default: without this key, the ICD does not describe the part
+# Upper limit of a time: half of 32 bits, so that times compare across a clock overflow
+MOST_MS = 0x7FFF_FFFF
+# No default: without this key, the ICD does not describe the part
+REQUIRED: Final = object()
 
 
 class Kind(Enum):
@@ -54,8 +56,10 @@ class Fact:
     most: int | None = None
     holds: int = U32
     default: object = REQUIRED
-    factor: int = 1  # ICD value to value of the fact, for example seconds to milliseconds
-    words: tuple[object, ...] = ()  # of a flag: values in the ICD for false and for true
+    # ICD value to value of the fact, for example seconds to milliseconds
+    factor: int = 1
+    # Of a flag: values in the ICD for false and for true
+    words: tuple[object, ...] = ()
     listed: str = ""  # of a flag: entry of the ICD's list that sets it
     key_about: str = ""  # meaning of the key, if it differs from `about`
     direction: str = ""  # of a step: "telecommand" or "telemetry"
@@ -93,12 +97,14 @@ class Fact:
         return value * self.factor  # type: ignore[operator]
 
 
-Default = object  # a value, None for an optional fact, or a function of the preceding facts
+# a value, None for an optional fact, or a function of the preceding facts
+Default = object
 
 
 def _declare(kind: Kind, key: str, about: str, default: Default = REQUIRED, **more: Any) -> Any:
     """Return the field of a dataclass that carries the declaration."""
     metadata = {"fact": (kind, key, about, default, more)}
+    # A computed default depends on other facts, so `read` supplies it.
     if default is REQUIRED or callable(default):
         return field(metadata=metadata)
     return field(default=default, metadata=metadata)
@@ -209,6 +215,7 @@ def read(
     ``step`` resolves the message of a step. ``computed``: values that follow from other
     keys.
     """
+    # Facts are read in the order of declaration: defaults may use the preceding ones.
     values = dict(computed)
     for fact in facts_of(part):
         if fact.name in values:

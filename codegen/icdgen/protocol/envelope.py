@@ -41,7 +41,8 @@ class EnvelopeField:
     shift: int
     bits: int
     little: bool
-    values: tuple[int, int]  # value of a constant, or default: in telecommands, in telemetry
+    # Value of a constant, or default: in telecommands, in telemetry
+    values: tuple[int, int]
 
     @property
     def mask(self) -> int:
@@ -71,7 +72,8 @@ class StreamRow:
     id: int
     least: int
     most: int
-    cuts_zeros: bool  # whether trailing zeros of the data are not sent (at least one byte is)
+    # Whether trailing zeros of the data are not sent (at least one byte is)
+    cuts_zeros: bool
     seed: int
     reply: int | None  # id of the telemetry that responds to a telecommand
     name: str
@@ -121,6 +123,7 @@ class Stream:
         """Number of sequence counters that a decoder stores to detect gaps."""
         if self.of("sequence") is None:
             return 0
+        # A decoder handles one direction; its table has a row for each id.
         return max(1, len(self.telecommands), len(self.telemetry)) if self.per_id else 1
 
     @property

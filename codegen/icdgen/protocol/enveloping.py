@@ -101,6 +101,7 @@ def stream_of(node: Node, section: Section, checksums: Section, ids: Ids) -> Str
     header, trailer = section.get("header", ()), section.get("trailer", ())
     fields = [field_of(node, row, row_in is trailer) for row_in in (header, trailer) for row in row_in]
     sizes = [bytes_of((row["at"], row["bits"]) for row in rows) for rows in (header, trailer)]
+    # At most one field has each of these roles (checked by rules of the ICD).
     length, sequence = (place_of((*header, *trailer), role, False) or {} for role in ("length", "sequence"))
     check = place_of((*header, *trailer), "checksum", False) or {}
     seeds = checksums.get(check.get("checksum", ""), {}).get("seeds", {})
@@ -113,6 +114,7 @@ def stream_of(node: Node, section: Section, checksums: Section, ids: Ids) -> Str
         delimited_by=section["delimited_by"],
         header_bytes=sizes[0],
         trailer_bytes=sizes[1],
+        # `plus`: the device's own offset, for example CCSDS 133.0-B: bytes minus 1.
         length_plus=length.get("plus", 0) + (sum(sizes) if counts_all else 0),
         per_id=sequence.get("per", "link") == "id",
         fields=tuple(fields),

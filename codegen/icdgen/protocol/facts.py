@@ -76,7 +76,8 @@ class Facts:
     identification: Step | None
     statistics: Step | None
     boot_ms: int | None
-    stream: Stream | None  # if present, ids have up to 32 bits and the other parts of the link are None
+    # If present, ids have up to 32 bits and the other parts of the link are None
+    stream: Stream | None
     assumptions: tuple[Assumption, ...]
 
     @property
@@ -90,6 +91,7 @@ class Facts:
     @property
     def longest_telecommand(self) -> int:
         """Bytes of the longest telecommand with its id and checksum."""
+        # The leading 1 is the id byte.
         extra = self.checksum.bytes if self.checksum else 0
         return 1 + extra + max((m.length for m in self.telecommands.values()), default=0)
 
@@ -97,6 +99,7 @@ class Facts:
     def longest_reply(self) -> int:
         """Bytes of the longest message of the node with its id and checksum."""
         extra = self.checksum.bytes if self.checksum else 0
+        # The leading 1 is the id byte.
         sizes = [1 + extra + m.length for m in self.telemetry.values()]
         if self.acknowledge:
             sizes.append(self.acknowledge.length)

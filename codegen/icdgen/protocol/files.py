@@ -21,6 +21,7 @@ def hole_map(facts: Facts, packets: int, received: Iterable[int]) -> bytes:
         raise RangeError("packet")
     out = bytearray(form.bytes)
     for bit in range(form.bytes * 8):
+        # Bits beyond the end of the block have their own value (`beyond_end`).
         state = form.beyond_end if bit >= packets else form.received if bit in positions else 1 - form.received
         out[bit // 8] |= state << (7 - bit % 8 if form.msb0 else bit % 8)
     return bytes(out)

@@ -52,6 +52,7 @@ def decode(facts: Facts, data: bytes) -> Log:
         return Log(None, [], len(data))
     mask = head[form.mask_at : form.mask_at + layout.size]
     slots = layout.selected(mask)
+    # All entries have the same size: the mask of the header applies to the whole file.
     size = form.frames_at + len(slots) * layout.slot_bytes
     starts = range(0, len(body) - size + 1, size)
     return Log(mask, [_entry(facts, slots, body[at : at + size]) for at in starts], len(body) % size)

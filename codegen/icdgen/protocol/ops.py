@@ -220,6 +220,7 @@ def identify(facts: Facts, request: Request) -> dict[str, Any]:
     except codec.LengthError as error:
         raise errors.LengthError(error.expected, error.actual) from None
     identified = {role: raw[name] for role, name in step.fields.items()}
+    # A node type or version that the ICD does not state matches any value.
     expected = {"node_type": facts.node.node_type, "interface_version": facts.node.interface_version}
     matches = all(expected[role] in (None, identified[role]) for role in expected)
     return {**identified, "matches": matches}

@@ -178,6 +178,7 @@ class Reader:
 
     def mask(self) -> LogMask | None:
         slot, bits = self.section("log_mask").get("frame_bytes", 0), {}
+        # The node's own entries override those of included nodes.
         for node in (*self.icd.included(self.node), self.node):
             for row in node.loggable:
                 frame = self.telemetry.get(row.id)

@@ -126,6 +126,7 @@ def _stream_events(tested_client: enveloped.Client, now: int, row: dict[str, Any
 
 
 def _stream_output(tested_client: enveloped.Client, row: dict[str, Any]) -> list[object]:
+    # `untaken` simulates a caller that does not read the output yet.
     return [] if flag(row, "untaken") else [line.hex() for line in tested_client.output()]
 
 

@@ -56,6 +56,7 @@ def encode(form: Stream, direction: str, id: int, data: bytes, values: Mapping[s
         raise UnknownIdError(f"there is no {direction} of id {id}")
     if not row.least <= len(data) <= row.most:
         raise LengthError(row.most if len(data) > row.most else row.least, len(data))
+    # Some protocols truncate trailing zeros of the payload, except its first byte.
     if row.cuts_zeros:
         data = data[:1] + data[1:].rstrip(b"\0")
     head, tail = bytearray(form.header_bytes), bytearray(form.trailer_bytes)
@@ -206,11 +207,14 @@ class Decoder:
         if place and _get(form, place, frame) - form.length_plus != size:
             return Verdict(Event(BAD_LENGTH), False)
         place = form.of("id")
+        # A format without id field has a single message.
         id = _get(form, place, frame) if place else self.rows[0].id if self.rows else 0
         number, row = next(((number, row) for number, row in enumerate(self.rows) if row.id == id), (0, None))
         # The checksum decides whether the id and the length can be trusted.
         place = form.of("checksum")
         if place and form.check:
+            # The seed depends on the id, so the checksum of an unknown id cannot be
+            # verified.
             if form.check.is_seeded and row is None:
                 return Verdict(Event(UNKNOWN_ID, id), False)
             if _get(form, place, frame) != _checksum(form, row, frame):

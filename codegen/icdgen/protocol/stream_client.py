@@ -48,7 +48,8 @@ class Client:
         self._decoder = stream.Decoder(self.form, TELEMETRY)
         self._slots = [Slot() for _ in range(requests)]
         self._untaken: list[Slot] = []
-        self._next: dict[int | None, int] = {}  # next sequence number, by id if `per_id`
+        # Next sequence number, by id if `per_id`
+        self._next: dict[int | None, int] = {}
 
     @property
     def deadline(self) -> int | None:

@@ -12,7 +12,8 @@ from icdgen.protocol.envelope import COBS, HDLC, SLIP
 _SLIP_END, _SLIP_ESCAPE = 0xC0, 0xDB
 _SLIP_ESCAPED = {0xDC: _SLIP_END, 0xDD: _SLIP_ESCAPE}
 _HDLC_FLAG, _HDLC_ESCAPE, _HDLC_FLIP = 0x7E, 0x7D, 0x20
-_COBS_END, _COBS_FULL = 0, 0xFF  # code 0xFF: block of 254 bytes without a following zero
+# Code 0xFF: block of 254 bytes without a following zero
+_COBS_END, _COBS_FULL = 0, 0xFF
 
 
 class Delimited(NamedTuple):
@@ -31,6 +32,7 @@ def stuffed(delimited_by: str, frame: bytes) -> bytes:
     none.
     """
     if delimited_by == SLIP:
+        # The escape byte is replaced first: the other replacement inserts escape bytes.
         out = frame.replace(b"\xdb", b"\xdb\xdd").replace(b"\xc0", b"\xdb\xdc")
         return b"\xc0" + out + b"\xc0"
     if delimited_by == HDLC:
@@ -111,6 +113,7 @@ class Escaped(Unstuffer):
         self.is_escaped = False
 
     def ended(self) -> None:
+        # A delimiter directly after an escape byte is invalid (RFC 1662, 4.3).
         if self.is_escaped and not self.faults:
             self.faults = ["framing"]
 

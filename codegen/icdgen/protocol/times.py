@@ -29,6 +29,7 @@ def pack(facts: Facts, parts: Mapping[str, int]) -> int:
         raise RangeError(invalid)
     for name in PARTS:
         part = form[name]
+        # MS-DOS time counts seconds in steps of two.
         raw = (parts[name] - part.offset) // part.factor
         if not 0 <= raw < 1 << part.bits:
             raise RangeError(name)

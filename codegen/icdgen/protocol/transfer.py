@@ -204,6 +204,7 @@ class FileList(Transfer):
             # A frame of zeros marks the end of the list.
             if not any(frame):
                 return
+            # An unchanged frame means that `advance` was not executed yet, or was lost.
             if frame != last:
                 self.entries.append({role: value for role, value in values.items() if role != "busy"})
                 repetitions = 0
@@ -228,12 +229,15 @@ class Download(Transfer):
         self.bus, self.type, self.counter, self.size = bus, type, counter, size
         self.blocks: list[tuple[int, bytes]] = []
         self.offset = 0
-        self.packets: dict[int, bytes] = {}  # received packets of this block by position
+        # Received packets of this block by position
+        self.packets: dict[int, bytes] = {}
         self.count = 0
         self.last = 0  # time of the last packet in ms
 
     def packet(self, number: int, data: bytes) -> None:
         position = number - self.files.first_packet
+        # Packets of an earlier block can arrive late; the first copy of a packet
+        # counts.
         if 0 <= position < self.count:
             self.packets.setdefault(position, data)
             self.last = self.now

@@ -14,7 +14,8 @@ from icdgen.protocol.sections import Framing
 
 # Events of `Decoder`.
 MESSAGE = "message"
-UNEXPECTED_START = "unexpected_start"  # message began within another one, which is discarded
+# Message began within another one, which is discarded
+UNEXPECTED_START = "unexpected_start"
 PROTOCOL_ERROR = "protocol_error"  # escape byte before an undefined byte
 OVERRUN = "overrun"  # a message longer than the buffer
 EMPTY = "empty"  # a message without an id
@@ -32,6 +33,7 @@ class Event(NamedTuple):
 def encode(framing: Framing, message: bytes) -> bytes:
     """Return the transmitted bytes of a message, which begins with its id."""
     out = bytearray((framing.escape, framing.start))
+    # Some devices do not escape the id (`escaped_in: [data]`).
     for position, byte in enumerate(message):
         if byte == framing.escape and (position or framing.escapes_id):
             out += bytes((framing.escape, framing.escaped))
@@ -78,6 +80,7 @@ class Decoder:
             elif not framing.ignores_other:
                 yield Event(PROTOCOL_ERROR)
                 self._outside(byte == framing.escape)
+        # An unescaped id is the first byte of the buffer.
         elif byte == framing.escape and (self.buffer or framing.escapes_id):
             self.escaped = True
         else:

@@ -11,6 +11,7 @@ def test_ids(ids: Iterable[int], bits: int = 32) -> list[int]:
     """Return test ids of at most ``bits`` bits: all bytes, the ids of the ICD, their
     neighbors and their truncated and extended forms.
     """
+    # Dispatchers are tested with each byte, known or not.
     candidates = set(range(BYTE))
     for id in ids:
         # Truncated to 8 or 16 bits, shifted down, or with an additional high bit.

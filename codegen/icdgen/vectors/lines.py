@@ -47,6 +47,7 @@ def lines(vectors: NodeVectors, text: str) -> NodeLines:
         if line.startswith('"ids": {'):
             break
         numbers.head[line.partition(":")[0].strip('"')] = number
+    # The writer puts each direction on its own line.
     for direction in vectors.ids:
         numbers.ids[direction] = next(remaining_lines)[0]
     for _, line in remaining_lines:

@@ -32,7 +32,8 @@ class Row:
     encoded: bytes
     physical: dict[str, Fraction]  # exact physical values of scaled fields
     texts: dict[str, str | None]  # of text fields; None if the bytes are not ASCII
-    doubles: dict[str, str]  # physical values as doubles (scales and lookup tables), 16 hex digits each
+    # Physical values as doubles (scales and lookup tables), 16 hex digits each
+    doubles: dict[str, str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +46,8 @@ class MessageVectors:
     default: Raw
     rows: tuple[Row, ...]
     lengths: tuple[int, ...]  # lengths of refused frames
-    miscounted: tuple[bytes, ...]  # refused frames whose counters contradict their length
+    # Refused frames whose counters contradict their length
+    miscounted: tuple[bytes, ...]
     unfit: dict[str, list[int]]  # refused raw values by field
     settings: dict[str, Settings]  # assignments of physical values and texts, by field
 
@@ -58,9 +60,11 @@ class NodeVectors:
     """
 
     node: Node
-    ids: dict[str, dict[int, list[str]]]  # direction -> id -> messages; all other ids are unknown
+    # Direction -> id -> messages; all other ids are unknown
+    ids: dict[str, dict[int, list[str]]]
     shared: tuple[shared.SharedRow, ...]  # frames of ids that several messages share
-    enums: tuple[tuple[Enum, int | None], ...]  # with a value that has no member; None if members cover all values
+    # With a value that has no member; None if members cover all values
+    enums: tuple[tuple[Enum, int | None], ...]
     messages: tuple[MessageVectors, ...]
 
 
@@ -106,6 +110,7 @@ def _refused_lengths(message: Message) -> tuple[int, ...]:
     layout = message.layout
     # With several variable parts, any length from the shortest to the longest may be
     # permitted.
+    # With one variable part, the fixed part alone is the shortest decodable frame.
     least = layout.shortest if len(layout.parts) > 1 else layout.length
     ends = {end + step for end in (least, layout.shortest, layout.shortest + 1, layout.longest) for step in (-1, 1)}
     if not layout.parts:
@@ -119,6 +124,7 @@ def _miscounted(node: Node, message: Message) -> Iterator[bytes]:
     """
     if not message.layout.parts:
         return
+    # The last part takes the remaining bytes, so its count determines the length.
     last = message.layout.parts[-1]
     if len(message.layout.parts) > 1:
         for count in (last.fewest, last.most):
@@ -129,7 +135,8 @@ def _miscounted(node: Node, message: Message) -> Iterator[bytes]:
     frame = patterns.random_frame(message, "miscounted")
     counter = _counter(message, node, last)
     few, most, low, high = last.fewest, last.most, counter.raw_min + last.plus, counter.raw_max + last.plus
-    top = 1 << counter.bits - 1  # highest bit of the counter, which a narrower implementation would ignore
+    # Highest bit of the counter, which a narrower implementation would ignore
+    top = 1 << counter.bits - 1
     pairs = [(few, few + 1), (most, most - 1), (most - 1, most), (most, high), (few, few + top), (most, most + top)]
     for count, stated in (*pairs, *([(few, few - 1), (most, low)] if last.plus else ())):
         if stated != count >= few and low <= stated <= high:
@@ -156,7 +163,8 @@ def _miscounted_inside(node: Node, message: Message, count: int) -> Iterator[byt
             if counter.raw_min <= stated <= counter.raw_max:
                 invalid.append(codec.frame_of(frame, {counter: stated}))
     for counter, high in highest.items():
-        if high < counter.raw_max:  # above the maximum, in a frame of the maximum length
+        # Above the maximum, in a frame of the maximum length
+        if high < counter.raw_max:
             invalid.append(codec.frame_of(longest, highest | {counter: high + 1}))
     yield from (candidate for candidate in dict.fromkeys(invalid) if not _is_frame(node, message, candidate))
 
@@ -175,8 +183,10 @@ def _is_frame(node: Node, message: Message, frame: bytes) -> bool:
 def frame_row(node: Node, message: Message, why: str, frame: bytes) -> Row:
     """Return the vector of a frame, decoded and encoded by the reference codec."""
     raw: dict[str, Any] = codec.decode(node, message, frame)
+    # Absent optional fields have no raw value.
     present = [field for field in frame_fields(message.layout, node.orders) if field.name in raw]
     exact = ((field.name, codec.physical(field, raw[field.name])) for field in present)
+    # Lookup tables and polynomials have no exact fraction; `doubles` covers them.
     physical = {name: value for name, value in exact if value is not None}
     scaled = (field for field in present if field.has_formula)
     doubles = {field.name: bits_of(codec.physical_double(field, raw[field.name]) or 0.0) for field in scaled}

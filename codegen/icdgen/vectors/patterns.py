@@ -135,6 +135,7 @@ def _longest(message: Message) -> Iterator[tuple[str, bytes]]:
     if not length:
         return
     yield "all ones", b"\xff" * length
+    # Together, these frames give each bit of the message a unique pattern of values.
     for number in range((length * 8 - 1).bit_length()):
         code = _position_code(length, number)
         yield f"bit {number} of each bit's position", code
@@ -167,6 +168,7 @@ def values(field: AnyScalar) -> list[int | bytes]:
         size = field.bits // 8
         ascending = bytes(number & 0xFF for number in range(1, size + 1))
         if field.type == "text":
+            # A text that ends early, and a character in the last byte only.
             ended, last = ascending[: size // 2].ljust(size, b"\0"), bytes(size - 1) + b"x"
             return list(dict.fromkeys((ascending, ended, last, bytes(size), b"\x7f" * size, b"\x80" * size)))
         return [ascending, bytes(size), bytes(byte ^ 0xFF for byte in ascending)]
@@ -186,6 +188,7 @@ def _numbers(field: AnyScalar) -> Iterator[int]:
     for pattern in _DISTINCT:
         value = pattern >> (64 - field.bits)
         yield value - (1 << field.bits) if value > high else value
+    # Off-by-one errors at the upper end, which the maximum alone would not show.
     yield high - 1
     if field.type == "enum" and field.enum is not None:
         yield from (value for member in field.enum.members for value in dict.fromkeys((member.value, member.last)))
@@ -230,6 +233,7 @@ def raw_columns(message: Message, node: Node) -> Iterator[dict[str, int | bytes]
     alternatives = dict.fromkeys(
         tuple((condition.field, condition.values[0]) for condition in field.conditions) for field in fields
     )
+    # A shift by the index prevents that equal fields always have equal values.
     for row in range(max(map(len, columns), default=0)):
         raw = {
             field.name: column[(row + index) % len(column)]
@@ -253,6 +257,7 @@ def unfit(message: Message, field: FrameField) -> list[int]:
     for part in message.layout.parts:
         if field.name == part.counter:
             return list(dict.fromkeys((part.high + 1, part.low - 1, field.raw_max + 1, field.raw_min - 1)))
+    # Languages represent other types by values of exactly their range.
     if field.type not in ("uint", "int", "enum"):
         return []
     return [field.raw_max + 1, field.raw_min - 1]

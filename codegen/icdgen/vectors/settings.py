@@ -85,6 +85,8 @@ def _doubles(field: Scalar) -> Iterator[float]:
     low, high = field.raw_min, field.raw_max
     # Negative zero and the smallest subnormal double.
     yield from (-0.0, 5e-324)
+    # Midpoints between raw values, with the adjacent doubles, test rounding in both
+    # directions.
     for raw in (low - 1, high, (low + high) // 2, low + (high - low) // 3):
         near = float(_above(field, raw))
         yield from (math.nextafter(near, -math.inf), near, math.nextafter(near, math.inf))

@@ -45,6 +45,7 @@ def rows(icd: Icd, node: Node) -> Iterator[SharedRow]:
     """
     for direction in (TELECOMMAND, TELEMETRY):
         for id, messages in ids(icd, node, direction).items():
+            # Ids of one message are tested by the vectors of the message.
             if len(messages) > 1:
                 rows = (_row(icd, direction, id, messages, frame) for frame in dict.fromkeys(_frames(icd, messages)))
                 yield from (row for row in rows if row is not None)
@@ -93,6 +94,7 @@ def _frames(icd: Icd, messages: list[Message]) -> Iterator[bytes]:
                 yield frame_with_constants
                 if message.may_end_early:
                     yield frame_with_constants.rstrip(b"\0") or frame_with_constants[:1]
+        # A decoder that ignores any bit of a constant fails here.
         for field in constant_fields:
             for bit in range(field.bits):
                 inverted = int(values[field.name]) & (1 << field.bits) - 1 ^ 1 << bit

@@ -110,7 +110,8 @@ def _derived(node: Derived) -> Iterator[tuple[Change, LayoutNode]]:
     """Yield the changes of the formula of a derived value."""
     old, formula = node.derivation, node.scalar.formula
     for text in formulas(formula):
-        with suppress(FormulaError):  # no formula after the change, or the number is part of a name
+        # No formula after the change, or the number is part of a name
+        with suppress(FormulaError):
             new = parse(text, old.fields)
             if new.sense({}) != old.sense({}):
                 change = Change("formula", node.source, "formula", formula, text)

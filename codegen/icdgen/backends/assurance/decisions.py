@@ -104,6 +104,7 @@ def missing(icd: Icd) -> Iterator[list[Cell]]:
 
 def _sections(node: Node, erratum: Erratum) -> Iterator[Map]:
     """Yield the sections of the ICD that an erratum concerns."""
+    # `where` is one place or a list of places.
     where = erratum.source.get("where")
     for place in where if isinstance(where, Seq) else [where]:
         if isinstance(place, Map) and "section" in place:

@@ -71,6 +71,7 @@ def read(folder: Path, icd: Icd, code_of: Callable[[str], str]) -> list[Measurem
     measurements = []
     for path in paths:
         data = _data(path)
+        # A measurement of other code would be misleading evidence.
         ours = ("ICDs: the digest", data["icd"], icd_digest(icd))
         code = (
             (f"code: the digest of `{name}`", measured_digest, code_of(name))

@@ -36,6 +36,7 @@ def files(icd: Icd, render: Renderer, folder: Path | None) -> Iterator[tuple[Pur
     digests = tuple((f"{node.title} ({node.name})", node.digest) for node in icd.nodes)
     of_errata = (erratum.source.place.file for node in icd.nodes for erratum in node.errata)
     read = Files(file for file in (*(node.file for node in icd.nodes), *of_errata) if file)
+    # The traceability computes thousands of mutations, so it runs once for all reports.
     traced, tracing = Trace(icd), Tracing(read, Symbols(icd))
     elements = {node.name: list(traced.elements(node)) for node in icd.nodes}
     every = [element for elements_of_node in elements.values() for element in elements_of_node]

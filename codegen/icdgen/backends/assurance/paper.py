@@ -54,6 +54,7 @@ def csv_text(columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
     semicolons.
     """
     file = io.StringIO()
+    # The default dialect writes CRLF, as RFC 4180 requires.
     writer = csv.writer(file)
     writer.writerow(columns)
     writer.writerows(["; ".join(lines_of(cell)) for cell in row] for row in rows)

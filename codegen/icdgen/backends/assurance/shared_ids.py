@@ -60,7 +60,8 @@ def _answer(icd: Icd, row: SharedRow, messages: Sequence[Message]) -> object:
     An empty tuple stands for any other response.
     """
     candidates = [message for message in messages if getattr(message, f"{row.direction}_id") == row.id]
-    if len(candidates) == 1:  # the id identifies the message: the dispatcher decodes all frames
+    # The id identifies the message: the dispatcher decodes all frames
+    if len(candidates) == 1:
         return () if len(row.frame) in candidates[0].layout.lengths else candidates[0].layout.longest
     try:
         message = codec.message_of_frame(icd, candidates, row.frame) if candidates else None

@@ -58,6 +58,7 @@ class Symbols:
         for language in self.languages:
             by_source = self._symbols[language] = {}
             for identifier in backends.get(language).identifiers(icd):
+                # Names of the support layer have no line in the ICD.
                 if identifier.source is not None:
                     by_source.setdefault(id(identifier.source), []).append(Symbol(identifier.scope, identifier.text))
 

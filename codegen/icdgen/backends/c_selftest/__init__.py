@@ -37,6 +37,7 @@ class CSelftestBackend:
         from icdgen.backends.c_selftest import rows
         from icdgen.describe import describe
 
+        # The names must match those of the generated C package.
         prefixed = with_prefix(icd, self.packages.c_prefix)
         return with_short_names(rows.files(prefixed, render), lambda: declared_names(describe(prefixed)))
 

@@ -159,6 +159,7 @@ class _Rows:
         is_bytes, index = field.is_bytes, field.index
         line = tuple(id(step.node) for step in field.steps)
         stem = f"{names.stem(description.message)}_selftest_{description.name}"
+        # Elements of an array have equal tables, which would multiply the code size.
         tables = tables_by_line.setdefault(line, stem)
         unfit = [v for v in vectors.unfit.get(field.name, ()) if not is_bytes and storage.min <= v <= storage.max]
         return FieldRow(
@@ -190,7 +191,8 @@ def _id(id: int, message: Message | None) -> str:
     """
     if message is None:
         return f"{{{id}u, -1, 0u, ICD_ERROR_UNKNOWN_ID}}"
-    is_refused = any(part.low > 0 for part in message.layout.parts)  # counters of 0 are below the minimum
+    # Counters of 0 are below the minimum
+    is_refused = any(part.low > 0 for part in message.layout.parts)
     return f"{{{id}u, {message.length}, {message.layout.shortest}u, {'ICD_ERROR_LENGTH' if is_refused else 'ICD_OK'}}}"
 
 

@@ -38,6 +38,7 @@ class HtmlBackend:
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """Yield each page, and the files that pages load."""
+        # Imported late: other commands do not need the pages.
         from icdgen.backends.html.site import files
 
         return files(icd, render, self.packages, self.previous)

@@ -16,7 +16,8 @@ from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Crc, Step
 
 _IN_HEXADECIMAL = ("address_7bit", "check", "printed_constant")
-_BESIDES = ("source", "assumptions", "summary")  # place in the manual, reasons (in a separate table), prose
+# Place in the manual, reasons (in a separate table), prose
+_BESIDES = ("source", "assumptions", "summary")
 
 
 class Row(NamedTuple):
@@ -65,6 +66,7 @@ def with_others(relations: Relations, facts: Facts, parts: list[Part], section: 
     """
     urls = {message.name: relations.links.message(message) for message in relations.icd.messages_of(facts.node)}
     read = {f"{path}.{fact.key}" for path, thing in _things(facts) for fact in facts_of(thing)}
+    # CRC parameters have their own tables.
     read |= {f"{path}.{fact.key}" for path in ("crc8", "crc16") for fact in facts_of(Crc)}
     parts_by_anchor = {part.anchor: replace(part, rows=[*part.rows]) for part in parts}
     for path, key, form, value in _keys_with_values(schema.protocol(), section, ()):

@@ -20,7 +20,8 @@ from icdgen.icd.model import Message, Node
 from icdgen.icd.places import NodePlace, scalars_in
 
 WIDTH, LEFT, TOP = 1000, 64, 24
-_FEW = 3  # maximum rows of one field; of longer fields, the first and the last row are drawn
+# Maximum rows of one field; of longer fields, the first and the last row are drawn
+_FEW = 3
 
 
 @dataclass
@@ -34,7 +35,8 @@ class Shape:
     kind: str
     title: str
     anchor: str = ""
-    rects: list[tuple[int, int, int, int]] = field(default_factory=list)  # x, y, width, height
+    # x, y, width, height
+    rects: list[tuple[int, int, int, int]] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
 
 
@@ -79,6 +81,7 @@ def bytes_a_row(length: int, fields: Sequence[NodePlace]) -> int:
     """Return the bytes in a row: 1 for short frames of small fields, up to 4 for long
     frames.
     """
+    # Names of small fields need wide cells.
     small = any(f.bits < 8 for f in fields)
     if length == 1 or (small and length <= 12):
         return 1
@@ -102,6 +105,7 @@ class _Canvas:
         ]
         self.owner = self._owners()[8 * first : 8 * end]
         self.grid, self.rows = self._grid()
+        # Higher rows leave room for names in two lines.
         narrow = any(len(set(row)) > 2 * self.across for _, row in self.grid)
         self.row = (46 if narrow else 34) if self.across < 4 else 30
 
@@ -134,7 +138,8 @@ class _Canvas:
             for piece in layout.pieces(place, self.node):
                 right = 8 * piece.byte + 8 - piece.shift
                 for bit in range(right - piece.bits, right):
-                    owner[bit] = owner[bit] or shape.key  # the first one of alternative fields
+                    # The first one of alternative fields
+                    owner[bit] = owner[bit] or shape.key
         return owner
 
     def _grid(self) -> tuple[list[tuple[int, list[int]]], list[int]]:
@@ -201,6 +206,7 @@ class _Canvas:
                 if owner != key:
                     continue
                 x, y, width = self._x(start), self._y(index), self._x(end) - self._x(start)
+                # Joined rectangles show one name instead of one per row.
                 above = next((r for r in rectangles if r[0] == x and r[2] == width and r[1] + r[3] == y), None)
                 if above:
                     above[3] += self.row

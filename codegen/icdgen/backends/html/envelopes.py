@@ -199,6 +199,7 @@ class Part(NamedTuple):
 
 def packet(form: Stream, link: Any, id: int, direction: Direction, data: bytes) -> list[Part]:
     """Return the parts of a message in its packet format, before byte stuffing."""
+    # Without delimiter: byte stuffing would move the borders of the parts.
     packet_bytes = stream_encode(link._replace(stream=link.stream._replace(delimited_by=PACKET)), id, data, direction)
     head, end = form.header_bytes, len(packet_bytes) - form.trailer_bytes
     before, behind = (", ".join(f.role for f in form.fields if f.in_trailer == where) for where in (False, True))

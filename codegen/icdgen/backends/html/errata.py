@@ -48,6 +48,7 @@ def _group(relations: Relations, node: Node) -> Group:
 
 
 def _entry(relations: Relations, erratum: Erratum) -> Entry:
+    # Equal ids of different nodes are distinguished by their titles.
     places = relations.places[erratum.id, erratum.title]
     return Entry(
         erratum, places[:_FEW], places[_FEW:], list(dict.fromkeys(place.text.split(": ")[0] for place in places))

@@ -50,6 +50,7 @@ def examples(message: Message, node: Node) -> list[Example]:
     """
     if not message.length:
         return []
+    # Random bits show each field; a frame of ones shows the extreme values.
     rows = [("random 0", patterns.random_frame(message, "vector 0")), ("all ones", b"\xff" * message.length)]
     results = []
     for why, frame in rows:

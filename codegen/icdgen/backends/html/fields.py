@@ -50,7 +50,8 @@ class FlagRow:
 
 _MANY_FLAGS = 6  # minimum number of consecutive flags of a grid
 
-_COLUMNS = ("raw", "physical", "resolution", "unit", "formula")  # omitted if all their cells are empty
+# Omitted if all their cells are empty
+_COLUMNS = ("raw", "physical", "resolution", "unit", "formula")
 
 
 def columns_of(rows: list[FieldRow]) -> list[str]:
@@ -105,6 +106,7 @@ def _row(key: int, field: NodePlace, message: Message, links: Links, anchor: str
         resolution=texts.factor(abs(field.scale.factor)) if field.scale else "",
         unit=field.unit_symbol,
         unit_url=links.unit(field.unit) if field.unit else "",
-        formula=field.formula if field.has_formula or field.derived else "",  # a lookup table is part of the notes
+        # a lookup table is part of the notes
+        formula=field.formula if field.has_formula or field.derived else "",
         notes=[texts.capitalized(note) for note in field_remarks],
     )

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 FOLDER = "icdgen-docs"  # no name of a node contains a hyphen
 HOME = f"{FOLDER}/index.html"
 INDEX = "README"  # page that lists the others
-_OF_EVERY_PAGE = ("content", "sidebar", "search", "results", "theme")  # ids in use by the page template
+# Ids in use by the page template
+_OF_EVERY_PAGE = ("content", "sidebar", "search", "results", "theme")
 _LONG = 12_000  # characters of a page whose sections are folded
 
 
@@ -120,6 +121,7 @@ def _anchors(title: str) -> Iterator[str]:
 def _page(path: Path, name: str = "") -> Page:
     from markdown_it import MarkdownIt
 
+    # The manual contains no HTML; disabling it makes its text safe.
     reader = MarkdownIt("commonmark", {"html": False}).enable(["table", "strikethrough"])
     tokens = reader.parse(path.read_text("utf-8"))
     page = Page(name or path.stem, "")
@@ -199,6 +201,7 @@ def _target(href: str, path: Path) -> str:
         return ""
     if not name:
         return href
+    # A link must not leave the documentation folder.
     target = (path.parent / name).resolve()
     if not target.is_file() or not target.is_relative_to(_top(path)):
         return ""

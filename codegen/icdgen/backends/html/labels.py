@@ -55,6 +55,7 @@ def _wrap(text: str, width: int, most: int) -> list[str]:
     impossible.
     """
     lines: list[str] = []
+    # No box is large enough for more text.
     for word in text[:400].split():
         if len(word) > width:
             return []

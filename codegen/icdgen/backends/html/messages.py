@@ -37,6 +37,7 @@ def values(relations: Relations, node: Node, message: Message, render: Renderer)
     rows = fields.rows(message, node, relations.links)
     shown = examples(message, node)
     is_received = message.telemetry_id is not None
+    # A telecommand shows its initial values.
     data = shown[0].frame if shown and is_received else codec.encode(node, message, codec.initial_values(node, message))
     return {
         "message": message,

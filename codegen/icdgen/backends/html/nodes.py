@@ -90,6 +90,7 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
     """Return the values of the page of a node, and of the page with all its messages."""
     used_messages = sorted(relations.icd.messages_of(node), key=lambda m: m.node != node.name)
     rows = [_row(relations, node, message) for message in used_messages]
+    # `reversed`: the first message of a shared id has precedence.
     received = {m.telemetry_id: relations.place(m) for m in reversed(relations.icd.messages_of(node))}
     numbering = f"bit 0 is the {'least' if node.bit_order == 'lsb0' else 'most'} significant"
     return {

@@ -95,7 +95,8 @@ def _field(field: NodePlace, message: Message, node: Node, places: Mapping[str, 
         "unit": field.unit_symbol or None,
         "enum": field.enum.name if field.enum else None,
         "const": None if field.const is None else integer(field.const),
-        "special": [[integer(special.value), special.meaning] for special in field.special] or None,  # bits of floats
+        # Bits of floats
+        "special": [[integer(special.value), special.meaning] for special in field.special] or None,
         "limits": limits or None,  # numerator and denominator of each
         "when": [[places[condition.field], list(map(integer, condition.values))] for condition in field.when] or None,
         "derived": (

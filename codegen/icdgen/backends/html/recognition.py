@@ -33,6 +33,7 @@ def index(relations: Relations) -> dict[str, Any]:
 def _tail(relations: Relations, message: Message) -> list[dict[str, Any]]:
     """Return the lengths of frames of variable length, and the bits of the counter."""
     own, parts = message.layout, message.layout.parts
+    # Any length down to the shortest is possible, and nothing counts the bytes.
     if message.may_end_early:
         return [{"least": own.shortest, "step": 1, "pieces": []}]
     if not parts:

@@ -50,7 +50,8 @@ class Relations:
             owner.name: [node for node in icd.nodes if node is owner or owner in icd.included(node)]
             for owner in icd.nodes
         }
-        self.uses: dict[tuple[str, str], list[Place]] = defaultdict(list)  # fields of an enumeration type
+        # Fields of an enumeration type
+        self.uses: dict[tuple[str, str], list[Place]] = defaultdict(list)
         self.units: dict[str, tuple[Unit, list[Place]]] = {}  # unit with its fields
         self.places: dict[tuple[str, str], list[Place]] = defaultdict(list)
         self.contained_in: dict[tuple[str, str], list[Contained]] = defaultdict(list)
@@ -90,6 +91,7 @@ class Relations:
             for member in enum.members:
                 anchor = self.links.anchor(enum, str(member.value))
                 self._errata(member.errata, Place(f"{enum.name}: {member.name}", f"{url}#{anchor}"))
+        # Log masks refer to frames by their telemetry id.
         by_id = {m.telemetry_id: m for m in spoken.values() if m.telemetry_id is not None}
         for row in node.loggable:
             if row.id in by_id:

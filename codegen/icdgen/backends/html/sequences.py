@@ -119,6 +119,7 @@ def _steps(relations: Relations, procedure: object) -> Iterator[Arrow]:
         if fact.kind is not Kind.STEP or not isinstance(step, Step):
             continue
         name, url = step.message.name, relations.links.message(step.message)
+        # Telemetry takes two arrows: the request and the reply.
         is_asked = fact.direction == "telemetry"
         yield Arrow(True, f"request for {name}" if is_asked else name, fact.about, url)
         if is_asked:

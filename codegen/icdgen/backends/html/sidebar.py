@@ -44,6 +44,7 @@ def of_node(relations: Relations, node: Node, render: Renderer) -> Callable[[str
 
     def of_page(url: str) -> object:
         target = f'href="{html.escape(PurePosixPath(url).name)}">'
+        # Only the open group contains links: pages would otherwise grow with the ICD.
         shown = [head, *(unfolded if f"<li><a {target}" in unfolded else folded for folded, unfolded in group_texts)]
         return Markup("".join(shown).replace(f"<li><a {target}", f'<li><a aria-current="page" {target}', 1))
 

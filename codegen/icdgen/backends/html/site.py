@@ -74,6 +74,7 @@ def files(
         "sidebar": "",
         "changed": errata.changed,
         "hatch": drawing.hatch,
+        # Content security policy: the site loads nothing from the network.
         "policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; base-uri 'none'; form-action 'none'",
     }
 

@@ -72,4 +72,5 @@ def clip(text: str, most: int) -> str:
 def script_json(value: object) -> str:
     """Return JSON that is safe within a script element."""
     text = json.dumps(value, separators=(",", ":"))
+    # `</script>` in a name would end the script element.
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")

@@ -55,6 +55,7 @@ def _numberings(relations: Relations) -> list[tuple[str, str, str]]:
 
 
 def _widths(kind: str, widths: set[int]) -> str:
+    # Byte strings occur in many widths, so a range is shown.
     if kind in ("bytes", "text") and len(widths) > 6:
         return texts.span(str(min(widths)), str(max(widths)))
     return ", ".join(map(str, sorted(widths)))

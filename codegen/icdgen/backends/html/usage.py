@@ -36,6 +36,7 @@ def snippets(
 
     ``in_c``: message with the C prefix of its node.
     """
+    # Only names in C have the prefix of the project.
     of_c = _values(in_c, packages)
     of_other_languages = _values(message, packages)
     return [

@@ -188,6 +188,7 @@ def _stream(message: Message, wire: Wire, data: bytes) -> Bus | None:
                 Line(direction.capitalize(), [Chunk(part.kind, _hex(part.data), part.title) for part in parts])
             )
             sent = stream_encode(wire.link, id, data, direction)
+            # Byte stuffing changed the bytes, so they are shown a second time.
             if sent != b"".join(part.data for part in parts):
                 lines.append(Line("in wire order", [Chunk("data", _hex(sent), "stuffed, between delimiters")]))
     return Bus("Envelope", f"A message ends {envelopes.ENDS[form.delimited_by]}.", lines)

@@ -30,7 +30,8 @@ def _of_message(message: Message) -> Iterator[Row]:
     own = {
         "Message": message.name, "ID": message.id, "Set ID": message.set_id, "Get ID": message.get_id, "Kind": message.kind,
         "Group": message.group, "Message description": message.summary,
-        "Length": None if message.layout.sequence else message.length,  # a length that varies follows from the fields
+        # a length that varies follows from the fields
+        "Length": None if message.layout.sequence else message.length,
     }  # fmt: skip
     for cells in fields or [{}]:
         cells_of_row = own | cells

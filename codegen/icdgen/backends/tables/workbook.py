@@ -15,7 +15,8 @@ from icdgen.errors import UserError
 from icdgen.icd.model import Node
 
 WIDEST = 60  # characters of a column
-_EPOCH = datetime.datetime(1980, 1, 1)  # the first time that a ZIP archive can represent
+# The first time that a ZIP archive can represent
+_EPOCH = datetime.datetime(1980, 1, 1)
 
 
 def of_rows(node: Node, rows: list[Row]) -> bytes:
@@ -46,6 +47,7 @@ def of_rows(node: Node, rows: list[Row]) -> bytes:
         cell.font = Font(bold=True)
         texts = [str(row[cell.column - 1]) for row in table]
         sheet.column_dimensions[get_column_letter(cell.column)].width = min(max(map(len, texts)) + 2, WIDEST)
+    # Title and headings remain visible.
     sheet.freeze_panes = "A3"
     sheet.auto_filter.ref = f"A2:{get_column_letter(len(HEADINGS))}{len(rows) + 2}"
     data = io.BytesIO()

@@ -34,9 +34,11 @@ class Entry(NamedTuple):
     name: str
     run: Run
     is_array: bool = False
-    needs: tuple[tuple[str, tuple[int, ...]], ...] = ()  # condition of presence: raw values of other fields
+    # Condition of presence: raw values of other fields
+    needs: tuple[tuple[str, tuple[int, ...]], ...] = ()
     value: str | None = None  # of a fixed value: hexadecimal
-    at: int | None = None  # bits from the start of the container; None: after the previous entry
+    # Bits from the start of the container; None: after the previous entry
+    at: int | None = None
 
 
 @dataclass
@@ -61,11 +63,13 @@ class Frame:
     entries: list[Entry] = field(default_factory=list)
     size: int = 0  # bits of each frame, if optional entries leave it undefined
     base: Base | None = None  # of a message that shares its id
-    discriminators: list[tuple[str, int]] = field(default_factory=list)  # constants of the base and their values
+    # Constants of the base and their values
+    discriminators: list[tuple[str, int]] = field(default_factory=list)
     # omitted content that XTCE cannot represent; a command with omissions is not exported
     lacks: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)  # other limitations
-    names: dict[str, str] = field(default_factory=dict)  # field -> parameter or argument
+    # Field -> parameter or argument
+    names: dict[str, str] = field(default_factory=dict)
 
 
 _PLAIN: dict[str, Any] = {"terms": (), "points": (), "extrapolates": False, "limits": (), "labels": ()}
@@ -95,7 +99,8 @@ class Frames:
     head: int
     shared: dict[int, int]  # shared id -> number of bytes that all its frames have
     taken: set[str]  # names of containers or commands, and of parameters
-    bases: dict[int, Base] = field(default_factory=dict)  # base containers of shared ids
+    # Base containers of shared ids
+    bases: dict[int, Base] = field(default_factory=dict)
     reserved: dict[str, Row] = field(default_factory=dict)
 
     def frame(self, message: MessageDescription) -> Frame:
@@ -215,7 +220,8 @@ class Frames:
             return
         covered = max((entry.run.at + entry.run.bits for entry in entries), default=self.head)
         entries += map(self._reserved, gaps((), -(-covered // 8) * 8, end))
-        entries.sort(key=lambda entry: bool(entry.needs))  # unconditional entries first: conditions refer to them
+        # Unconditional entries first: conditions refer to them
+        entries.sort(key=lambda entry: bool(entry.needs))
         frame.entries = [entry._replace(at=entry.run.at) for entry in entries]
         frame.size = end if any(entry.needs for entry in entries) else 0
 

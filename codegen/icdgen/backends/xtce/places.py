@@ -39,9 +39,11 @@ def run_of(field: NodePlace, node: Node) -> Run | None:
         return Run(field.at, field.bits)
     orders = field.orders_in_effect(node.orders)
     pieces = sorted(layout.pieces_at(field.at, field.bits, orders.byte, orders.bit), key=lambda piece: piece.at)
+    # Most significant bit first, from the first byte on.
     falling = _joined([(8 * piece.byte + 8 - piece.shift - piece.bits, piece.bits) for piece in reversed(pieces)])
     if falling is not None:
         return Run(falling, field.bits)
+    # Least significant bit first.
     rising = _joined([(8 * piece.byte + piece.shift, piece.bits) for piece in pieces])
     return None if rising is None else Run(rising, field.bits, is_little=True)
 

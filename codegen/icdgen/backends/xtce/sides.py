@@ -18,7 +18,8 @@ _PACKET = {
     "Version": Run(0, 3), "Type": Run(3, 1), "SecondaryHeader": Run(4, 1), "Apid": Run(5, 11),
     "SequenceFlags": Run(16, 2), "SequenceCount": Run(18, 14), "Length": Run(32, 16),
 }  # fmt: skip
-_IN_COMMANDS = {"Type": 1, "SequenceFlags": 3}  # other fields are 0; the sender sets counter and length
+# Other fields are 0; the sender sets counter and length
+_IN_COMMANDS = {"Type": 1, "SequenceFlags": 3}
 
 
 class Head(NamedTuple):
@@ -77,6 +78,7 @@ def side(icd: Icd, node: NodeDescription, direction: str) -> Side | None:
 def _head(id_bits: int, protocol: dict[str, Any], direction: str, types: Types) -> Head:
     """Return the header of all messages of a direction."""
     header = protocol.get("stream", {}).get("header", ())
+    # The header of CCSDS 133.0-B-2 is recognized by the positions of its fields.
     is_packet = [(row.get("at"), row.get("bits")) for row in header] == [run[:2] for run in _PACKET.values()]
     places = _PACKET if is_packet else {"Id": Run(0, -(-id_bits // 8) * 8)}
     id = "Apid" if is_packet else "Id"

@@ -106,6 +106,7 @@ def type_of(field: NodePlace, is_little: bool = False) -> Type:
     encoding = "" if field.type == "float" or field.is_bytes else "twosComplement" if field.is_signed else "unsigned"
     field_type = Type(_KINDS[field.type], field.bits, encoding, order, field.unit_symbol)
     if field.enum is not None:
+        # XTCE 1.2 defines enumeration values as xs:long.
         labels = tuple(member for member in field.enum.members if member.value in _LONG and member.last in _LONG)
         return replace(field_type, labels=labels, enum=field.enum.name)
     if field.has_formula:
@@ -142,7 +143,8 @@ def _calibration(field: NodePlace) -> dict[str, Any]:
     if not curve.points:
         return {"terms": _terms(list(map(Fraction, curve.coefficients)))}
     points = list(map(_point, curve.points))
-    if curve.outside == CLAMP and field.type != "float":  # XTCE cannot clamp; horizontal segments have the same effect
+    # XTCE cannot clamp; horizontal segments have the same effect
+    if curve.outside == CLAMP and field.type != "float":
         if curve.points[0][0] > field.raw_min:
             points.insert(0, (str(field.raw_min), points[0][1]))
         if curve.points[-1][0] < field.raw_max:

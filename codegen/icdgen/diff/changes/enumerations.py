@@ -16,6 +16,7 @@ from icdgen.icd.rules.wording import quote
 @rule("DIF204", "field")
 def other_enumeration(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old.enum, pair.new.enum
+    # A renamed enumeration is no other enumeration (`same_enum`).
     if (pair.old.type == "enum") == (pair.new.type == "enum") and ctx.match.same_enum(old, new):
         return
     was, now = old.name if old else "", new.name if new else ""

@@ -36,6 +36,7 @@ def _differences(old: Erratum, new: Erratum) -> tuple[str, str, str]:
     """Return the description of a changed entry, its old text and its new text."""
     parts = [part for part in _PARTS if getattr(old, part) != getattr(new, part)]
     was, now = _kind(old), _kind(new)
+    # Then the first differing attribute shows the change best.
     if was == now:
         was, now = (str(getattr(entry, parts[0])) if parts else "" for entry in (old, new))
     return f"says otherwise ({listing(parts) if parts else 'what it changes'})", was, now

@@ -97,6 +97,7 @@ def kind_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
 @rule("DIF106", "message")
 def length_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
+    # Rule DIF119 reports changes of the variable part itself.
     if old.layout.sequence or new.layout.sequence:
         if old.layout.sequence and new.layout.sequence and old.layout.length != new.layout.length:
             text = f"{quote(new.name)} has {length_text(new)}, had {length_text(old)}"

@@ -32,6 +32,7 @@ def fact_differs(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
         is_around = have_packet_formats and AROUND.fullmatch(fact.path)
         # Another notation, such as an explicit default byte order, changes no frame.
         is_spelling = is_around and not changed_packet_formats and "checksums" not in fact.path
+        # Texts and notation are a note; other facts change what is transmitted.
         if fact.is_word or is_spelling:
             code, what, keys = "DIF413", "says otherwise", ()
         else:

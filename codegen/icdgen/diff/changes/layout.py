@@ -72,6 +72,7 @@ def _cause(move: Move) -> str:
 @rule("DIF110", "field")
 def width_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
+    # The width of variable-length bytes is their maximum, which DIF119 reports.
     if old.bits != new.bits and not (new.is_bytes and pair.is_open):
         text = f"{quote(new.name)} has {count(new.bits, 'bit')}, had {old.bits}"
         yield CheckResult(text, ("bits",), f"{old.bits} bits", f"{new.bits} bits")
@@ -81,7 +82,8 @@ def width_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
 def count_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     before, after = old.own_count, new.own_count
-    if before != after and (pair.is_of_struct or not pair.is_open):  # see DIF119; of structs DIF127
+    # See DIF119; of structs DIF127
+    if before != after and (pair.is_of_struct or not pair.is_open):
         was, now = (count(number, "element") if number else "one value" for number in (before, after))
         text = f"{quote(new.name)} is {_an_array(after)}, was {_an_array(before)}"
         yield CheckResult(text, ("count", "bits"), was, now)
@@ -118,6 +120,7 @@ def read_otherwise(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
         return
     details: tuple[str, ...] = ()
     if {kind(old), kind(new)} == {"unsigned", "int"} and old.bits == new.bits:
+        # The first value that the two interpretations read differently.
         half = 1 << (new.bits - 1)
         first, last = (str(half), str(-half)) if new.is_signed else (str(-half), str(half))
         details = (f"Bits read as {first} is read as {last}.",)
@@ -132,6 +135,7 @@ def order_changed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
     fields, messages = [], set()
     for message in pair.messages:
         for field in message.common:
+            # Fields that also moved are reported by their own rules.
             if field.old.at == field.new.at and field.old.width == field.new.width and not field.same_bits:
                 fields.append(field.new.name)
                 messages.add(message.new.name)

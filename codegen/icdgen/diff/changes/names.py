@@ -32,7 +32,8 @@ def lines(renamed: Renamed) -> tuple[str, ...]:
     """
     rows_by_language: dict[str, list[str]] = {}
     one_way = any(all(pair[side] is None for pair in renamed) for side in (0, 1))
-    for old, new in sorted(renamed, key=lambda names: not _either(*names).text.endswith("_t")):  # types first
+    # Types first
+    for old, new in sorted(renamed, key=lambda names: not _either(*names).text.endswith("_t")):
         text = f"{f'`{old.text}`' if old else '(new)'} -> {f'`{new.text}`' if new else '(gone)'}"
         if one_way:
             text = f"`{_either(old, new).text}`"
@@ -47,6 +48,7 @@ def lines(renamed: Renamed) -> tuple[str, ...]:
 
 
 def _renamed(pair: IdentifiedPair, ctx: Context) -> Iterator[CheckResult]:
+    # DIF310 reports names that change because of another node.
     if not is_renamed(pair) or pair.is_of_another_node:
         return
     renamed = ctx.generated.renamed(pair)
@@ -114,6 +116,7 @@ def accessors_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
 @rule("DIF309", "node")
 def words_split_otherwise(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old.vocabulary, pair.new.vocabulary
+    # The order of the vocabulary has no effect.
     if frozenset(old) == frozenset(new):
         return
     renamed: Renamed = []

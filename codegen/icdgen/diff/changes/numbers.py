@@ -38,6 +38,7 @@ def scale_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     if isinstance(old, Curve) or isinstance(new, Curve):
         text = f"the value of {quote(pair.new.name)} is {now}, was {was}"
         yield CheckResult(text, ("points", "outside", "formula", "unit"), was, now, _points(old, new), code="DIF201")
+    # An inverted sign is more dangerous than another scale, so it has its own rule.
     elif old.factor == -new.factor:
         text = f"the sign of {quote(pair.new.name)} is turned: {now}, was {was}"
         yield CheckResult(text, ("formula",), was, now, code="DIF203")

@@ -33,6 +33,7 @@ def _answer(message: Message) -> str:
 @rule("DIF213", "field", "message", severity="warning")
 def name_says_otherwise(pair: FieldPair | MessagePair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old.name, pair.new.name
+    # Other spellings and more precise names keep the meaning.
     if old != new and not same_sense(old, new) and not extends(old, new):
         text = f"what was called {quote(old)} is called {quote(new)}: make sure that it is the same thing"
         yield CheckResult(text, ("name",), old, new)

@@ -29,7 +29,8 @@ from icdgen.icd.rules.wording import count, quote
 class _Declared(NamedTuple):
     """Declarations in generated code of a struct."""
 
-    names: dict[int, list[Name]]  # bit position of a member -> its names; -1: names of the struct
+    # Bit position of a member -> its names; -1: names of the struct
+    names: dict[int, list[Name]]
     members: dict[str, str]  # name -> declaration in C
 
 
@@ -74,6 +75,7 @@ def _in_words(repeated: tuple[tuple[int, int], ...]) -> str:
 
 @rule("DIF313", "node")
 def struct_declared_otherwise(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
+    # Computing all names takes long, and most ICDs have no structs.
     if not pair.old.structs and not pair.new.structs:
         return
     old, new = ({struct.name: struct for struct in node.structs} for node in (pair.old, pair.new))

@@ -139,6 +139,7 @@ def _sections(pair: NodePair, key: str) -> Places:
 def order_restated(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
     if orders(pair.old) == orders(pair.new):
         return
+    # Then DIF112 reports the order.
     if any(not field.same_bits for message in pair.messages for field in message.common):
         return
     was, now = (" ".join(orders(side)) for side in (pair.old, pair.new))

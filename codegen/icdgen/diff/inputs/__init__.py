@@ -34,6 +34,7 @@ def one_side(word: str, usual: list[Path]) -> Side:
 def _resolve(arguments: list[str], usual: list[Path]) -> tuple[Input, Input]:
     git = Git()
     first = arguments[0] if arguments else ""
+    # An existing file has precedence over a git range of the same name.
     span = None if not first or os.path.exists(first) else git.span(first)
     if span is not None:
         paths = git.inside(map(Path, arguments[1:])) if arguments[1:] else git.usual(usual)

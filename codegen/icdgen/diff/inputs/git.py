@@ -88,6 +88,7 @@ class Git:
             return Spec(revision, self.usual(usual), word, top=self.top)
         here = PurePosixPath(os.path.relpath(os.path.realpath("."), self.top).replace(os.sep, "/"))
         inner = PurePosixPath(path)
+        # `git show REVISION:./path` is relative to the current folder too.
         if path.startswith("./"):
             inner = here / inner
         if ".." in inner.parts or inner.is_absolute():
@@ -135,6 +136,7 @@ def _name(path: PurePosixPath) -> str:
 def _export(revision: str, home: PurePosixPath, folder: Path, top: str) -> None:
     below = ["--", f"{_name(home)}/"] if _name(home) else []
     blobs: list[tuple[str, str]] = []
+    # -z: git would quote names with special characters otherwise.
     for line in _run("ls-tree", "-r", "-z", "--full-tree", revision, *below, top=top).split("\0"):
         head, _, path = line.partition("\t")
         if path.endswith(_SUFFIX):

@@ -80,6 +80,7 @@ def from_bytes(data: bytes, name: str) -> Side:
     _check(tree, name)
     nodes: list[model.Node] = []
     for item in tree["nodes"]:
+        # Nodes are read in order, so an included node must come first.
         for index, include in enumerate(item["includes"]):
             if all(node.name != include for node in nodes):
                 place = item["includes"].item_at(index)
@@ -91,7 +92,8 @@ def from_bytes(data: bytes, name: str) -> Side:
 
 def _tree(data: bytes, name: str) -> Map:
     try:
-        return source.parse(data, name)  # JSON is valid YAML, and this reader records places
+        # JSON is valid YAML, and this reader records places
+        return source.parse(data, name)
     except Findings:
         pass
     try:
@@ -158,7 +160,8 @@ class _Reader:
         enums = tuple(self.enum(enum, item["name"]) for enum in item["enums"])
         self.enums.update((enum.name, enum) for enum in enums)
         structs = []
-        for struct in get("structs", ()):  # structs are sorted: nested structs come first
+        # Structs are sorted: nested structs come first
+        for struct in get("structs", ()):
             structs.append(self.struct(struct, item["name"]))
             self.structs[structs[-1].name] = structs[-1]
         return model.Node(

@@ -14,7 +14,8 @@ from icdgen.icd.loaded import Loaded
 from icdgen.icd.model import Icd
 from icdgen.loading import load
 
-_READING = ("ICD001", "ICD002", "ICD003", "ICD004", "ICD010")  # reading errors: the model of the ICD is incomplete
+# Reading errors: the model of the ICD is incomplete
+_READING = ("ICD001", "ICD002", "ICD003", "ICD004", "ICD010")
 
 
 @dataclass
@@ -60,7 +61,10 @@ def from_git(spec: Spec, unchecked: bool = False) -> Side:
 
     Raises `UserError`.
     """
+    # Includes and errata are found by paths, so the loader needs real files.
     with tempfile.TemporaryDirectory(prefix="icdgen-diff-") as name:
+        # Findings contain resolved paths; on macOS the temporary folder is a symbolic
+        # link.
         folder = os.path.realpath(name)
         paths = spec.extract(Path(folder))
         if not paths:

@@ -85,6 +85,7 @@ def draw(pair: MessagePair, changes: list[Change]) -> Drawing | None:
     rows = [Row() for _ in range((max(*sides, 1) + BITS - 1) // BITS)]
     for size, y in zip(sides, (OLD_Y, NEW_Y), strict=True):
         _frame(rows, size, y)
+    # A link connects both boxes only where they are in the same row.
     for number, part in enumerate(sorted(pair.parts, key=lambda p: p.any.at)):
         kind, key = _kind(part, changes), f"f{number}"
         before = _boxes(rows, part.old, OLD_Y, kind, key) if part.before is not None else {}

@@ -31,6 +31,7 @@ def groups(changes: Iterable[Change]) -> list[Group]:
     groups_by_owner: dict[int, Group] = {}
     for change in changes:
         pair = change.pair
+        # Fields are listed with their message, members with their enumeration.
         owner = pair.owner if isinstance(pair, FieldPair | MemberPair) else pair
         group = groups_by_owner.get(id(owner))
         if group is None:

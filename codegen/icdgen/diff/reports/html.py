@@ -33,6 +33,7 @@ def report(report: Report, colour: bool = False, width: int | None = None, every
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader([shipped.templates() / "diff", shipped.templates() / "html"]),
         autoescape=True,
+        # Names come from the ICD: control characters must not reach the page.
         finalize=lambda value: printable(value) if type(value) is str else value,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,

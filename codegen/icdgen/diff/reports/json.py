@@ -71,6 +71,7 @@ def _change(change: Change, reason: str | None, names: tuple[Name, ...]) -> dict
         "old": _place(change.old),
         "new": _place(change.new),
         "details": change.details,
+        # Three digits are enough to compare matches.
         "sure": round(change.sure, 3),
         "errata": change.errata,
         "generated": {

@@ -39,6 +39,7 @@ def escaped(text: str) -> str:
     Text in back-ticks remains code.
     """
     parts = _CODE.split(shown(text))
+    # Even parts are text, odd parts were between back-ticks.
     parts[::2] = [_MARKUP.sub(r"\\\1", words) for words in parts[::2]]
     parts[1::2] = ["`" + code.replace("|", "\\|") + "`" if code else "\\`\\`" for code in parts[1::2]]
     return "".join(parts)

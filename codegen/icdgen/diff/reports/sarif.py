@@ -25,6 +25,7 @@ def report(report: Report, colour: bool = False, width: int | None = None, every
         _add_properties(result, change)
     for result, (change, entry) in zip(results[len(findings) :], report.accepted, strict=True):
         _add_properties(result, change)
+        # SARIF 2.1.0, 3.35: services hide suppressed results.
         result["suppressions"] = [{"kind": "external", "status": "accepted", "justification": entry.reason}]
     return json.dumps(document, indent=2) + "\n"
 

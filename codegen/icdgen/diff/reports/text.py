@@ -79,6 +79,7 @@ def _layer(report: Report, layer: str, paint: Paint, width: int | None, everythi
         return
     yield ""
     yield f"{paint(layer, layer)}: {ABOUT[layer]}"
+    # Changes of text are numerous and harmless.
     most = len(changes) if everything or layer != TEXT else MOST_WORDS
     for group in groups(changes[:most]):
         yield ""

@@ -55,6 +55,7 @@ def scripts(facts: Facts) -> Requests:
 def _single_requests(form: Stream, s: Sample) -> Iterator[tuple[str, Script]]:
     row = min(form.telecommands, key=lambda row: row.most)
     known_ids = {row_.id for row_ in (*form.telecommands, *form.telemetry)}
+    # The smallest unused id fits into the id field whenever possible.
     unknown = next(id for id in range(len(known_ids) + 1) if id not in known_ids)
     yield "unknown ids", [{"at": 0, "telecommand": unknown, "bytes": ""}, {"at": 0, "telemetry": unknown}]
     yield "a reply of an unknown id", [s.ask(0, row, reply=unknown)]
@@ -84,6 +85,8 @@ def _requests_with_reply(
     other = next((telemetry for telemetry in form.telemetry if telemetry.id != frame.id), frame)
     untaken, cancel = {"untaken": True}, {"cancel": True}
     bad = bytearray.fromhex(s.come(0, frame)["receive"])
+    # Delimited formats end with a delimiter, so a byte in the middle is damaged
+    # instead.
     bad[-1 if form.delimited_by in ("length", "none") else len(bad) // 2] ^= 1
     yield "the reply comes", [s.ask(0, row, **reply), s.come(30, frame), s.come(31, frame), {"at": 500}]
     yield "another message comes first", [s.ask(0, row, **reply), s.come(5, other), s.come(6, frame)]

@@ -31,6 +31,7 @@ class Sample:
         self.facts = facts
         sent, frames = facts.telecommands.values(), facts.telemetry.values()
         acknowledged = [m for m in sent if m.acknowledge and m.kind != CONFIGURATION]
+        # Prefer a telecommand that fits into one CAN packet.
         self.plain: Message = max(acknowledged or sent, key=lambda m: (m.length <= 8, m.length))
         self.long: Message = max(sent, key=lambda m: m.length)
         self.setting = next((m for m in sent if m.kind == CONFIGURATION), None)

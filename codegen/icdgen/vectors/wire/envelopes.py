@@ -15,7 +15,8 @@ from icdgen.protocol.facts import Facts, need
 from icdgen.vectors.wire import Requests, pieces
 
 _SPLITS = 40  # maximum number of split positions of a message
-_MARKERS = bytes((0x00, 0x7D, 0x7E, 0xC0, 0xDB, 0xDC, 0xDD, 0xFF))  # delimiter and escape bytes of SLIP, HDLC and COBS
+# Delimiter and escape bytes of SLIP, HDLC and COBS
+_MARKERS = bytes((0x00, 0x7D, 0x7E, 0xC0, 0xDB, 0xDC, 0xDD, 0xFF))
 
 
 def requests(facts: Facts, source: Random) -> Requests:
@@ -107,9 +108,11 @@ def _streams(form: Stream, direction: str, source: Random) -> Requests:
         ("nothing", b""),
     ]
     for why, line in streams:
+        # The events must not depend on how the stream is cut.
         for how, chunks in pieces(why, line, source):
             yield how, _events(direction, chunks)
     two_messages = b"\x01" + good + good
+    # Each split position once: a decoder must keep its state between two calls.
     for at in range(1, min(len(two_messages), _SPLITS)):
         yield f"two messages after noise, cut behind byte {at}", _events(
             direction, [two_messages[:at], two_messages[at:]]

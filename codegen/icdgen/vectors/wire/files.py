@@ -18,6 +18,7 @@ def requests(facts: Facts, source: Random) -> Requests:
         for value in (0, 0xFFFFFFFF, 0x00210000, *bits, *some):
             yield f"{value:08x}", {"op": "dos_time", "value": value}
         dates = [
+            # Limits of MS-DOS time, leap years, and parts that do not exist.
             (1980, 1, 1, 0, 0, 0), (2000, 2, 29, 12, 30, 31), (2020, 11, 3, 23, 59, 59), (2107, 12, 31, 23, 59, 58),
             (1979, 12, 31, 0, 0, 0), (2108, 1, 1, 0, 0, 0), (2100, 2, 29, 0, 0, 0), (2021, 4, 31, 0, 0, 0),
             (2021, 0, 1, 0, 0, 0), (2021, 13, 1, 0, 0, 0), (2021, 1, 0, 0, 0, 0), (2021, 1, 1, 24, 0, 0),

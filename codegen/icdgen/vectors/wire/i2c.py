@@ -28,6 +28,7 @@ def requests(facts: Facts, source: Random) -> Requests:
     step = facts.identification
     if step:
         for change in range(2):
+            # The second frame identifies another node type.
             frame = bytes([(facts.node.node_type or 0) + change, facts.node.interface_version or 0])
             yield "who the node is", {"op": "identify", "bytes": frame.ljust(step.message.length, b"\0").hex()}
         yield "a frame that is too short", {"op": "identify", "bytes": "00"}

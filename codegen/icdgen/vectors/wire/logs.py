@@ -12,6 +12,7 @@ from icdgen.vectors.wire import Requests
 def masks(facts: Facts) -> list[bytes]:
     """Return masks of no bit, of single bits, of some bits and of all bits."""
     layout = need(facts.mask, "log_mask")
+    # A frame shorter than its slot is followed by fill bytes.
     short = [bit for bit, row in layout.bits.items() if row.length < layout.slot_bytes]
     free = [bit for bit in range(layout.size * 8) if bit not in layout.bits]
     single = [1 << bit for bit in (*sorted(layout.bits)[::7], *short, *free[:1], *free[-1:])]

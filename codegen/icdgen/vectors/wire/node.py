@@ -29,8 +29,10 @@ class FileNode:
         self.files: dict[tuple[int, int], bytes] = {}
         self.pointer = 0
         self.block = b""  # loaded for download
+        # Received packets as reported by the client in its hole maps.
         self.map = bytes(facts.hole_map.bytes)
-        self.queue: list[int] = []  # packets to be read, on buses where the client reads them
+        # Packets to be read, on buses where the client reads them
+        self.queue: list[int] = []
         self.uploaded: dict[int, bytes] = {}
         self.program = b""
         self.polls = 0  # remaining polls until the node reports completion
@@ -47,6 +49,8 @@ class FileNode:
             if acknowledged and self.lost():  # either the request or its acknowledge
                 return [*(self._telecommand(request) if self.lost() else ()), {"event": "timeout"}]
             if not acknowledged and self.lost():
+                # An unacknowledged telecommand always succeeds for the client, even if
+                # it is lost.
                 return [{"event": "done", "bytes": ""}]
             return [*self._telecommand(request), {"event": "done", "bytes": ""}]
         return [{"event": "done", "bytes": self._telemetry(request.id).hex()}]
@@ -111,6 +115,7 @@ class FileNode:
             position = self.queue.pop(0) if self.queue else self.form.block_packets
             return self._packet(position)
         name, step = self.steps[id]
+        # The node becomes ready after a number of polls, independent of time.
         busy, self.polls = int(self.polls > 0), max(0, self.polls - 1)
         return step.frame(self.facts.node, self._values_of(name, busy))
 

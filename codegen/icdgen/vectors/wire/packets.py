@@ -63,6 +63,7 @@ def _joins(facts: Facts, source: Random, other: int, third: int) -> Requests:
         return can.split(facts, can.Message("telecommand", id, sender, node, data))
 
     first, second = sent(other, "one"), sent(other, "two")
+    # A second message that starts with the packets of the first one.
     alike = [*first[:2], *second[2:]]
     foreign = sent(third, "three")
     shuffled = source.sample(first, len(first))
@@ -93,6 +94,7 @@ def _joins(facts: Facts, source: Random, other: int, third: int) -> Requests:
     yield "a pause just short enough", {"op": "can_join", "packets": [_row(first[0]), *paused]}
     paused = [_row(packet, late) for packet in first]
     yield "a pause that is too long", {"op": "can_join", "packets": [_row(first[0]), *paused]}
+    # One sender more than a joiner can handle by default.
     crowd = [sent(sender, str(sender)) for sender in range(5)]
     turns = [packet for turn in zip(*crowd, strict=True) for packet in turn]
     for senders in (4, 5):

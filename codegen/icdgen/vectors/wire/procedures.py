@@ -34,6 +34,7 @@ def record(facts: Facts, request: dict[str, Any], node: FileNode) -> tuple[Scrip
             pending = procedure.next(now)
             continue
         events, tries = node.answer(pending), 1
+        # Only repeatable requests may be sent again, as by a real client.
         while pending.repeat and events[-1]["event"] == "timeout" and tries < ATTEMPTS:
             events, tries = events[:-1] + node.answer(pending), tries + 1
         for event in events:

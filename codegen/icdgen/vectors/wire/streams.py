@@ -87,8 +87,10 @@ def streams(facts: Facts, source: Random) -> Requests:
         yield why, {"op": "uart_decode", "bytes": stream.hex()}
         for how, chunks in pieces(why, stream, source):
             yield how, {"op": "uart_events", "chunks": [chunk.hex() for chunk in chunks]}
+    # Ten bytes after unescaping: one more than the smaller buffer.
     long = line(0x90, *range(1, 9), escape)
-    for limit in (9, 10) if facts.longest >= 10 else ():  # no buffer is longer than the longest message
+    # No buffer is longer than the longest message
+    for limit in (9, 10) if facts.longest >= 10 else ():
         cut = [(long + good[:-2]).hex(), finish.hex()]
         yield f"ten bytes in a buffer of {limit}", {"op": "uart_events", "limit": limit, "chunks": cut}
     too_long = uart.encode(framing, bytes([0x90]) * (facts.longest + 1))

@@ -64,6 +64,7 @@ def _never_done(facts: Facts, request: dict[str, Any], name: str, values: Values
             assert procedure.deadline is not None
             script += [{"at": procedure.deadline - 1}, {"at": procedure.deadline}]
             now = procedure.deadline
+            # The procedure must have given up by now.
             if first_frame_at >= 0 and now > first_frame_at + last:
                 break
         elif pending.kind == TELEMETRY and pending.id == step.message.telemetry_id:
