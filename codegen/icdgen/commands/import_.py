@@ -19,6 +19,7 @@ from icdgen.errors import UserError
 if TYPE_CHECKING:
     from icdgen.definitions.model import Reader
     from icdgen.import_results.targets import Target
+    from icdgen.importer.document import Document, SourceTable
     from icdgen.importer.run import Result
 
 
@@ -243,7 +244,11 @@ def _workbench(
     except Findings as error:
         _refuse(error, manual, form)
         sys.exit(1)
-    with server.serve(Session(document, tables, path, out)) as running:
+
+    def reader(words: profile.Profile) -> tuple[Document, list[SourceTable]]:
+        return sources.read(manual, words, None, jobs, pages)
+
+    with server.serve(Session(document, tables, path, out, reader)) as running:
         say(f"{manual}: {len(tables)} tables; open http://{server.HOST}:{running.server_port}/ (Ctrl-C ends it)")
         with suppress(KeyboardInterrupt):
             running.serve_forever()

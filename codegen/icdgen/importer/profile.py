@@ -65,16 +65,17 @@ class Profile:
 
     @cached_property
     def _rules_with_unknown_headings(self) -> list[Rule]:
-        made = []
-        for rule in self.rules:
-            words = {folded(title) for title in (*rule.heading_titles, *rule.column_titles)}
-            is_known = False
-            for kind, roles in self._headings_of_vocabulary.items():
-                there = {role for role, texts in roles.items() if words.intersection(texts)}
-                is_known = is_known or all(there.intersection(group) for group in self._needs_of_vocabulary[kind])
-            if rule.heading_titles and not is_known:
-                made.append(rule)
-        return made
+        """Rules of which some heading is not in the vocabulary of a kind: a row with all headings is their heading row."""
+        known = [
+            frozenset(heading for headings in roles.values() for heading in headings)
+            for roles in self._headings_of_vocabulary.values()
+        ]
+        return [
+            rule
+            for rule in self.rules
+            if rule.heading_titles
+            and not any({folded(title) for title in rule.heading_titles} <= words for words in known)
+        ]
 
     @cached_property
     def known_headings(self) -> dict[str, frozenset[tuple[str, ...]]]:

@@ -171,3 +171,22 @@ def test_fields_without_a_type_are_one_finding_for_all_tables(tmp_path):
     (message,) = found(result, "IMP026")
     assert "field `Load`: its type is not stated; the same in 3 more rows of 2 tables: `Heat`" in message
     assert {result.sure_of(table) for table in result.tables} == {"doubtful"}
+
+
+def test_a_word_of_an_index_for_a_kind_must_be_translated(tmp_path):
+    index = "  - what: index\n    tables: {head: Id | Message}\n    columns: {Id: id, Message: message, Dir: kind}\n"
+    rows = "Byte\tName\tType\n0\tMode\tu8\nAll messages:\nId\tMessage\tDir\n0x21\tMotor state\tTM\n"
+    rules = RULE.replace(", kind: telemetry", "") + index
+    result, _ = read(tmp_path, HEADING + rows, rules)
+    assert any("row of `Motor state`: its kind `TM` is none of" in m for m in found(result, "IMP031")) and result.failed
+    _, tree = read(tmp_path, HEADING + rows, rules + "    map: {kind: {TM: telemetry}}\n")
+    assert tree["messages"][0]["kind"] == "telemetry"
+
+
+def test_rows_of_a_list_state_the_kinds_of_their_messages(tmp_path):
+    listed = "  - what: list\n    tables: {head: Id | Message}\n    columns: {Id: id, Message: message, Dir: kind}\n"
+    rows = "Byte\tName\tType\n0\tMode\tu8\nAll messages:\nId\tMessage\tDir\n0x21\tMotor state\tTM\n0x21\tHalt\tTC\n"
+    rules = RULE.replace(", kind: telemetry", "") + listed + "    map: {kind: {TM: telemetry, TC: telecommand}}\n"
+    result, tree = read(tmp_path, HEADING + rows, rules)
+    assert tree["messages"][0]["kind"] == "telemetry"
+    assert [entry["kind"] for entry in tree["missing"]] == ["telecommand"] and not result.failed

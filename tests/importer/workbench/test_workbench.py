@@ -19,7 +19,7 @@ from icdgen.importer import profile, sources
 from icdgen.importer.workbench import server
 from icdgen.importer.workbench.session import Session
 from icdgen.loading import load
-from tests.importer.rules.drawing import draw, heading, table, text
+from tests.importer.rules.drawing import draw, heading, open_table, table, text
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 
@@ -169,7 +169,7 @@ def test_a_profile_is_written_with_the_keyboard_alone(page, session, tmp_path):
         page.keyboard.press("Control+a")
         page.keyboard.type(value)
     page.keyboard.press("Tab")
-    page.get_by_role("status").filter(has_text="0 errors, 1 warnings").wait_for()
+    page.get_by_role("status").filter(has_text="0 errors, 1 warning").wait_for()
     assert page.locator("table.fields").inner_text().split("\n")[1].split("\t")[:4] == ["0", "8", "Mode", "uint"]
     tab_to(page, "?3 ")  # the table of pins, which has no rule
     page.keyboard.press("Enter")
@@ -198,6 +198,59 @@ def test_the_picture_of_the_page_shows_the_tables_and_leads_to_them(page):
     assert image["x"] < outline["x"] and outline["y"] + outline["height"] < image["y"] + image["height"]
     assert outline["width"] > 0.2 * image["width"]
     assert page.get_by_label("show table 2").first.get_attribute("aria-current") == "true"
+
+
+def test_changes_are_undone_and_made_again_with_the_keyboard(page, session):
+    first = session.text
+    page.get_by_role("button", name="Ignore this kind").click()
+    page.get_by_role("button", name="Remove the rule").wait_for()
+    changed = session.text
+    page.keyboard.press("Control+z")
+    page.get_by_role("button", name="Ignore this kind").wait_for()
+    assert session.text == first
+    page.keyboard.press("Control+Shift+z")
+    page.get_by_role("button", name="Remove the rule").wait_for()
+    assert session.text == changed
+    page.get_by_role("button", name="Undo").click()
+    page.get_by_role("button", name="Make a rule for this kind").click()  # a new change ends what could be redone
+    page.get_by_label("These tables are").wait_for()
+    assert page.get_by_role("button", name="Redo").is_disabled()
+
+
+def test_words_and_numbered_headings_have_controls(page, session):
+    from playwright.sync_api import expect
+
+    page.get_by_role("button", name="Make a rule for this kind").click()
+    page.get_by_label("Words mean").fill("kind: TC = telecommand, TM = telemetry; type: CHAR = text")
+    page.get_by_label("Headings that number columns").fill("^D{bit}$")
+    page.get_by_label("Role of their cells").fill("^{name}$")
+    page.keyboard.press("Tab")
+    page.get_by_text("The rule as YAML").click()
+    expect(page.get_by_label("The rule as YAML")).to_have_value(re.compile("{name}"))
+    (rule,) = yaml.safe_load(session.text)["rules"]
+    assert rule["map"] == {"kind": {"TC": "telecommand", "TM": "telemetry"}, "type": {"CHAR": "text"}}
+    assert rule["melt"] == "^D{bit}$" and rule["columns"]["*"] == "^{name}$"
+
+
+def test_the_document_is_read_again_by_the_headings_of_rules(tmp_path):
+    rows = [["Item", "Wert", "Bemerkung"], ["0", "Mode", "-"]]
+    draw(tmp_path / "motor.pdf", [heading("4.1 Motor state (0x21)", 2), open_table(rows)])
+    words = profile.load()
+
+    def reader(own):
+        return sources.read(tmp_path / "motor.pdf", own, jobs=1)
+
+    session = Session(*reader(words), tmp_path / "rules.yaml", tmp_path / "icd", reader)
+    assert session.tables == []
+    rule = {
+        "tables": {"head": "Item | Wert | Bemerkung"},
+        "columns": {"Item": "byte", "Wert": "name"},
+        "ignore": ["Bemerkung"],
+    }
+    session.set_rule(None, rule)
+    session.read_document()
+    assert [one.titles for one in session.tables] == [["Item", "Wert", "Bemerkung"]]
+    assert session.state()["tables"][0]["rules"] == [0]
 
 
 def test_the_rule_as_yaml_says_what_the_page_has_no_control_for(page):

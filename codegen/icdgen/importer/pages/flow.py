@@ -261,14 +261,14 @@ class _Flow:
 
     def end(self, page: Page, rest: list[Line], start: int, found: Columns) -> int:
         """The index of the first line that is no longer of the table."""
-        limit = _lowest_rule(page, rest, start, found)
         size = rest[start].size if start < len(rest) else 0
-        for index in range(start, len(rest)):
-            line = rest[index]
-            below = line.middle > limit and not self.is_row(line, found)
-            if below or self.ends(rest, index, found, size):
-                return index
-        return len(rest)
+        end = next((index for index in range(start, len(rest)) if self.ends(rest, index, found, size)), len(rest))
+        bottom = rest[-1].bottom + 8
+        if start < end < len(rest) and self.begins_anew(rest, end):  # its upper rule is none of this table
+            bottom = (rest[end - 1].bottom + rest[end].top) / 2
+        limit = _lowest_rule(page, rest, start, found, bottom)
+        below = (i for i in range(start, end) if rest[i].middle > limit and not self.is_row(rest[i], found))
+        return next(below, end)
 
     def ends(self, rest: list[Line], index: int, found: Columns, size: float) -> bool:
         line = rest[index]
@@ -357,12 +357,12 @@ def _begins_in_a_column(line: Line, spans: list[tuple[float, float]]) -> bool:
     return any(abs(line.x0 - a) < 3 for a, _ in spans[2:])
 
 
-def _lowest_rule(page: Page, rest: list[Line], start: int, found: Columns) -> float:
-    """The lowest horizontal rule of the table; nothing of it stands below. Infinite where it has no rule below."""
+def _lowest_rule(page: Page, rest: list[Line], start: int, found: Columns, bottom: float) -> float:
+    """The lowest horizontal rule of the table above ``bottom``: no row stands below it. Infinite if the body has no rule."""
     x0, x1 = found.spans[0][0], found.spans[-1][1]
     top = rest[start - 1].bottom - 1 if start else 0
     wide = [r for r in joined(page.across) if r.start <= x0 + 12 and r.end >= x1 - 12 and r.at > top]
-    wide = [r for r in wide if r.at <= rest[-1].bottom + 8]
+    wide = [r for r in wide if r.at <= bottom]
     head = [r for r in wide if start < len(rest) and r.at < rest[start].top + 2] if start < len(rest) else wide
     below = [r.at for r in wide if r not in head]
     return max(below) if below else float("inf")

@@ -9,7 +9,7 @@ from icdgen.importer.rules.bit_order import Order, bits_of, run_of
 from icdgen.importer.rules.fields import Draft
 from icdgen.importer.rules.language import decimal, normalised
 from icdgen.importer.rules.notes import Notes
-from icdgen.importer.rules.parts import Part
+from icdgen.importer.rules.parts import Part, known_kind
 from icdgen.importer.words import squeezed
 
 _GROUP = ("group", "counter", "count", "rest", "stride", "up_to")  # roles that bits share with the field they divide
@@ -119,6 +119,8 @@ def check_index(index: list[Part], found: list[Found], notes: Notes) -> None:
     messages = [one.thing for one in found if isinstance(one.thing, ReadMessage)]
     for entry in index:
         id, name = entry.number("id"), normalised(entry.name)
+        where = f"{entry.table.title}, row of `{name or id}`"
+        entry.given["kind"] = known_kind(entry.given.get("kind", ""), where, entry.table.spot, entry.rule, notes)
         same = [
             m for m in messages if (id is not None and id in m.ids) or (name and squeezed(m.name) == squeezed(name))
         ]

@@ -9,9 +9,9 @@ from icdgen.importer.profile import Profile
 from icdgen.importer.rules import attach, lists
 from icdgen.importer.rules.bit_order import Order
 from icdgen.importer.rules.fields import Draft
-from icdgen.importer.rules.language import KINDS, normalised
+from icdgen.importer.rules.language import normalised
 from icdgen.importer.rules.notes import Notes
-from icdgen.importer.rules.parts import Part
+from icdgen.importer.rules.parts import Part, known_kind
 from icdgen.importer.rules.split_fields import joined_parts
 from icdgen.importer.words import squeezed
 
@@ -73,16 +73,7 @@ class Builder:
     def message(self, part: Part) -> ReadMessage:
         """Return the message of a part."""
         table = part.table
-        kind = part.given.get("kind", "")
-        if kind and kind not in KINDS:
-            self.notes.error(
-                "IMP031",
-                f"{part.where}: its kind `{kind[:40]}` is none of {', '.join(KINDS)}",
-                part.table.spot,
-                f"translate it: `map: {{kind: {{{kind[:20]}: telemetry}}}}`",
-                part.rule.place,
-            )
-            kind = ""
+        kind = known_kind(part.given.get("kind", ""), part.where, table.spot, part.rule, self.notes)
         made = ReadMessage(normalised(part.name), kind, table, bit_order=self.order.bit_order)
         made.summary = part.given.get("message_text", "")
         made.group = part.given.get("section", "")

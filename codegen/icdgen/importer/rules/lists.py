@@ -9,7 +9,7 @@ from icdgen.importer.model import Found, Listed, LogBit, ReadEnum, ReadList, Rea
 from icdgen.importer.rules.cells import Roles
 from icdgen.importer.rules.language import normalised, whole_number
 from icdgen.importer.rules.notes import Notes
-from icdgen.importer.rules.parts import Part
+from icdgen.importer.rules.parts import Part, known_kind
 from icdgen.importer.rules.rule import Rule
 
 _MASK = re.compile(r"(?:0x)?(?:[0-9A-Fa-f]{2}\s*)+\Z")
@@ -18,7 +18,7 @@ _IDS = ("id", "set_id", "get_id")
 
 def list_of(rule: Rule, table: SourceTable, given: dict[str, str], rows: list[Roles], notes: Notes) -> Found:
     """Return the list of messages that a table is."""
-    kind = given.get("kind", "")
+    kind = known_kind(given.get("kind", ""), table.title, table.spot, rule, notes)
     made = ReadList(kind, normalised(given.get("node", "")), [])
     for roles in rows:
         spot = table.spot_of(roles.row.source)
@@ -36,7 +36,7 @@ def list_of(rule: Rule, table: SourceTable, given: dict[str, str], rows: list[Ro
             continue
         made.rows.append(
             Listed(
-                kind,
+                known_kind(roles.get("kind"), f"{table.title}, row of `{name}`", spot, rule, notes) or kind,
                 name,
                 numbers["length"],
                 numbers["id"],

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from icdgen.import_results.findings import Spot
 from icdgen.importer.document import SourceTable
 from icdgen.importer.rules.fields import Draft
-from icdgen.importer.rules.language import whole_number
+from icdgen.importer.rules.language import KINDS, whole_number
+from icdgen.importer.rules.notes import Notes
 from icdgen.importer.rules.rule import Rule
 
 
@@ -35,3 +37,19 @@ class Part:
         """The number of an id or a length; None if nothing gives it."""
         text = self.given.get(role, "")
         return whole_number(text, self.rule.base) if text else None
+
+
+def known_kind(text: str, where: str, spot: Spot, rule: Rule, notes: Notes) -> str:
+    """Return the kind of a message; empty, with a finding, if the word of the document is not translated."""
+    if text in KINDS:
+        return text
+    if text:
+        notes.error(
+            "IMP031",
+            f"{where}: its kind `{text[:40]}` is none of {', '.join(KINDS)}",
+            spot,
+            "translate the words of the document: `map: {kind: {TC: telecommand, TM: telemetry}}`",
+            rule.place,
+            example=text,
+        )
+    return ""

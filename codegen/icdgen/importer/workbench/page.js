@@ -84,6 +84,26 @@ function patterns(text) {
   return parts.length > 1 ? parts : parts[0] || "";
 }
 
+// `kind: TC = telecommand, TM = telemetry; type: CHAR = text`: role, then words and their meanings
+function wordsOf(text) {
+  const entries = text.split(";").map((part) => part.split(/:(.*)/s).map((side) => side.trim())).filter(([role, words]) => role && words);
+  const pairs = (words) => words.split(",").map((pair) => pair.split("=").map((side) => side.trim())).filter(([word, meaning]) => word && meaning);
+  const made = Object.fromEntries(entries.map(([role, words]) => [role, Object.fromEntries(pairs(words))]));
+  return Object.keys(made).length ? made : null;
+}
+
+// Columns whose headings are numbers become rows: their cells need a role, and the headings none.
+function melt(keys, text) {
+  put(keys, "melt", text);
+  keys.columns = { ...(keys.columns || {}) };
+  if (!text) { delete keys.columns["*"]; return; }
+  keys.columns["*"] ||= "name";
+  try {
+    const heading = new RegExp(text.replace(/\{[a-z_]+(:[^{}]*)?\}/g, (role, own) => (own ? `(?:${own.slice(1)})` : "[0-9]+")), "i");
+    keys.ignore = (keys.ignore || []).filter((title) => !heading.test(title));
+  } catch { /* the server reports a pattern that is wrong */ }
+}
+
 const shown = (value) => (Array.isArray(value) ? value.join(` ${SEPARATOR} `) : value === undefined ? "" : String(value));
 const number_or_text = (text) => (/^[0-9]+$/.test(text) ? Number(text) : text);
 
@@ -91,6 +111,7 @@ const number_or_text = (text) => (/^[0-9]+$/.test(text) ? Number(text) : text);
 
 async function show(wanted) {
   number = wanted;
+  if (number > state.tables.length) number = state.tables.length;
   table = await ask(`/api/table/${number}`);
   const focus = document.activeElement && document.activeElement.dataset ? document.activeElement.dataset.key : null;
   drawHeader(); drawTables(); drawPicture(); drawAround(); drawRule(); drawGrid(); drawResult();
@@ -102,7 +123,9 @@ function drawHeader() {
   const node = byId("node").elements;
   node.byte_order.value = state.node.byte_order || "";
   node.bit_order.value = state.node.bit_order || "";
-  node.id_bits.value = state.node.id_bits || "";
+  fill(node.id_bits, state.node.id_bits || "");
+  byId("undo").disabled = !state.can_undo;
+  byId("redo").disabled = !state.can_redo;
   document.title = `${state.is_saved ? "" : "• "}${state.document} – icdgen workbench`;
   document.querySelector("main").classList.toggle("textual", !state.has_pictures);
 }
@@ -112,8 +135,9 @@ function drawTables() {
     const last = one.rules.length ? state.rules[one.rules[one.rules.length - 1]].keys : null;
     const kind = last === null ? "unread" : one.errors ? "wrong" : last.what === "ignore" ? "ignored" : "good";
     const sign = { unread: "?", wrong: "✗", ignored: "–", good: "✓" }[kind];
-    const said = { unread: "no rule", wrong: `${one.errors} errors`, ignored: "ignored", good: `${one.fields} fields` }[kind];
-    const name = one.messages.filter((text) => text !== "?").join(", ") || one.title;
+    const said = { unread: "no rule", wrong: count(one.errors, "error"), ignored: "ignored", good: one.fields ? count(one.fields, "field") : last && last.what }[kind];
+    const names = one.messages.filter((text) => text !== "?");
+    const name = names.length > 2 ? `${names[0]} ... ${names[names.length - 1]}` : names.join(", ") || one.name;
     const button = element("button", { type: "button", title: `${one.title}: ${said}` },
       element("span", { className: "state", "aria-hidden": "true" }, sign), `${one.number} ${name} (${said})`);
     button.dataset.key = `table-${one.number}`;
@@ -121,6 +145,10 @@ function drawTables() {
     button.onclick = () => show(one.number);
     return element("li", { className: kind }, button);
   }));
+}
+
+function count(number, noun) {
+  return `${number} ${noun}${number === 1 ? "" : "s"}`;
 }
 
 function drawPicture() {
@@ -168,7 +196,7 @@ function drawRule() {
   const keys = merged(rule());
   const input = (name) => form.elements.namedItem(name); // `elements.length` is their number
   const of = state.tables.filter((one) => one.rules.includes(ruleIndex())).length;
-  byId("legend").textContent = `Rule for ${of} table${of === 1 ? "" : "s"}`;
+  byId("legend").textContent = `Rule for ${count(of, "table")}`;
   if (!input("what").options.length) input("what").append(...WHAT.map((what) => element("option", {}, what)));
   fill(input("what"), keys.what || "message");
   fill(input("tables"), Object.entries(keys.tables || {}).map(([key, value]) => `${key}: ${value}`).join("; "));
@@ -178,6 +206,9 @@ function drawRule() {
   fill(input("join"), (keys.join || []).join(", "));
   fill(input("skip"), keys.skip || "");
   fill(input("origin"), keys.origin || "");
+  fill(input("map"), Object.entries(keys.map || {}).map(([role, words]) => `${role}: ${Object.entries(words).map((pair) => pair.join(" = ")).join(", ")}`).join("; "));
+  fill(input("melt"), keys.melt || "");
+  fill(input("cells"), shown((keys.columns || {})["*"]));
   for (const key of ["name", "id", "kind", "length", "of", ...SOURCES]) fill(input(key), shown((keys.message || {})[key]));
   fill(byId("yaml"), state.rules[ruleIndex()].text);
 }
@@ -243,7 +274,7 @@ function drawResult() {
   byId("messages").replaceChildren(...table.messages.flatMap(drawMessage));
   const errors = state.findings.filter((one) => one.severity === "error").length;
   const warnings = state.findings.filter((one) => one.severity === "warning").length;
-  byId("count").textContent = `Findings of the document: ${errors} errors, ${warnings} warnings`;
+  byId("count").textContent = `Findings of the document: ${count(errors, "error")}, ${count(warnings, "warning")}`;
   const own = table.findings.map((one) => [one, null]);
   const others = state.findings.filter((one) => one.table !== number && one.severity !== "note").slice(0, 60).map((one) => [one, one.table]);
   byId("findings").replaceChildren(...[...own, ...others].map(([one, where]) => {
@@ -295,11 +326,24 @@ byId("make").onclick = () => send("/api/rule", { index: null, rule: { tables: { 
 byId("ignore").onclick = () => send("/api/rule", { index: null, rule: { tables: { head: head() }, what: "ignore" } });
 byId("remove").onclick = () => send("/api/rule", { index: ruleIndex(), rule: null });
 byId("apply").onclick = () => send("/api/rule-text", { index: ruleIndex(), text: byId("yaml").value });
+for (const action of ["undo", "redo"]) byId(action).onclick = () => { document.activeElement?.blur?.(); send(`/api/${action}`, null); };
+byId("read").onclick = async () => {
+  const before = state.tables.length;
+  byId("saved").textContent = "Reading the document ...";
+  byId("read").disabled = true;
+  try {
+    await send("/api/read", null);
+    byId("saved").textContent = `The document was read: ${count(state.tables.length, "table")}, ${before} before`;
+  } finally {
+    byId("read").disabled = false;
+  }
+};
 byId("save").onclick = async () => {
   const done = await send("/api/save", null);
   if (!done) return;
-  const checked = done.check.length ? `icdgen check: ${done.check.length} findings` : "icdgen check: no findings";
-  byId("saved").textContent = `${done.files.join("; ")}; ${done.files.length > 1 ? checked : "no ICD yet"}`;
+  const checked = `icdgen check: ${done.check.length ? count(done.check.length, "finding") : "no findings"}`;
+  const rest = done.is_complete ? "" : "; the errors below are left";
+  byId("saved").textContent = `${done.files.join("; ")}; ${done.files.length > 1 ? checked : "no ICD yet"}${rest}`;
 };
 byId("node").onchange = () => {
   const inputs = byId("node").elements;
@@ -319,14 +363,20 @@ byId("rule").onchange = (event) => {
     else if (name === "type") { keys.each = { ...(keys.each || {}) }; put(keys.each, "type", text); }
     else if (name === "width") put(keys, "width", text ? "unit" : "");
     else if (name === "join") put(keys, "join", text.split(",").map((one) => one.trim()).filter(Boolean));
+    else if (name === "map") put(keys, "map", wordsOf(text));
+    else if (name === "melt") melt(keys, text);
+    else if (name === "cells") { keys.columns = { ...(keys.columns || {}) }; put(keys.columns, "*", patterns(text)); }
     else if (name === "origin") put(keys, "origin", number_or_text(text));
     else if (["what", "transpose", "skip"].includes(name)) put(keys, name, text === "message" ? "" : text);
     else { keys.message = { ...(keys.message || {}) }; put(keys.message, name, SOURCES.includes(name) ? patterns(text) : text); }
-    if (keys.what === "ignore") for (const key of ["columns", "message", "each", "ignore", "width", "join", "lines", "melt", "set"]) delete keys[key];
+    if (keys.what === "ignore") for (const key of ["columns", "message", "each", "ignore", "width", "join", "lines", "melt", "map", "set"]) delete keys[key];
   });
 };
 window.onbeforeunload = (event) => { if (state && !state.is_saved) event.preventDefault(); };
 document.onkeydown = (event) => {
+  const isText = document.activeElement?.matches?.("textarea, input:not([type=checkbox])"); // there, Ctrl+Z takes back typing
+  const action = { z: event.shiftKey ? "redo" : "undo", y: "redo" }[event.key.toLowerCase()];
+  if ((event.ctrlKey || event.metaKey) && action && !isText) { event.preventDefault(); if (!byId(action).disabled) byId(action).click(); }
   if ((event.ctrlKey || event.metaKey) && event.key === "s") { event.preventDefault(); document.activeElement?.blur?.(); byId("save").click(); }
 };
 

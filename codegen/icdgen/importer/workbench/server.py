@@ -62,6 +62,9 @@ def handler(session: Session) -> type[BaseHTTPRequestHandler]:
                 "/api/rule": lambda data: session.set_rule(data["index"], data["rule"]),
                 "/api/rule-text": lambda data: session.set_rule(data["index"], rule_text.parse_rule(data["text"])),
                 "/api/node": lambda data: session.set_node(data),
+                "/api/undo": lambda data: session.undo(),
+                "/api/redo": lambda data: session.redo(),
+                "/api/read": lambda data: session.read_document(),
                 "/api/save": lambda data: session.save(),
             }
             action = actions.get(urlsplit(self.path).path)

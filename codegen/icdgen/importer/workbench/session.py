@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+from collections.abc import Callable
 from pathlib import Path
 from threading import RLock
 from typing import Any
@@ -18,20 +19,25 @@ from icdgen.importer.document import Document, SourceTable
 from icdgen.importer.rules.language import ROLES
 from icdgen.importer.rules.parts import Part
 from icdgen.importer.rules.selection import heading_rows, texts_of
-from icdgen.importer.source_tables import kinds
+from icdgen.importer.source_tables import kinds, name_of
 from icdgen.importer.workbench import rule_text
 
+Reader = Callable[[profile.Profile], tuple[Document, list[SourceTable]]]
 RESOLUTION = 100  # dots per inch of a page's picture
 
 
 class Session:
     """One document and one profile; every method may be called from any thread."""
 
-    def __init__(self, document: Document, tables: list[SourceTable], path: Path, out: Path) -> None:
-        self.document, self.tables, self.path, self.out = document, tables, path, out
+    def __init__(
+        self, document: Document, tables: list[SourceTable], path: Path, out: Path, reader: Reader | None = None
+    ) -> None:
+        self.document, self.tables, self.path, self.out, self.reader = document, tables, path, out, reader
         self.lock = RLock()
         self.text = path.read_text(encoding="utf-8") if path.exists() else rule_text.NEW
         self.saved = self.text if path.exists() else ""
+        self.past: list[str] = []  # earlier texts of the profile, the latest last
+        self.future: list[str] = []  # texts that were undone
         self.errors: list[dict[str, Any]] = []  # of the profile, which then is not applied
         self.pictures: dict[int, bytes] = {}
         self.result: run.Result | None = None
@@ -68,6 +74,8 @@ class Session:
                 "tables": [self.summary(table, applied, troubles) for table in self.tables],
                 "findings": [_finding(trouble) for trouble in troubles],
                 "errors": self.errors,
+                "can_undo": bool(self.past),
+                "can_redo": bool(self.future),
                 "has_pictures": self.document.file.casefold().endswith(".pdf") and Path(self.document.file).exists(),
             }
 
@@ -96,7 +104,7 @@ class Session:
         own = [trouble.severity for trouble in troubles if trouble.is_about_table(table.number - 1)]
         parts = self.parts(table)
         return {
-            "number": table.number, "title": table.title, "page": table.page,
+            "number": table.number, "title": table.title, "name": name_of(table), "page": table.page,
             "boxes": [list(box) for box in table.boxes], "rules": applied.get(table.number, []),
             "errors": own.count("error"), "warnings": own.count("warning"),
             "messages": [part.name or "?" for part in parts if part.drafts or part.name],
@@ -150,14 +158,47 @@ class Session:
     def set_rule(self, index: int | None, rule: dict[str, Any] | None) -> None:
         """Replace, add or remove a rule. Raises `Findings` if the profile is no YAML."""
         with self.lock:
-            self.text = rule_text.with_rule(self.text, index, rule)
-            self.apply()
+            self.change_text(rule_text.with_rule(self.text, index, rule))
 
     def set_node(self, node: dict[str, Any]) -> None:
         """Replace the `node:` section."""
         with self.lock:
-            self.text = rule_text.with_node(self.text, node)
-            self.apply()
+            self.change_text(rule_text.with_node(self.text, node))
+
+    def change_text(self, text: str) -> None:
+        """Replace the text of the profile; `undo` brings the text before it back."""
+        if text != self.text:
+            self.past.append(self.text)
+            self.future.clear()
+            self.text = text
+        self.apply()
+
+    def undo(self) -> None:
+        """Take back the last change of the profile; without one, nothing happens."""
+        with self.lock:
+            if self.past:
+                self.future.append(self.text)
+                self.text = self.past.pop()
+                self.apply()
+
+    def redo(self) -> None:
+        """Make the change again that was taken back last; without one, nothing happens."""
+        with self.lock:
+            if self.future:
+                self.past.append(self.text)
+                self.text = self.future.pop()
+                self.apply()
+
+    def read_document(self) -> None:
+        """Read the document again with the words of the profile, by which further tables may be found.
+
+        Tables without vertical rules are found by the headings that rules name. Raises `Findings`.
+        """
+        with self.lock:
+            if self.reader is not None:
+                words = profile.of_tree(source.parse(self.text.encode("utf-8"), self.path.name))
+                self.document, self.tables = self.reader(words)
+                self.apply()
 
     def save(self) -> dict[str, Any]:
         """Write the profile and the ICDs; return what was written and what `icdgen check` says of it. Raises `UserError`."""
