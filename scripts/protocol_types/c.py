@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from icdgen.backends.c.facts import TYPES, is_told_apart
+from icdgen.backends.c.facts import TYPES, has_presence_flag
 from icdgen.backends.c.text import comment
 from icdgen.protocol.declared import BYTE, U16, Fact, Kind, facts_of
 
@@ -37,7 +37,7 @@ def written(text: str) -> str:
 
 def _members(fact: Fact) -> Iterator[tuple[str, str]]:
     """Yield names and types of the members of a fact, each type with a trailing space."""
-    if is_told_apart(fact):
+    if has_presence_flag(fact):
         yield f"has_{fact.name}", "bool "
     yield fact.name, _type(fact)
     if fact.kind is Kind.ALLOWED:
@@ -55,7 +55,7 @@ def _declared(fact: Fact) -> Iterator[tuple[str, str]]:
             about = about.replace("none: all", "NULL: all")
         elif fact.kind is Kind.BUSES:
             about += "; bit n: on bus n of icd_bus_t"
-        elif fact.is_optional and not is_told_apart(fact):
+        elif fact.is_optional and not has_presence_flag(fact):
             about += "; -1 if the ICD does not say" if fact.least == 0 else "; 0 if the ICD does not say"
         yield f"{type}{name}", about
 
@@ -63,6 +63,6 @@ def _declared(fact: Fact) -> Iterator[tuple[str, str]]:
 def _type(fact: Fact) -> str:
     if fact.kind in _TYPES:
         return _TYPES[fact.kind]
-    if fact.is_optional and fact.least == 0 and not is_told_apart(fact):
+    if fact.is_optional and fact.least == 0 and not has_presence_flag(fact):
         return "int16_t " if fact.holds <= U16 // 2 else "int32_t "
     return "uint8_t " if fact.holds <= BYTE else "uint16_t " if fact.holds <= U16 else "uint32_t "
