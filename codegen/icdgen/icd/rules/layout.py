@@ -58,12 +58,12 @@ def fields_end_within_the_message(ctx: Context) -> Iterator[Fault]:
 @rule("ICD021")
 def fields_do_not_overlap(ctx: Context) -> Iterator[Fault]:
     reported = set()
-    for fields_do_not_overlap in chain(_overlaps(ctx), _overlaps_within_structs(ctx)):
-        pair = id(fields_do_not_overlap.first.source), id(fields_do_not_overlap.second.source)
+    for overlap in chain(_overlaps(ctx), _overlaps_within_structs(ctx)):
+        pair = id(overlap.first.source), id(overlap.second.source)
         # Report a pair once, although many elements of an array can overlap.
         if pair not in reported and ctx.behind_variable_fields.isdisjoint(pair):
             reported.add(pair)
-            yield _fault(fields_do_not_overlap)
+            yield _fault(overlap)
 
 
 def _overlaps(ctx: Context) -> Iterator[Overlap]:
@@ -155,9 +155,9 @@ def _mask(begin: int, bits: int, bit_order: str) -> int:
     return sum(1 << (at // 8 * 8 + 7 - at % 8) for at in range(begin, begin + bits))
 
 
-def _fault(fields_do_not_overlap: Overlap) -> Fault:
+def _fault(overlap: Overlap) -> Fault:
     """Return the fault of an overlap, at its second field."""
-    first, second, bits = fields_do_not_overlap
+    first, second, bits = overlap
     start, end = max(first.at, second.at), min(first.at + first.bits, second.at + second.bits)
     bits = bits or (f"bit {start:,}" if end - start == 1 else f"bits {start:,} to {end - 1:,}")
     other = f"{quote(first.name)} ({line_of(first.source.place, second.source.at('at'))})"
