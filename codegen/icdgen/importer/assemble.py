@@ -1,4 +1,4 @@
-"""What the tables say -> one ICD tree per node, and the findings that only show when they are held together."""
+"""Build one ICD tree per node from the results of all tables, and report contradictions between tables."""
 
 from __future__ import annotations
 
@@ -28,13 +28,17 @@ def assemble(document: Document, survey: Survey, profile: Profile, prose: bool =
         references.enums(node, nodes, everything, survey.troubles)
     for node in nodes:
         references.complete(node, icd_trees.head(node, document, profile), survey.troubles)
-    return {one.name: icd_trees.tree(one, document, profile, prose, survey.troubles) for one in nodes if one.holds}
+    return {
+        node_parts.name: icd_trees.tree(node_parts, document, profile, prose, survey.troubles)
+        for node_parts in nodes
+        if node_parts.holds
+    }
 
 
 def _parts_by_node(document: Document, survey: Survey, profile: Profile) -> list[NodeParts]:
     """Each thing to its node."""
     keys = _keys(survey, profile)
-    used = [(key, one.thing) for key, one in zip(keys, survey.found, strict=True) if one.thing is not None]
+    used = [(key, result.thing) for key, result in zip(keys, survey.found, strict=True) if result.thing is not None]
     nodes = {key: _node(key, profile) for key, _ in used if key}
     if used and not nodes:
         nodes = {"": _node(_document_name(document), profile)}
@@ -47,45 +51,47 @@ def _parts_by_node(document: Document, survey: Survey, profile: Profile) -> list
 
 
 def _keys(survey: Survey, profile: Profile) -> list[str]:
-    """The node of each table, as the manual calls it; "" where nothing tells."""
+    """The name that the manual gives to the node of each table; "" if neither a caption nor the profile names a node."""
     keys, current, twins = [], "", _twins(survey)
-    for one in survey.found:
-        told = _by_profile(one, profile)
-        if told is None and isinstance(one.thing, ReadList) and one.thing.node:
-            current = one.thing.node
-        if told is not None:
-            current = told
+    for result in survey.found:
+        stated = _by_profile(result, profile)
+        if stated is None and isinstance(result.thing, ReadList) and result.thing.node:
+            current = result.thing.node
+        if stated is not None:
+            current = stated
         keys.append(current)
     keys = [_canonical(key, profile) for key in keys]
-    named = {id(one.table): key for one, key in zip(survey.found, keys, strict=True)}
-    return [key or named.get(twins.get(id(one.table), 0), "") for one, key in zip(survey.found, keys, strict=True)]
+    named = {id(result.table): key for result, key in zip(survey.found, keys, strict=True)}
+    return [
+        key or named.get(twins.get(id(result.table), 0), "") for result, key in zip(survey.found, keys, strict=True)
+    ]
 
 
 def _twins(survey: Survey) -> dict[int, int]:
     """Enumeration table -> a later one of the same name, both by identity."""
     last: dict[str, int] = {}
-    made: dict[int, int] = {}
-    for one, enum in reversed(survey.of(ReadEnum)):
+    twins: dict[int, int] = {}
+    for result, enum in reversed(survey.of(ReadEnum)):
         name = squeezed(enum.name)
         if name in last:
-            made[id(one.table)] = last[name]
+            twins[id(result.table)] = last[name]
         else:
-            last[name] = id(one.table)
-    return made
+            last[name] = id(result.table)
+    return twins
 
 
-def _by_profile(one: Found, profile: Profile) -> str | None:
-    number = one.table.label
+def _by_profile(result: Found, profile: Profile) -> str | None:
+    number = result.table.label
     for words in profile.nodes:
         if words.tables is not None or words.group is not None:
-            in_group = words.group is None or words.group == one.table.run
+            in_group = words.group is None or words.group == result.table.run
             in_tables = words.tables is None or (number is not None and words.tables[0] <= number <= words.tables[1])
             if in_group and in_tables:
                 return words.name
         elif not words.match:
             return words.name  # a profile with one node and nothing to choose by
-        elif isinstance(one.thing, ReadList):
-            text = one.thing.node or one.table.caption
+        elif isinstance(result.thing, ReadList):
+            text = result.thing.node or result.table.caption
             if any(_says(text, match) for match in words.match):
                 return words.name
     return None
@@ -127,35 +133,36 @@ def _includes(nodes: list[NodeParts]) -> None:
 
 
 def _merge_enums(node: NodeParts, survey: Survey) -> None:
-    """Tables that print the same enumeration become one, that which fields point to standing first; those that only
-    share its name are told apart."""
+    """Merge tables that print the same enumeration, and number enumerations that have only the name in common.
+
+    A table to which a field refers becomes the source of the merged enumeration."""
     pointed = {
         (message.table.run, field.described.enum_table)
         for _, message in survey.of(ReadMessage)
         for field in message.all_fields
         if field.described.enum_table is not None
     }
-    kept: dict[str, ReadEnum] = {}
+    by_name: dict[str, ReadEnum] = {}
     taken: Counter[str] = Counter()
-    for one in node.enums:
-        first = kept.get(one.name)
+    for duplicate in node.enums:
+        first = by_name.get(duplicate.name)
         if first is None:
-            kept[one.name] = one
+            by_name[duplicate.name] = duplicate
             continue
-        if [(m.value, m.name) for m in first.members] == [(m.value, m.name) for m in one.members]:
-            is_meant, first_is = ((enum.table.run, enum.table.label) in pointed for enum in (one, first))
+        if [(m.value, m.name) for m in first.members] == [(m.value, m.name) for m in duplicate.members]:
+            is_meant, first_is = ((enum.table.run, enum.table.label) in pointed for enum in (duplicate, first))
             if is_meant and not first_is:
-                one.also = [first.table, *first.also]
-                kept[one.name] = one
+                duplicate.also = [first.table, *first.also]
+                by_name[duplicate.name] = duplicate
             else:
-                first.also.append(one.table)
+                first.also.append(duplicate.table)
             continue
-        taken[one.name] += 1
-        name = f"{one.name} {taken[one.name] + 1}"
+        taken[duplicate.name] += 1
+        name = f"{duplicate.name} {taken[duplicate.name] + 1}"
         survey.troubles.append(
-            Trouble("IMP052", f"{one.table.title}: table {table_name(first.table.label)} has an enumeration of this name "
-                    "with other members", one.table.spot, f"held as `{name}`: see which one the fields mean", "error")
+            Trouble("IMP052", f"{duplicate.table.title}: table {table_name(first.table.label)} has an enumeration of this name "
+                    "with other members", duplicate.table.spot, f"held as `{name}`: see which one the fields mean", "error")
         )  # fmt: skip
-        one.name = name
-        kept[name] = one
-    node.enums = sorted(kept.values(), key=lambda enum: enum.table.number)
+        duplicate.name = name
+        by_name[name] = duplicate
+    node.enums = sorted(by_name.values(), key=lambda enum: enum.table.number)

@@ -16,20 +16,28 @@ from icdgen.importer.words import table_name
 
 
 def report(result: Result, colour: bool = False) -> str:
-    """What was found, then everything to look at, then the figures."""
+    """Print the findings and the summary of an import."""
     return "\n".join(shared.findings(result.troubles, result.document.file, colour) + summary(result))
 
 
 def summary(result: Result) -> list[str]:
     """The figures: tables by what they are and how surely they were read, then each file."""
-    kinds = Counter(one.what for one in result.survey.found)
+    kinds = Counter(result_of_table.what for result_of_table in result.survey.found)
     order = ["message", "enumeration", "list", "loggable frames", BACKGROUND, UNKNOWN]
     parts = [f"{kinds[kind]} {_many(kind, kinds[kind])}" for kind in order if kinds[kind]]
     pages = f"{count(result.document.pages, 'page')}, " if result.document.pages else ""
     sure = result.sureness()
     return [
         f"{pages}{count(len(result.survey.found), 'table')}" + (": " if parts else "") + ", ".join(parts),
-        "read: " + (", ".join(f"{sure[one]} {one}" for one in (CERTAIN, LIKELY, DOUBTFUL) if sure[one]) or "none"),
+        "read: "
+        + (
+            ", ".join(
+                f"{sure[result_of_table]} {result_of_table}"
+                for result_of_table in (CERTAIN, LIKELY, DOUBTFUL)
+                if sure[result_of_table]
+            )
+            or "none"
+        ),
         shared.severities(result.troubles),
     ]
 
@@ -42,16 +50,16 @@ def _many(kind: str, number: int) -> str:
 
 def as_json(result: Result, checked: Sequence[Finding]) -> str:
     """Tables and findings for programs; ``checked`` are the findings of `icdgen check` for the files."""
-    found = [
+    entries = [
         {
-            "table": _table(one.table.label),
-            "caption": one.table.caption,
-            "page": one.table.page,
-            "line": one.table.line,
-            "is": one.what,
-            "sure": result.sure_of(one.table),
+            "table": _table(entry.table.label),
+            "caption": entry.table.caption,
+            "page": entry.table.page,
+            "line": entry.table.line,
+            "is": entry.what,
+            "sure": result.sure_of(entry.table),
         }
-        for one in result.survey.found
+        for entry in result.survey.found
     ]
     troubles = [
         {**shared.finding_as_json(t), "table": _table(t.spot.table), "page": t.spot.page, "line": t.spot.line}
@@ -59,7 +67,7 @@ def as_json(result: Result, checked: Sequence[Finding]) -> str:
     ]
     written = shared.files_as_json(result.targets)
     return json.dumps(
-        {"manual": result.document.file, "pages": result.document.pages, "tables": found, "findings": troubles,
+        {"manual": result.document.file, "pages": result.document.pages, "tables": entries, "findings": troubles,
          "files": written, "check": shared.checked_as_json(checked)}, indent=2, ensure_ascii=False,
     )  # fmt: skip
 
@@ -71,11 +79,11 @@ def _table(number: int | None) -> int | str | None:
 
 
 def refused_as_json(manual: str, findings: list[Finding]) -> str:
-    """The same form for a manual, a profile or an ICD that could not be read."""
+    """JSON report of a manual, a profile or an ICD that cannot be read."""
     troubles = [
         {"code": f.code, "severity": f.severity, "message": f.message, "help": f.help, "file": f.place.file,
          "table": None, "page": None, "line": f.place.line}
         for f in findings
     ]  # fmt: skip
-    made = {"manual": manual, "pages": None, "tables": [], "findings": troubles, "files": [], "check": []}
-    return json.dumps(made, indent=2, ensure_ascii=False)
+    report = {"manual": manual, "pages": None, "tables": [], "findings": troubles, "files": [], "check": []}
+    return json.dumps(report, indent=2, ensure_ascii=False)

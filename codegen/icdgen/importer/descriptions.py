@@ -1,4 +1,4 @@
-"""What a field's description says besides prose: unit, formula, enumeration, the one valid value, names of bits."""
+"""Unit, formula, enumeration and valid value of a field, taken from its description."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _FORMULA_WORD = re.compile(r"\bformula\b", re.I)
 
 @dataclass(slots=True)
 class Described:
-    """What was read. ``problems`` are texts for findings; ``contradiction`` is set where words and formula disagree."""
+    """Facts of a description. ``problems`` are texts for findings; ``contradiction`` is set if words and formula disagree."""
 
     unit: str = ""
     formula: str = ""
@@ -30,15 +30,15 @@ class Described:
 def read(text: str, profile: Profile, is_enum: bool = False) -> Described:
     """Reads a description."""
     text = plain(text)
-    made = Described()
+    described = Described()
     spans: list[tuple[int, int]] = []
-    _formula(text, profile, made, spans)
-    _unit(text, profile, made, spans)
+    _formula(text, profile, described, spans)
+    _unit(text, profile, described, spans)
     if is_enum:
-        _enumeration(text, profile, made, spans)
-    _const(text, profile, made)
-    made.rest = _without(text, spans)
-    return made
+        _enumeration(text, profile, described, spans)
+    _const(text, profile, described)
+    described.rest = _without(text, spans)
+    return described
 
 
 def names(profile: Profile) -> formulas.Words:
@@ -46,26 +46,26 @@ def names(profile: Profile) -> formulas.Words:
     return formulas.words(tuple(variables["raw"]), tuple(variables["physical"]))
 
 
-def _formula(text: str, profile: Profile, made: Described, spans: list[tuple[int, int]]) -> None:
-    found = formulas.find(text, names(profile))
+def _formula(text: str, profile: Profile, described: Described, spans: list[tuple[int, int]]) -> None:
+    formula = formulas.find(text, names(profile))
     announced = ""
     for what, value in (("gives_physical", "physical"), ("gives_raw", "raw")):
         for pattern in profile.phrases[what]:
             if match := pattern.search(text):
                 announced = value
                 spans.append(match.span())
-    if found is None:
+    if formula is None:
         if formulas.mentions(text, names(profile)) or (announced and _FORMULA_WORD.search(text)):
-            made.problems.append("a formula is there and cannot be read")
+            described.problems.append("a formula is there and cannot be read")
         return
-    spans.append((found.start, found.end))
-    made.formula, made.unit = found.formula, found.unit
-    if announced and announced != found.gives:
-        made.formula_for = announced
+    spans.append((formula.start, formula.end))
+    described.formula, described.unit = formula.formula, formula.unit
+    if announced and announced != formula.gives:
+        described.formula_for = announced
 
 
-def _unit(text: str, profile: Profile, made: Described, spans: list[tuple[int, int]]) -> None:
-    units = [made.unit] if made.unit else []
+def _unit(text: str, profile: Profile, described: Described, spans: list[tuple[int, int]]) -> None:
+    units = [described.unit] if described.unit else []
     for what in ("unit", "formula_unit"):
         for pattern in profile.phrases[what]:
             match = pattern.search(text)
@@ -74,12 +74,12 @@ def _unit(text: str, profile: Profile, made: Described, spans: list[tuple[int, i
                 spans.append(match.span())
                 break
     if units:
-        made.unit = units[0]
+        described.unit = units[0]
         if len(set(units)) > 1:
-            made.problems.append("it gives two units: " + " and ".join(f"`{u}`" for u in dict.fromkeys(units)))
+            described.problems.append("it gives two units: " + " and ".join(f"`{u}`" for u in dict.fromkeys(units)))
 
 
-def _enumeration(text: str, profile: Profile, made: Described, spans: list[tuple[int, int]]) -> None:
+def _enumeration(text: str, profile: Profile, described: Described, spans: list[tuple[int, int]]) -> None:
     for pattern in profile.phrases["enumeration"]:
         match = pattern.search(text)
         if not match:
@@ -87,13 +87,13 @@ def _enumeration(text: str, profile: Profile, made: Described, spans: list[tuple
         groups = match.groupdict()
         if groups.get("table"):
             number = _TABLE.search(groups["table"])
-            made.enum_table = table_number(number.group()) if number else None
-        made.enum_title = (groups.get("title") or "").strip()
+            described.enum_table = table_number(number.group()) if number else None
+        described.enum_title = (groups.get("title") or "").strip()
         spans.append(match.span())
         return
     loose = _caption_in(text, profile)
     if loose:
-        made.enum_table, made.enum_title = loose
+        described.enum_table, described.enum_title = loose
 
 
 def _caption_in(text: str, profile: Profile) -> tuple[int, str] | None:
@@ -105,7 +105,7 @@ def _caption_in(text: str, profile: Profile) -> tuple[int, str] | None:
     return (table_number(match["number"]), (match["title"] or "").strip()) if match else None
 
 
-def _const(text: str, profile: Profile, made: Described) -> None:
+def _const(text: str, profile: Profile, described: Described) -> None:
     for pattern in profile.phrases["const"]:
         match = pattern.search(text)
         if not match or re.match(r"\s*(?:,?\s*(?:or|to|and|if|for|when|-|–)\b|[.][0-9])", text[match.end() :], re.I):
@@ -113,18 +113,18 @@ def _const(text: str, profile: Profile, made: Described) -> None:
         numbers = re.findall(r"0x[0-9a-f]+|[0-9]+", match["number"], re.I)
         values = {int(n, 16) if "x" in n.lower() else int(n) for n in numbers}
         if len(values) > 1:
-            made.problems.append(f"it gives the value in two ways that differ: {match['number']}")
+            described.problems.append(f"it gives the value in two ways that differ: {match['number']}")
             return
-        made.const = next((n for n in numbers if "x" in n.lower()), numbers[0])
+        described.const = next((n for n in numbers if "x" in n.lower()), numbers[0])
         return
 
 
 def _without(text: str, spans: list[tuple[int, int]]) -> str:
-    kept, at = "", 0
+    remaining, at = "", 0
     for start, end in sorted(spans):
         if start > at:
-            kept += text[at:start]
+            remaining += text[at:start]
         at = max(at, end)
-    kept += text[at:]
-    kept = re.sub(r"\s+([.,:;])", r"\1", " ".join(kept.split()))
-    return re.sub(r"[.:;,\s]*\Z", "", re.sub(r"(?:\s*[:.]){2,}", ".", kept))
+    remaining += text[at:]
+    remaining = re.sub(r"\s+([.,:;])", r"\1", " ".join(remaining.split()))
+    return re.sub(r"[.:;,\s]*\Z", "", re.sub(r"(?:\s*[:.]){2,}", ".", remaining))

@@ -42,7 +42,7 @@ class Cell:
 
 @dataclass(slots=True)
 class SourceRow:
-    """The cells that begin in a row, from left to right; those of cells above that reach into it are left out."""
+    """Cells that begin in a row, from left to right. Cells of rows above that span this row are not repeated."""
 
     cells: list[Cell]
     page: int | None = None
@@ -119,7 +119,7 @@ class SourceTable:
 
     def grid(self) -> list[list[Slot]]:
         """Every row with a slot for each column, cells that span rows or columns in all of their slots."""
-        made: list[list[Slot]] = []
+        grid: list[list[Slot]] = []
         reaching: dict[int, tuple[int, Cell, int]] = (
             {}
         )  # column -> rows that a cell above goes on, the cell, its first column
@@ -140,12 +140,12 @@ class SourceTable:
                         reaching[column + offset] = cell.rows - 1, cell, column
                 column += cell.columns
             width = max(slots, default=-1) + 1
-            made.append([slots.get(column) or Slot(Cell(""), column, True) for column in range(width)])
-        return made
+            grid.append([slots.get(column) or Slot(Cell(""), column, True) for column in range(width)])
+        return grid
 
     @property
     def kind(self) -> tuple[str, ...]:
-        """What tables with the same headings have in common: the first row of several filled cells, without case and
+        """Key of all tables with the same headings: the first row of several filled cells, without case and
         punctuation."""
         return tuple(squeezed(text) for text in self.titles)
 

@@ -1,4 +1,4 @@
-"""What each finding of an import means: ``findings.md``, read only when somebody asks."""
+"""Pages that explain the findings of an import, from ``findings.md``."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ class Page(NamedTuple):
 def pages() -> dict[str, Page]:
     """The pages by code, ascending."""
     _, *parts = _SECTION.split(_PAGE.read_text(encoding="utf-8"))
-    found = zip(parts[0::4], parts[1::4], parts[2::4], parts[3::4], strict=True)
-    return {code: Page(title, severity, text.strip("\n")) for code, title, severity, text in found}
+    sections = zip(parts[0::4], parts[1::4], parts[2::4], parts[3::4], strict=True)
+    return {code: Page(title, severity, text.strip("\n")) for code, title, severity, text in sections}
 
 
 def explain(code: str) -> str:

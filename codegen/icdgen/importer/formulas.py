@@ -47,7 +47,7 @@ def _names(names: tuple[str, ...]) -> re.Pattern[str]:
 
 
 def find(text: str, names: Words) -> Read | None:
-    """The first formula of the text; None if there is none that can be read."""
+    """Return the first formula of the text that can be read, or None."""
     for sign in re.finditer("=", text):
         left = _left(text[: sign.start()], names)
         if left is None:
@@ -55,8 +55,8 @@ def find(text: str, names: Words) -> Read | None:
         gives, unit, start = left
         variable = names.raw if gives == "physical" else names.physical
         expression, end = _expression(text, sign.end(), variable, "raw" if gives == "physical" else "value")
-        if expression and _is_good(made := expression if gives == "physical" else f"raw = {expression}"):
-            return Read(made, unit, gives, start, end)
+        if expression and _is_good(candidate := expression if gives == "physical" else f"raw = {expression}"):
+            return Read(candidate, unit, gives, start, end)
     return None
 
 
@@ -76,8 +76,8 @@ _FACTOR = re.compile(
 
 
 def per_step(text: str, names: Words | None) -> Scaled | None:
-    """What a column of formulas or factors says: an expression of the raw value, a factor (``0.01``, ``1e-7``, ``2^-20``,
-    ``1/256``), or a factor with its unit (``10 mV/LSB``). None if it says none of these."""
+    """Read a cell of a column of formulas or factors: an expression of the raw value, a factor (``0.01``, ``1e-7``, ``2^-20``,
+    ``1/256``), or a factor with its unit (``10 mV/LSB``). None for any other text."""
     if names is not None:
         found = find(text, names)
         if found:
@@ -107,7 +107,7 @@ def mentions(text: str, names: Words) -> bool:
 
 
 def _left(before: str, names: Words) -> tuple[str, str, int] | None:
-    """What stands left of the sign: which value, its unit, and where that begins."""
+    """Read the left side of an equation: its value, the unit, and the position at which it begins."""
     bare = before.rstrip()
     unit = ""
     bracket = re.search(r"\[\s*([^\[\]]*?)\s*\]\Z", bare)
@@ -124,7 +124,7 @@ def _left(before: str, names: Words) -> tuple[str, str, int] | None:
 
 def _expression(text: str, at: int, variable: re.Pattern[str], name: str) -> tuple[str, int]:
     """The longest expression that begins at ``at``, in the ICD's spelling, and where it ends."""
-    made: list[str] = []
+    tokens: list[str] = []
     good, end = 0, at
     depth, operand, seen = 0, True, False
     while True:
@@ -138,30 +138,30 @@ def _expression(text: str, at: int, variable: re.Pattern[str], name: str) -> tup
                 is_name = variable.match(text, at) is not None
                 seen = seen or is_name
                 number = match.group()
-                made.append(name if is_name else "0" + number if number[0] == "." else number)
+                tokens.append(name if is_name else "0" + number if number[0] == "." else number)
                 at, operand = match.end(), False
             elif text[at] == "(":
-                made.append("(")
+                tokens.append("(")
                 at, depth = at + 1, depth + 1
-            elif text[at] in "-−–" and (not made or made[-1] == "("):
-                made.append("-")
+            elif text[at] in "-−–" and (not tokens or tokens[-1] == "("):
+                tokens.append("-")
                 at += 1
             else:
                 break
         elif text[at] == ")" and depth:
-            made.append(")")
+            tokens.append(")")
             at, depth = at + 1, depth - 1
         elif match := _OPERATOR.match(text, at):
             sign = match.group()
-            made.append(_TIMES.get(sign, sign))
+            tokens.append(_TIMES.get(sign, sign))
             at, operand = match.end(), True
         else:
             break
         if depth == 0 and not operand:
-            good, end = len(made), at
-    if not seen or name not in made[:good] or _GOES_ON.match(text, end):
+            good, end = len(tokens), at
+    if not seen or name not in tokens[:good] or _GOES_ON.match(text, end):
         return "", at
-    return _spelled(made[:good]), end
+    return _spelled(tokens[:good]), end
 
 
 def _spelled(tokens: list[str]) -> str:

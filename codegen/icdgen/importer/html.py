@@ -1,4 +1,4 @@
-"""The report of an import as a page: each doubtful table as a picture beside what was read."""
+"""Report of an import as a web page: the picture of each doubtful table next to its fields."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ td, th, img { border-color: #3a4352; } code { background: #232a36; } .torn td { 
 
 
 def report(result: Result) -> str:
-    """One file without anything beside it."""
+    """Return the page, with styles and pictures in the same file."""
     from icdgen.importer import console
 
     name = html.escape(result.document.file)
@@ -44,8 +44,8 @@ def report(result: Result) -> str:
     for trouble in result.troubles:
         for order in dict.fromkeys(spot.order for spot in (trouble.spot, *trouble.also)):
             about.setdefault(order, []).append(trouble)
-    doubtful = [one for one in result.survey.found if result.sure_of(one.table) != CERTAIN]
-    rest = [one for one in result.survey.found if result.sure_of(one.table) == CERTAIN]
+    doubtful = [entry for entry in result.survey.found if result.sure_of(entry.table) != CERTAIN]
+    certain = [entry for entry in result.survey.found if result.sure_of(entry.table) == CERTAIN]
     parts = [
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>Import of {name}</title>',
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
@@ -59,11 +59,11 @@ def report(result: Result) -> str:
     loose = [t for t in about.get(None, []) if t.severity != "error"]
     if loose:
         parts += ["<h2>About the document</h2>", _list(loose)]
-    doubtful.sort(key=lambda one: _stake(about.get(one.table.spot.order, [])))
+    doubtful.sort(key=lambda entry: _stake(about.get(entry.table.spot.order, [])))
     with _Pictures(result) as pictures:
-        for one in doubtful:
-            parts += _table(one, result, about.get(one.table.spot.order, []), pictures)
-    noted = [t for one in rest for t in about.get(one.table.spot.order, [])]
+        for entry in doubtful:
+            parts += _table(entry, result, about.get(entry.table.spot.order, []), pictures)
+    noted = [t for entry in certain for t in about.get(entry.table.spot.order, [])]
     if noted:
         parts += ["<h2>Notes about tables that were read without doubt</h2>", _list(noted)]
     return "\n".join(parts) + "\n</body></html>\n"
@@ -88,10 +88,10 @@ def _list(troubles: list[Trouble], linked: bool = False) -> str:
     return "<ul>" + "\n".join(items) + "</ul>"
 
 
-def _table(one: Found, result: Result, troubles: list[Trouble], pictures: _Pictures) -> Iterator[str]:
-    table = one.table
+def _table(entry: Found, result: Result, troubles: list[Trouble], pictures: _Pictures) -> Iterator[str]:
+    table = entry.table
     title = html.escape(table.title[:1].upper() + table.title[1:])
-    yield f'<h2 id="table-{table.spot.order}">{title} <span class="sure">{one.what}, {result.sure_of(table)}</span></h2>'
+    yield f'<h2 id="table-{table.spot.order}">{title} <span class="sure">{entry.what}, {result.sure_of(table)}</span></h2>'
     yield _list(troubles)
     images = "".join(pictures.of(table))
     read = _as_read(table)
@@ -116,7 +116,7 @@ class _Pictures:
         self.pages: dict[int, object] = {}
 
     def __enter__(self) -> _Pictures:
-        if any(one.table.boxes for one in self.result.survey.found):
+        if any(entry.table.boxes for entry in self.result.survey.found):
             import pypdfium2  # type: ignore[import-untyped]
 
             try:
@@ -148,7 +148,7 @@ class _Pictures:
 
 
 def _crop(box: Box, width: float, height: float) -> tuple[float, float, float, float] | None:
-    """What to cut off the page on the left, below, on the right and above; None where nothing would be left."""
+    """Margins to cut off on the left, below, on the right and above; None if the whole page would be cut off."""
     x0, x1 = max(0.0, box.x0 - MARGIN), min(width, box.x1 + MARGIN)
     top, bottom = max(0.0, box.top - CAPTION), min(height, box.bottom + CAPTION)
     if x1 - x0 < 2 or bottom - top < 2:

@@ -1,4 +1,4 @@
-"""What belongs to a node -> the tree of its ICD."""
+"""Write messages, enumerations and lists of a node as the tree of its ICD."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from icdgen.importer.words import squeezed, table_name
 
 def tree(node: NodeParts, document: Document, profile: Profile, prose: bool, troubles: list[Trouble]) -> dict[str, Any]:
     """The ICD of a node as plain mappings and lists, in the order of the manual."""
-    messages = [_message(one, prose) for one in node.messages]
+    messages = [_message(item, prose) for item in node.messages]
     return {"icdgen": 1, "node": head(node, document, profile)} | _given(
         include=node.include,
         units=_units(node, troubles),
-        enums=[_enum(one, prose) for one in node.enums],
+        enums=[_enum(item, prose) for item in node.enums],
         structs=[
-            {"name": one.name, "length": one.length, "fields": [_field(field, prose) for field in one.fields]}
+            {"name": item.name, "length": item.length, "fields": [_field(field, prose) for field in item.fields]}
             for message in node.messages
-            for one in message.structs
+            for item in message.structs
         ],
         messages=messages,
         formula_for=_announced(messages),
@@ -40,41 +40,41 @@ def _given(**keys: Any) -> dict[str, Any]:
 
 
 def _announced(messages: list[dict[str, Any]]) -> dict[str, str]:
-    """What is announced of every formula of a kind of messages is taken out of the fields, to be said once."""
-    made = {}
+    """Move `formula_for` from the fields to the ICD for each kind of message in which all formulas agree."""
+    by_kind = {}
     for kind in dict.fromkeys(message["kind"] for message in messages):
         fields = [f for m in messages if m["kind"] == kind for f in m.get("fields", ()) if "formula" in f]
         words = {field.get("formula_for") for field in fields}
         if len(fields) > 1 and len(words) == 1 and None not in words:
-            made[kind] = words.pop()
+            by_kind[kind] = words.pop()
             for field in fields:
                 del field["formula_for"]
-    return made
+    return by_kind
 
 
 def head(node: NodeParts, document: Document, profile: Profile) -> dict[str, Any]:
     """The section `node` of the ICD."""
-    found = {"name": node.name, "title": node.title or node.name, **profile.data["node"]}
+    section = {"name": node.name, "title": node.title or node.name, **profile.data["node"]}
     title = document.title or re.split(r"[/\\]", document.file)[-1]
-    found["source"] = {"document": title}
+    section["source"] = {"document": title}
     if node.words is not None:
-        found |= node.words.head
-    return found
+        section |= node.words.head
+    return section
 
 
 def _source(table: SourceTable) -> dict[str, Any]:
-    made = {}
+    source = {}
     if table.label is not None and table_name(table.label).isdigit():
-        made["table"] = table.label
+        source["table"] = table.label
     if table.page is not None:
-        made["page"] = table.page
-    return made
+        source["page"] = table.page
+    return source
 
 
-def _enum(one: ReadEnum, prose: bool) -> dict[str, Any]:
-    also = [source for table in one.also if (source := _source(table))]
-    members = [{"value": m.value, "name": m.name, **_prose(m.name, m.summary, prose)} for m in one.members]
-    return {"name": one.name, **_given(source=_source(one.table), also=also, members=members)}
+def _enum(enum: ReadEnum, prose: bool) -> dict[str, Any]:
+    also = [source for table in enum.also if (source := _source(table))]
+    members = [{"value": m.value, "name": m.name, **_prose(m.name, m.summary, prose)} for m in enum.members]
+    return {"name": enum.name, **_given(source=_source(enum.table), also=also, members=members)}
 
 
 def _prose(name: str, text: str, wanted: bool) -> dict[str, Any]:
@@ -82,34 +82,34 @@ def _prose(name: str, text: str, wanted: bool) -> dict[str, Any]:
     return {"summary": text} if wanted and text and squeezed(text) != squeezed(name) else {}
 
 
-def _message(one: ReadMessage, prose: bool) -> dict[str, Any]:
-    ids = {key: value for key in ("id", "set_id", "get_id") if (value := getattr(one, key)) is not None}
+def _message(message: ReadMessage, prose: bool) -> dict[str, Any]:
+    ids = {key: value for key in ("id", "set_id", "get_id") if (value := getattr(message, key)) is not None}
     return {
-        "name": one.name, **ids, "kind": one.kind, "length": one.length, **_given(reserved=one.reserved_bytes),
-        **_given(group=one.group, source=_source(one.table)),
-        **_prose(one.name, one.summary, prose),
-        **_given(listed=one.listed, fields=[_field(field, prose) for field in one.fields]),
+        "name": message.name, **ids, "kind": message.kind, "length": message.length, **_given(reserved=message.reserved_bytes),
+        **_given(group=message.group, source=_source(message.table)),
+        **_prose(message.name, message.summary, prose),
+        **_given(listed=message.listed, fields=[_field(field, prose) for field in message.fields]),
     }  # fmt: skip
 
 
-def _field(one: ReadField, prose: bool) -> dict[str, Any]:
-    said = one.described
-    if "struct" in one.facts:
-        return {"at": one.at, "name": one.name, **one.facts}
-    sized = {} if "size" in one.facts else {"bits": one.bits}
+def _field(field: ReadField, prose: bool) -> dict[str, Any]:
+    described = field.described
+    if "struct" in field.facts:
+        return {"at": field.at, "name": field.name, **field.facts}
+    sized = {} if "size" in field.facts else {"bits": field.bits}
     return {
-        "at": one.at, **sized, "name": one.name, "type": one.type, **one.facts,
+        "at": field.at, **sized, "name": field.name, "type": field.type, **field.facts,
         **_given(
-            count=one.count, enum=one.enum, unit=SIGNS.get(said.unit, said.unit), formula=said.formula,
-            formula_for=said.formula_for,
+            count=field.count, enum=field.enum, unit=SIGNS.get(described.unit, described.unit), formula=described.formula,
+            formula_for=described.formula_for,
         ),
-        **({"const": Spelled(said.const)} if said.const else {}),  # which may be 0
-        **_prose(one.name, said.rest, prose),
+        **({"const": Spelled(described.const)} if described.const else {}),  # which may be 0
+        **_prose(field.name, described.rest, prose),
     }  # fmt: skip
 
 
 def _units(node: NodeParts, troubles: list[Trouble]) -> list[dict[str, Any]]:
-    """Units that are not built in, and no other spelling of one that is."""
+    """Units that icdgen does not know by any of their spellings."""
     first: dict[str, tuple[ReadMessage, ReadField]] = {}
     for message in node.messages:
         for field in message.all_fields:

@@ -22,50 +22,50 @@ class Labelled(NamedTuple):
 
 def parse(text: str, profile: Profile) -> list[Labelled]:
     """All labels with a number behind them, in order; a label without one comes last, with an empty value."""
-    found: list[Labelled] = []
+    labelled: list[Labelled] = []
     label: list[str] = []
     words = re.sub(r"(?<=[0-9])\s*/\s*(?=[0-9])", "/", growing_squeezed(plain(text))).replace(":", " : ").split()
     for word in words:
         bare = word.strip(",;|")
         if (_VALUE.match(bare) or grows(bare)) and label:
-            found.append(Labelled(meaning(" ".join(label), profile), " ".join(label), bare))
+            labelled.append(Labelled(meaning(" ".join(label), profile), " ".join(label), bare))
             label = []
         elif bare in (":", "=", "-", "") and not folded(bare):
             continue
-        elif bare.startswith("(") and found and not label and _VALUE.match(bare.strip("()")):
+        elif bare.startswith("(") and labelled and not label and _VALUE.match(bare.strip("()")):
             continue  # the same number in another base
-        elif bare.casefold() in _COUNTED and found and not label:
+        elif bare.casefold() in _COUNTED and labelled and not label:
             continue  # `Length: 6 bytes`
         else:
             label.append(bare)
     if label:
-        found.append(Labelled(meaning(" ".join(label), profile), " ".join(label), ""))
-    return found
+        labelled.append(Labelled(meaning(" ".join(label), profile), " ".join(label), ""))
+    return labelled
 
 
 def meaning(label: str, profile: Profile) -> str:
-    """What the label stands for. The order of its words does not count: torn cells come in any."""
+    """Return the meaning of a label, or "". The order of its words is ignored, because cells may be torn."""
     return profile.labels.get(tuple(sorted(folded(label))), "")
 
 
 def begins(text: str, profile: Profile) -> bool:
     """Whether a line can only be the first row of a message's table: its id, and nothing that is not labelled."""
-    found = parse(text, profile)
+    labelled = parse(text, profile)
     return (
-        bool(found)
-        and found[0].what in ("id", "both_ids", "set_id")
-        and bool(found[0].value)
-        and all(one.what and (one.value or one.what in ("description", "fields")) for one in found)
+        bool(labelled)
+        and labelled[0].what in ("id", "both_ids", "set_id")
+        and bool(labelled[0].value)
+        and all(label.what and (label.value or label.what in ("description", "fields")) for label in labelled)
     )
 
 
 def leads(text: str, profile: Profile) -> str:
-    """What a line begins with, if that is a label without a number: "description", "fields" ..., else ""."""
+    """Return the meaning of the label at the begin of a line ("description", "fields" ...), or ""."""
     return split(plain(text), profile)[0]
 
 
 def split(text: str, profile: Profile) -> tuple[str, str]:
-    """The meaning of the label that a line begins with, and what stands behind it; "" and all of it if there is none."""
+    """Return the meaning of the label at the begin of a line and the text behind it; "" and the line if it has no label."""
     words = text.split()
     for length in range(min(5, len(words)), 0, -1):
         if what := meaning(" ".join(words[:length]), profile):

@@ -1,4 +1,4 @@
-"""What rules read from the tables of a document, and what of it belongs to each node."""
+"""Messages, enumerations and lists that rules read from tables, before they become ICDs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from icdgen.importer.profile import NodeWords
 
 @dataclass(slots=True)
 class ReadField:
-    """A field; ``bits`` are those of an element where it is an array, ``enum`` names its enumeration once that is known."""
+    """Field of a message. ``bits`` is the size of one element of an array; ``enum`` is set when references are resolved."""
 
     name: str
     at: int
@@ -168,7 +168,7 @@ BACKGROUND, UNKNOWN = "background", "not understood"
 
 @dataclass(slots=True)
 class Found:
-    """What a table is and gives, in the order of the document."""
+    """Result of one table, in the order of the document."""
 
     table: SourceTable
     what: str  # "message" | "enumeration" | "list" | "loggable frames" | BACKGROUND | UNKNOWN
@@ -184,12 +184,12 @@ class Survey:
 
     def of(self, kind: type[T]) -> list[tuple[Found, T]]:
         """The tables that gave a thing of this class, each with it."""
-        return [(one, one.thing) for one in self.found if isinstance(one.thing, kind)]
+        return [(entry, entry.thing) for entry in self.found if isinstance(entry.thing, kind)]
 
 
 @dataclass
 class NodeParts:
-    """What belongs to one node, before it becomes an ICD."""
+    """Messages, enumerations and lists of one node, before they become an ICD."""
 
     name: str
     title: str

@@ -22,7 +22,7 @@ _PLACEHOLDER = re.compile(r"\\?\{(unit|number|table|title)\\?\}")
 
 @dataclass(slots=True)
 class NodeWords:
-    """What a profile says about one node: the words by which it is found, and the head of its file."""
+    """Entry of `nodes`: the words by which tables are assigned to the node, and the head of its file."""
 
     name: str
     match: list[str] = field(default_factory=list)  # words in list captions
@@ -66,7 +66,7 @@ class Profile:
     @cached_property
     def _rules_with_unknown_headings(self) -> list[Rule]:
         """Rules of which some heading is not in the vocabulary of a kind: a row with all headings is their heading row."""
-        known = [
+        vocabularies = [
             frozenset(heading for headings in roles.values() for heading in headings)
             for roles in self._headings_of_vocabulary.values()
         ]
@@ -74,7 +74,7 @@ class Profile:
             rule
             for rule in self.rules
             if rule.heading_titles
-            and not any({folded(title) for title in rule.heading_titles} <= words for words in known)
+            and not any({folded(title) for title in rule.heading_titles} <= words for words in vocabularies)
         ]
 
     @cached_property
@@ -88,7 +88,7 @@ class Profile:
     @cached_property
     def heading_words(self) -> frozenset[str]:
         """All words of all headings."""
-        return frozenset(word for known in self.known_headings.values() for heading in known for word in heading)
+        return frozenset(word for titles in self.known_headings.values() for heading in titles for word in heading)
 
     @cached_property
     def needs(self) -> dict[str, list[tuple[str, ...]]]:
@@ -101,7 +101,7 @@ class Profile:
     @cached_property
     def _needs_of_vocabulary(self) -> dict[str, list[tuple[str, ...]]]:
         return {
-            kind: [tuple(one.split("|")) for one in roles.get("needs", ())]
+            kind: [tuple(alternatives.split("|")) for alternatives in roles.get("needs", ())]
             for kind, roles in self.data["headings"].items()
         }
 
@@ -131,7 +131,7 @@ class Profile:
 
     @property
     def orders(self) -> tuple[str, str]:
-        """Byte order and bit order in which rules read positions: those of the ICDs."""
+        """Byte order and bit order in which rules read positions, as the ICDs have them."""
         node = self.data["node"] | (self.nodes[0].head if self.nodes else {})
         return node.get("byte_order", "little"), node.get("bit_order", "lsb0")
 
@@ -194,7 +194,7 @@ def _pattern(text: str, stand_ins: dict[str, str]) -> str:
 
 
 def find(name: str | None) -> Path | None:
-    """The profile of this name: a file, or one that is shipped beside the ICDs. Raises `UserError` if there is none."""
+    """Return the path of a profile: a file, or the name of a shipped profile. Raises `UserError` for an unknown name."""
     from icdgen import shipped
     from icdgen.errors import UserError
 
@@ -207,8 +207,8 @@ def find(name: str | None) -> Path | None:
     ours = folder / f"{name}.yaml"
     if ours.is_file():
         return ours
-    known = ", ".join(sorted(p.stem for p in folder.glob("*.yaml"))) or "none"
-    raise UserError(f"there is no profile `{name}`", f"name a file, or one of those shipped: {known}")
+    names = ", ".join(sorted(p.stem for p in folder.glob("*.yaml"))) or "none"
+    raise UserError(f"there is no profile `{name}`", f"name a file, or one of those shipped: {names}")
 
 
 def load(path: Path | None = None) -> Profile:
@@ -219,7 +219,7 @@ def load(path: Path | None = None) -> Profile:
 
 
 def of_tree(tree: Map) -> Profile:
-    """The profile that comes with icdgen, with the tree of a profile laid over it. Raises `Findings` for one that is wrong."""
+    """Return the built-in words, extended by the tree of a profile. Raises `Findings` for errors of the profile."""
     base = plain(source.read(DEFAULT))
     _check(tree)
     own = plain(tree)

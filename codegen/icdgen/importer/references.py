@@ -1,4 +1,4 @@
-"""What tables say about each other: lists and details, fields and enumerations, fields and their message."""
+"""References between tables: lists and messages, fields and enumerations; checks of complete messages."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from icdgen.importer.words import plain, squeezed, table_name
 
 def listed(node: NodeParts, troubles: list[Trouble]) -> None:
     """Holds list tables and detail tables together: groups, names, what disagrees, what one of them lacks."""
-    rows = [row for one in node.lists for row in one.rows]
+    rows = [row for list_table in node.lists for row in list_table.rows]
     for message in node.messages:
         row = _row_of(message, rows)
         if row is None:
-            if any(one.kind in ("", message.kind) for one in node.lists):
+            if any(list_table.kind in ("", message.kind) for list_table in node.lists):
                 troubles.append(Trouble("IMP062", f"{message.table.title}: no list table names it", message.table.spot,
                                         "compare with the list tables"))  # fmt: skip
             continue
@@ -81,26 +81,26 @@ def enums(node: NodeParts, nodes: list[NodeParts], everything: list[ReadEnum], t
 def _meant(
     node: NodeParts, everything: list[ReadEnum], message: ReadMessage, field: ReadField, troubles: list[Trouble]
 ) -> ReadEnum | None:
-    """The enumeration that a field points to; None, and a finding, if there is none."""
-    said = field.described
+    """Return the enumeration to which a field refers; report a reference that cannot be resolved."""
+    described = field.described
     where = f"{message.table.title}, field `{field.name}`"
-    of_number = [enum for enum in everything if enum.table.label == said.enum_table is not None]
+    of_number = [enum for enum in everything if enum.table.label == described.enum_table is not None]
     of_number.sort(key=lambda enum: enum.table.run != message.table.run)  # where numbers start anew, several have it
     numbered = next(iter(of_number), None)
-    titled = _by_title(said.enum_title, everything, node)
+    titled = _by_title(described.enum_title, everything, node)
     chosen = numbered or titled
-    if numbered and said.enum_title and titled is not None and squeezed(titled.name) != squeezed(numbered.name):
+    if numbered and described.enum_title and titled is not None and squeezed(titled.name) != squeezed(numbered.name):
         chosen = titled
         troubles.append(
-            Trouble("IMP051", f"{where}: it points to table {table_name(said.enum_table)} by number and to "
+            Trouble("IMP051", f"{where}: it points to table {table_name(described.enum_table)} by number and to "
                     f"table {table_name(titled.table.label)} (`{titled.name}`) by title", field.spot,
                     "the title was followed")
         )  # fmt: skip
     if chosen is None:
-        if said.enum_table is not None:
-            what = f"it points to table {table_name(said.enum_table)}, which is not there or no enumeration"
-        elif said.enum_title:
-            what = f"there is no enumeration `{said.enum_title}`"
+        if described.enum_table is not None:
+            what = f"it points to table {table_name(described.enum_table)}, which is not there or no enumeration"
+        elif described.enum_title:
+            what = f"there is no enumeration `{described.enum_title}`"
         else:
             what = "it does not say in which table its values are"
         troubles.append(Trouble("IMP050", f"{where}: {what}", field.spot,
@@ -113,16 +113,16 @@ def _by_title(title: str, everything: list[ReadEnum], node: NodeParts) -> ReadEn
     if not wanted:
         return None
     near = [*node.enums, *everything]
-    whole = (enum for enum in near if wanted in (squeezed(enum.name), squeezed(enum.table.caption)))
+    equal = (enum for enum in near if wanted in (squeezed(enum.name), squeezed(enum.table.caption)))
     torn = (enum for enum in near if len(wanted) > 5 and squeezed(enum.table.caption).startswith(wanted))
-    return next(itertools.chain(whole, torn), None)
+    return next(itertools.chain(equal, torn), None)
 
 
 def _within_reach(node: NodeParts, nodes: list[NodeParts], enum: ReadEnum) -> str:
     """The name under which the node sees the enumeration; it is repeated in the node where it sees none."""
     names = {name.removesuffix(".yaml") for name in node.include}
-    for one in (node, *(n for n in nodes if n.name in names)):
-        for own in one.enums:
+    for visible in (node, *(n for n in nodes if n.name in names)):
+        for own in visible.enums:
             if own is enum or any(table is enum.table for table in own.also):
                 return own.name
     node.enums.append(enum)
@@ -169,6 +169,6 @@ def _is_held(message: ReadMessage, most: int, troubles: list[Trouble]) -> bool:
 
 
 def _lacking(message: ReadMessage) -> list[str]:
-    """What a message needs and its rule does not give."""
-    given = {"name": message.name, "kind": message.kind, "id": any(one is not None for one in message.ids)}
+    """Required attributes that the rule of a message does not give."""
+    given = {"name": message.name, "kind": message.kind, "id": any(number is not None for number in message.ids)}
     return [key for key, value in given.items() if not value]

@@ -1,4 +1,4 @@
-"""A document as a whole: ICD trees and findings. Nothing is written here."""
+"""Import of a document: ICD trees and findings, without writing files."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NOTHING = "IMP004"
 
 @dataclass
 class Result:
-    """What an import reads."""
+    """Result of an import."""
 
     document: Document
     tables: list[SourceTable]
@@ -30,7 +30,7 @@ class Result:
 
     @property
     def survey(self) -> Survey:
-        """What each table is and gives."""
+        """Results of all tables."""
         return self.interpretation.survey
 
     @property
@@ -46,13 +46,13 @@ class Result:
         return any(t.severity == "error" for t in self.survey.troubles)
 
     def sureness(self) -> Counter[str]:
-        """How many tables were read how surely; those that were not understood are not counted."""
-        return Counter(self.sure_of(one.table) for one in self.survey.found if one.what != UNKNOWN)
+        """Count tables by certainty, without tables to which no rule applies."""
+        return Counter(self.sure_of(entry.table) for entry in self.survey.found if entry.what != UNKNOWN)
 
     def sure_of(self, table: SourceTable) -> str:
         """How sure the reading of a table is."""
         about = [t for t in self.survey.troubles if t.is_about_table(table.spot.order) and t.code != "IMP035"]
-        what = next((one.what for one in self.survey.found if one.table is table), "")
+        what = next((entry.what for entry in self.survey.found if entry.table is table), "")
         if what == UNKNOWN or any(t.severity == "error" or t.sure == DOUBTFUL for t in about):
             return DOUBTFUL
         return LIKELY if any(t.severity == "warning" for t in about) else CERTAIN

@@ -10,7 +10,7 @@ from icdgen.importer.words import table_name
 
 def from_document(document: Document) -> list[SourceTable]:
     """Return the tables of a document, each with its number and the texts above it; those without any text are left out."""
-    made: list[SourceTable] = []
+    tables: list[SourceTable] = []
     chain: list[Heading] = []
     before: list[str] = []
     for block in document.blocks:
@@ -22,11 +22,11 @@ def from_document(document: Document) -> list[SourceTable]:
         elif any(cell.text for row in block.rows for cell in row.cells):
             block.boxes = [Box(box.page, *(round(value, 1) for value in box[1:])) for box in block.boxes]
             block.headings, block.before = [heading.title for heading in chain], before
-            made.append(block)
-            block.number, before = len(made), []
-    if made:
-        made[-1].after = before
-    return made
+            tables.append(block)
+            block.number, before = len(tables), []
+    if tables:
+        tables[-1].after = before
+    return tables
 
 
 def count_runs(tables: list[SourceTable]) -> None:

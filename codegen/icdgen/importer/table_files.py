@@ -1,4 +1,4 @@
-"""Tables as files: written by `icdgen import FILE --tables DIR`, corrected by a person, read by `icdgen import DIR`.
+"""Tables as files: written by `icdgen import FILE --tables DIR`, corrected by hand, read by `icdgen import DIR`.
 
 One YAML file a table, ``012.table.yaml``, so that a correction is one line of a diff. A row is a list of cells: texts, or
 mappings with a text and its spans. An entry ``{page: 4}`` among the rows says that the rows below it stand on that page.
@@ -120,15 +120,15 @@ def _wrong_spans(tree: Map) -> list[Finding]:
     table = _table(tree)
     covered = Counter(id(slot.cell) for slots in table.grid() for slot in slots)
     places = [tree["rows"].item_at(index) for index, row in enumerate(tree["rows"]) if isinstance(row, list)]
-    found = []
+    wrong = []
     for row, place in zip(table.rows, places, strict=True):
         for cell in row.cells:
             if covered[id(cell)] < cell.columns * cell.rows:
                 message = f"the cell `{cell.text[:40]}` lies below another cell, or spans more rows than there are"
-                found.append(
+                wrong.append(
                     Finding(CODE, message, place, "correct `rows:` and `columns:` of the cells here and below")
                 )
-    return found
+    return wrong
 
 
 def _table(tree: Map) -> SourceTable:

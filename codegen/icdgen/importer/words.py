@@ -85,10 +85,10 @@ _PART = 1_000_000  # more than the tables of a chapter
 
 def table_number(printed: str) -> int:
     """The number of a table, ``12`` or ``4-12``, as one that keeps their order; `table_name` is the way back."""
-    made = 0
+    number = 0
     for part in re.split("[-.]", printed):
-        made = made * _PART + int(part[:6])
-    return made
+        number = number * _PART + int(part[:6])
+    return number
 
 
 def table_name(number: int | None) -> str:
@@ -102,22 +102,22 @@ def table_name(number: int | None) -> str:
 _SOFT = "\u00ad"
 
 
-def unbroken(lines: list[str], full: list[bool], known: frozenset[str]) -> list[str]:
+def unbroken(lines: list[str], full: list[bool], document_words: frozenset[str]) -> list[str]:
     """The lines of a wrapped cell, those put together between which a word was broken because it fills its line."""
-    made: list[str] = []
+    texts: list[str] = []
     for index, line in enumerate(lines):
-        before = made[-1].rsplit(" ", 1)[-1] if made else ""
-        if made and full[index - 1] and _is(before + line.split(" ", 1)[0], known):
-            made[-1] += line
+        before = texts[-1].rsplit(" ", 1)[-1] if texts else ""
+        if texts and full[index - 1] and _is(before + line.split(" ", 1)[0], document_words):
+            texts[-1] += line
         else:
-            made.append(line)
-    return made
+            texts.append(line)
+    return texts
 
 
-def join(lines: list[str], known: frozenset[str] = frozenset(), full: list[bool] | None = None) -> str:
+def join(lines: list[str], document_words: frozenset[str] = frozenset(), full: list[bool] | None = None) -> str:
     """The lines of a wrapped cell as one text.
 
-    ``known`` are words that the document has in one piece: they decide whether a hyphen at a line's end belongs to the
+    ``document_words`` are words that the document has in one piece: they decide whether a hyphen at a line's end belongs to the
     word, and whether a word that fills its line (``full``) goes on in the next.
     """
     text = ""
@@ -132,9 +132,11 @@ def join(lines: list[str], known: frozenset[str] = frozenset(), full: list[bool]
         if text.endswith(_SOFT):
             text = text[:-1] + line
         elif len(before) > 1 and before.endswith("-") and after[:1].islower():
-            whole = before[:-1] + after
-            text = (text[:-1] if _is(whole, known) and not _is(before + after, known) else text) + line
-        elif _holds_on(before, after) or (full and full[index - 1] and _is(before + after, known)):
+            joined = before[:-1] + after
+            text = (
+                text[:-1] if _is(joined, document_words) and not _is(before + after, document_words) else text
+            ) + line
+        elif _holds_on(before, after) or (full and full[index - 1] and _is(before + after, document_words)):
             text += line
         else:
             text += " " + line
@@ -146,5 +148,5 @@ def _holds_on(before: str, after: str) -> bool:
     return (len(before) > 1 and before[-1] in "-/_") or (before[-1:] in "*/" and after[:1].isdigit())
 
 
-def _is(word: str, known: frozenset[str]) -> bool:
-    return word.strip(".,;:()[]") in known
+def _is(word: str, document_words: frozenset[str]) -> bool:
+    return word.strip(".,;:()[]") in document_words

@@ -27,43 +27,45 @@ KEYS = {
 
 @dataclass(slots=True)
 class Band:
-    """A stretch of a table between two rules. ``edges`` are those of its cells."""
+    """Part of a table between two horizontal rules. ``edges`` are the left and right sides of its cells."""
 
     page: int
     edges: list[float]
     words: list[Word]
     continues: tuple[bool, ...] = ()  # whether a cell has no rule above it
 
-    def of(self, found: list[Line]) -> Band:
-        """What these lines of it are."""
-        return Band(self.page, self.edges, words_of(found))
+    def of(self, lines_of_band: list[Line]) -> Band:
+        """Return the part of the band that has these lines."""
+        return Band(self.page, self.edges, words_of(lines_of_band))
 
-    def texts(self, known: frozenset[str]) -> list[str]:
+    def texts(self, document_words: frozenset[str]) -> list[str]:
         """The texts of its cells."""
-        return [_cell(part, edge, known) for part, edge in zip(self.parts(), self.edges[1:], strict=True)]
+        return [_cell(part, edge, document_words) for part, edge in zip(self.parts(), self.edges[1:], strict=True)]
 
-    def printed(self, known: frozenset[str]) -> PrintedRow:
+    def printed(self, document_words: frozenset[str]) -> PrintedRow:
         """The row as the page shows it."""
         cells = zip(self.parts(), self.edges[1:], strict=True)
-        texts = ["\n".join(unbroken(*_lines_of_cell(part, edge), known)) for part, edge in cells]
+        texts = ["\n".join(unbroken(*_lines_of_cell(part, edge), document_words)) for part, edge in cells]
         return PrintedRow(texts, tuple(self.edges), self.continues, self.page)
 
     def parts(self) -> list[list[Word]]:
-        made: list[list[Word]] = [[] for _ in self.edges[1:]]
+        columns: list[list[Word]] = [[] for _ in self.edges[1:]]
         for word in self.words:
-            made[index_of(word.centre, self.edges)].append(word)
-        return made
+            columns[index_of(word.centre, self.edges)].append(word)
+        return columns
 
 
-def _cell(words: list[Word], right: float, known: frozenset[str]) -> str:
+def _cell(words: list[Word], right: float, document_words: frozenset[str]) -> str:
     texts, full = _lines_of_cell(words, right)
-    return join(texts, known, full)
+    return join(texts, document_words, full)
 
 
 def _lines_of_cell(words: list[Word], right: float) -> tuple[list[str], list[bool]]:
     """The lines of a cell, and whether each is a single word that fills its line."""
-    found = lines(words)
-    return [line.text for line in found], [len(n.words) == 1 and n.x1 > right - 1.6 * n.size for n in found]
+    lines_of_cell = lines(words)
+    return [line.text for line in lines_of_cell], [
+        len(n.words) == 1 and n.x1 > right - 1.6 * n.size for n in lines_of_cell
+    ]
 
 
 def is_key(text: str) -> bool:
@@ -91,26 +93,28 @@ def aligned(band: Band, edges: list[float]) -> Band:
     return Band(band.page, edges, moved)
 
 
-def rows(band: Band, header: Header, known: frozenset[str], torn: bool = False) -> list[PrintedRow]:
-    """The rows of a band whose cells are those of ``header``. ``torn``: it may begin with the rest of a row."""
-    found = lines(band.words)
-    key = _key_column(header) if header.kind in KEYS else _column_of_most_keys(found, band.edges)
-    if header.kind == "list" and (groups := [i for i, line in enumerate(found) if _is_group(line, band.edges, key)]):
-        return _around(band, found, groups, header, known)
-    keyed = [i for i, line in enumerate(found) if is_key(_text_in(line, band.edges, key))]
+def rows(band: Band, header: Header, document_words: frozenset[str], torn: bool = False) -> list[PrintedRow]:
+    """Return the rows of a band with the columns of ``header``. ``torn``: the first row may continue one of the page before."""
+    lines_of_band = lines(band.words)
+    key = _key_column(header) if header.kind in KEYS else _column_of_most_keys(lines_of_band, band.edges)
+    if header.kind == "list" and (
+        groups := [i for i, line in enumerate(lines_of_band) if _is_group(line, band.edges, key)]
+    ):
+        return _around(band, lines_of_band, groups, header, document_words)
+    keyed = [i for i, line in enumerate(lines_of_band) if is_key(_text_in(line, band.edges, key))]
     if len(keyed) <= (0 if torn else 1):
-        return [band.printed(known)] if band.words else []
-    made = []
-    for first, last in _stretches(found, keyed, _leading(band), torn):
-        made.append(band.of(found[first:last]).printed(known))
-    return made
+        return [band.printed(document_words)] if band.words else []
+    printed = []
+    for first, last in _stretches(lines_of_band, keyed, _leading(band), torn):
+        printed.append(band.of(lines_of_band[first:last]).printed(document_words))
+    return printed
 
 
 def has_keys(band: Band, header: Header) -> bool:
     """Whether a line has a key in the key column and words in another one."""
-    found = lines(band.words)
-    key = _key_column(header) if header.kind in KEYS else _column_of_most_keys(found, band.edges)
-    for line in found:
+    lines_of_band = lines(band.words)
+    key = _key_column(header) if header.kind in KEYS else _column_of_most_keys(lines_of_band, band.edges)
+    for line in lines_of_band:
         columns = {index_of(w.centre, band.edges) for w in line.words}
         if len(columns) > 1 and is_key(_text_in(line, band.edges, key)):
             return True
@@ -121,9 +125,9 @@ def _key_column(header: Header) -> int:
     return next((i for i, role in enumerate(header.roles) if role in KEYS[header.kind]), 0)
 
 
-def _column_of_most_keys(found: list[Line], edges: list[float]) -> int:
+def _column_of_most_keys(lines_of_band: list[Line], edges: list[float]) -> int:
     """The column in which most lines have a key; the first one if none has any."""
-    counts = [sum(is_key(_text_in(line, edges, column)) for line in found) for column in range(len(edges) - 1)]
+    counts = [sum(is_key(_text_in(line, edges, column)) for line in lines_of_band) for column in range(len(edges) - 1)]
     return counts.index(max(counts)) if counts else 0
 
 
@@ -134,18 +138,18 @@ def _is_group(line: Line, edges: list[float], key: int) -> bool:
 
 
 def _around(
-    band: Band, found: list[Line], groups: list[int], header: Header, known: frozenset[str]
+    band: Band, lines_of_band: list[Line], groups: list[int], header: Header, document_words: frozenset[str]
 ) -> list[PrintedRow]:
     """The rows of a band in which group headings stand."""
-    made: list[PrintedRow] = []
+    printed: list[PrintedRow] = []
     start = 0
-    for index in [*groups, len(found)]:
+    for index in [*groups, len(lines_of_band)]:
         if start < index:
-            made += rows(band.of(found[start:index]), header, known)
-        if index < len(found):
-            made.append(group_row(found[index].text, len(band.edges) - 1, band.page))
+            printed += rows(band.of(lines_of_band[start:index]), header, document_words)
+        if index < len(lines_of_band):
+            printed.append(group_row(lines_of_band[index].text, len(band.edges) - 1, band.page))
         start = index + 1
-    return made
+    return printed
 
 
 def group_row(text: str, width: int, page: int) -> PrintedRow:
@@ -160,16 +164,19 @@ def _text_in(line: Line, edges: list[float], column: int) -> str:
 def _leading(band: Band) -> float:
     """How far apart the lines of a cell stand; infinite where no column has two lines."""
     columns = [lines(part) for part in band.parts() if part]
-    return min((b.middle - a.middle for found in columns for a, b in itertools.pairwise(found)), default=math.inf)
+    return min(
+        (b.middle - a.middle for lines_of_column in columns for a, b in itertools.pairwise(lines_of_column)),
+        default=math.inf,
+    )
 
 
-def _stretches(found: list[Line], keyed: list[int], leading: float, torn: bool) -> list[tuple[int, int]]:
-    """The lines of each row, given those that hold its key; what stands before belongs to a row torn above."""
-    gaps = [b.middle - a.middle for a, b in itertools.pairwise(found)]
-    starts = [_first_start(keyed, gaps, leading, torn, len(found))]
+def _stretches(lines_of_band: list[Line], keyed: list[int], leading: float, torn: bool) -> list[tuple[int, int]]:
+    """Ranges of lines of each row, from the lines with keys. Lines before the first key continue a row of the page before."""
+    gaps = [b.middle - a.middle for a, b in itertools.pairwise(lines_of_band)]
+    starts = [_first_start(keyed, gaps, leading, torn, len(lines_of_band))]
     for before, here in itertools.pairwise(keyed):
-        starts.append(_start(found, before, here, gaps, starts[-1]))
-    ends = [*starts[1:], len(found)]
+        starts.append(_start(lines_of_band, before, here, gaps, starts[-1]))
+    ends = [*starts[1:], len(lines_of_band)]
     lead = [(0, starts[0])] if starts[0] else []
     return lead + list(zip(starts, ends, strict=True))
 
@@ -186,7 +193,7 @@ def _first_start(keyed: list[int], gaps: list[float], leading: float, torn: bool
     return 0 if after >= first else first
 
 
-def _start(found: list[Line], before: int, here: int, gaps: list[float], start: int) -> int:
+def _start(lines_of_band: list[Line], before: int, here: int, gaps: list[float], start: int) -> int:
     """Where the row of the key at ``here`` begins, after the one at ``before`` whose row begins at ``start``."""
     if here == before + 1:
         return here

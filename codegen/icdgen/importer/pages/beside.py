@@ -15,13 +15,13 @@ Items = list[Draft | Mark]
 
 def parted(items: Items, profile: Profile) -> Items:
     """The items, such tables parted; tables side by side each stand behind their part of the lines above them."""
-    made: Items = []
+    in_order: Items = []
     index = 0
     while index < len(items):
         item = items[index]
         index += 1
         if isinstance(item, Mark):
-            made.append(item)
+            in_order.append(item)
             continue
         tables = _parts(item, profile)
         if not tables:
@@ -35,24 +35,24 @@ def parted(items: Items, profile: Profile) -> Items:
         above: list[list[Mark]] = []
         while (
             len(tables) > 1
-            and made
-            and isinstance(made[-1], Mark)
-            and (lines := _lines(made[-1], len(tables), profile))
+            and in_order
+            and isinstance(in_order[-1], Mark)
+            and (lines := _lines(in_order[-1], len(tables), profile))
         ):
             above.insert(0, lines)
-            made.pop()
+            in_order.pop()
         for place, table in enumerate(tables):
-            made += [*(lines[place] for lines in above), table]
-    return made
+            in_order += [*(lines[place] for lines in above), table]
+    return in_order
 
 
-def _beside(one: Draft, other: Draft) -> bool:
+def _beside(draft: Draft, other: Draft) -> bool:
     """Whether two tables stand side by side on a page, and on none besides."""
-    if len(one.boxes) != 1 or len(other.boxes) != 1:
+    if len(draft.boxes) != 1 or len(other.boxes) != 1:
         return False
-    a, b = one.boxes[0], other.boxes[0]
-    apart = a.x1 <= b.x0 or b.x1 <= a.x0
-    return a.page == b.page and apart and min(a.bottom, b.bottom) > max(a.top, b.top)
+    a, b = draft.boxes[0], other.boxes[0]
+    is_beside = a.x1 <= b.x0 or b.x1 <= a.x0
+    return a.page == b.page and is_beside and min(a.bottom, b.bottom) > max(a.top, b.top)
 
 
 def _parts(table: Draft, profile: Profile) -> list[Draft]:
@@ -67,15 +67,15 @@ def _parts(table: Draft, profile: Profile) -> list[Draft]:
     width = len(parts[-1])
     if any(part[:width] != parts[-1] or any(part[width:]) for part in parts):
         return []
-    made = []
+    result = []
     for start in starts:
         header = headings.match(table.head[0].lines[start : start + width], profile, loose=True)
         if header is None:
             return []
         header.printed = [table.head[0].slice(start, width)]
         rows = [row.slice(start, width) for row in table.head[1:]]
-        made.append(Draft(list(table.boxes), header, rows=[row for row in rows if any(row.texts)]))
-    return made
+        result.append(Draft(list(table.boxes), header, rows=[row for row in rows if any(row.texts)]))
+    return result
 
 
 def _lines(mark: Mark, count: int, profile: Profile) -> list[Mark]:

@@ -60,7 +60,9 @@ def _table_from(items: Items, index: int, step: int) -> int | None:
 def _stand_above(items: Items, after: dict[int, int | None], before: dict[int, int | None], is_part: bool) -> bool:
     """Whether captions stand above their tables in this document: so that each has one, else by distance on the page,
     else by number. With prose between caption and table, the distance misleads."""
-    down_all, up_all = (None not in one.values() and len(set(one.values())) == len(one) for one in (after, before))
+    down_all, up_all = (
+        None not in captions.values() and len(set(captions.values())) == len(captions) for captions in (after, before)
+    )
     if down_all != up_all and not is_part:
         return down_all
     nearer = 0

@@ -33,8 +33,8 @@ def find(lines: list[Line], profile: Profile, loose: bool = True) -> Columns | N
         block = lines[:count]
         if count > 1 and block[-1].top - block[-2].bottom > 1.2 * block[-1].size:
             break
-        found = _in_one_line(block[0], profile) if count == 1 else None
-        for cells in filter(None, (found, _clustered(block))):
+        columns = _in_one_line(block[0], profile) if count == 1 else None
+        for cells in filter(None, (columns, _clustered(block))):
             header = headings.match([_text(cell) for cell in cells], profile)
             if header and (best is None or header.known_words > best.header.known_words):
                 best = Columns(header, [_extent(cell) for cell in cells], count)

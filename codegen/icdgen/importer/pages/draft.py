@@ -85,7 +85,7 @@ class Draft:
 def _rows(printed: list[PrintedRow], page: int) -> list[SourceRow]:
     """The rows with the spans of their cells; ``page`` is that of rows that state none."""
     edges = _columns(printed)
-    made: list[SourceRow] = []
+    rows: list[SourceRow] = []
     above: dict[int, Cell] = {}  # first column of a cell of the row above -> the cell
     for row in printed:
         placed = _placed(row, edges)
@@ -102,8 +102,8 @@ def _rows(printed: list[PrintedRow], page: int) -> list[SourceRow]:
                 cells.append(cell)
                 here[column] = cell
         above = here
-        made.append(SourceRow(cells, row.page or page))
-    return made
+        rows.append(SourceRow(cells, row.page or page))
+    return rows
 
 
 def _shift(row: PrintedRow, first: Sequence[float]) -> float:
@@ -131,10 +131,10 @@ def _placed(row: PrintedRow, edges: list[float]) -> list[tuple[Cell, int]]:
         return [(Cell(text), index) for index, text in enumerate(row.texts)]
     shift = _shift(row, edges)
     places = [min(range(len(edges)), key=lambda i: abs(edges[i] - x - shift)) for x in row.edges]
-    made: list[tuple[Cell, int]] = [(Cell(""), column) for column in range(places[0])]
+    placed: list[tuple[Cell, int]] = [(Cell(""), column) for column in range(places[0])]
     for text, start, end in zip(row.texts, places, places[1:], strict=False):
         if end > start:
-            made.append((Cell(text, end - start), start))
-        elif text and made:
-            made[-1][0].text = f"{made[-1][0].text}\n{text}".strip("\n")
-    return made
+            placed.append((Cell(text, end - start), start))
+        elif text and placed:
+            placed[-1][0].text = f"{placed[-1][0].text}\n{text}".strip("\n")
+    return placed

@@ -56,7 +56,7 @@ class Fill(NamedTuple):
 
 @dataclass(slots=True)
 class Page:
-    """What a page shows."""
+    """Words, ruling lines and shaded areas of a page."""
 
     number: int
     width: float
@@ -73,33 +73,35 @@ class Page:
 
 
 def extract(page: Any) -> Page:
-    """What ``page``, a page of pdfplumber, shows."""
+    """Return words, rules and shaded areas of a page of pdfplumber."""
     from pdfminer.layout import LTChar, LTCurve, LTImage, LTLine, LTRect
     from pdfplumber.utils.text import extract_words
 
     left, top, right, bottom = (float(edge) for edge in page.cropbox)
-    made = Page(page.page_number, right - left, bottom - top)
+    content = Page(page.page_number, right - left, bottom - top)
     shift = _Shift(page.mediabox[0] - left, page.mediabox[1] + page.height - top)
     chars = []
     for thing in _drawn(page):
         if isinstance(thing, LTChar):
             chars.append(_char(thing, shift))
         elif isinstance(thing, LTLine):
-            _line(made, *shift.box(thing))
+            _line(content, *shift.box(thing))
         elif isinstance(thing, LTRect):
-            _rectangle(made, thing, *shift.box(thing))
+            _rectangle(content, thing, *shift.box(thing))
         elif isinstance(thing, LTCurve):
-            _curve(made, thing, shift)
+            _curve(content, thing, shift)
         elif isinstance(thing, LTImage):
-            made.images += 1
+            content.images += 1
     for word in extract_words(chars, x_tolerance_ratio=GAP, y_tolerance=2.5, return_chars=True):
-        _word(made, word)
-    return made
+        _word(content, word)
+    return content
 
 
 def _drawn(page: Any) -> Iterator[Any]:
-    """Characters, lines, curves and pictures, those of forms too. pdfplumber's own ``objects`` hold the same as
-    dictionaries of some twenty entries each, which takes as long as reading the page."""
+    """Characters, lines, curves and pictures of a page and of its forms.
+
+    pdfplumber's own ``objects`` build a dictionary of twenty entries for each, which takes as long as reading the page.
+    """
     from pdfminer.converter import PDFPageAggregator
     from pdfminer.layout import LTContainer
     from pdfminer.pdfinterp import PDFPageInterpreter
@@ -118,7 +120,7 @@ def _drawn(page: Any) -> Iterator[Any]:
 
 
 class _Shift(NamedTuple):
-    """From the coordinates of a PDF's sheet, y upwards, to those of its visible part."""
+    """Converts coordinates of the sheet (y upwards) to coordinates of its visible part (y downwards)."""
 
     x: float
     y: float
@@ -137,19 +139,19 @@ def _char(thing: Any, shift: _Shift) -> dict[str, Any]:
             "upright": thing.upright, "size": thing.size, "from": thing}  # fmt: skip
 
 
-def _word(made: Page, word: Mapping[str, Any]) -> None:
+def _word(content: Page, word: Mapping[str, Any]) -> None:
     text = _text(word)
     if not text:
         return
     if not word["upright"]:
-        made.turned += 1
+        content.turned += 1
         return
     x0, top, x1, bottom = word["x0"], word["top"], word["x1"], word["bottom"]
-    if not (0 <= (x0 + x1) / 2 <= made.width and 0 <= (top + bottom) / 2 <= made.height):
-        made.unseen += 1
+    if not (0 <= (x0 + x1) / 2 <= content.width and 0 <= (top + bottom) / 2 <= content.height):
+        content.unseen += 1
         return
-    made.words.append(Word(text, x0, top, x1, bottom, _size(word["chars"]), _style(word["chars"][0]["from"])))
-    made.unmapped += text.count("(cid:") + text.count("\ufffd")
+    content.words.append(Word(text, x0, top, x1, bottom, _size(word["chars"]), _style(word["chars"][0]["from"])))
+    content.unmapped += text.count("(cid:") + text.count("\ufffd")
 
 
 def _size(chars: list[dict[str, Any]]) -> float:
@@ -187,31 +189,31 @@ def _text(word: Mapping[str, Any]) -> str:
     return plain(text)
 
 
-def _line(made: Page, x0: float, top: float, x1: float, bottom: float) -> None:
+def _line(content: Page, x0: float, top: float, x1: float, bottom: float) -> None:
     if bottom - top <= THIN and x1 - x0 > bottom - top:
-        made.across.append(Rule((top + bottom) / 2, x0, x1))
+        content.across.append(Rule((top + bottom) / 2, x0, x1))
     elif x1 - x0 <= THIN and bottom > top:
-        made.down.append(Rule((x0 + x1) / 2, top, bottom))
+        content.down.append(Rule((x0 + x1) / 2, top, bottom))
 
 
-def _rectangle(made: Page, rect: Any, x0: float, top: float, x1: float, bottom: float) -> None:
+def _rectangle(content: Page, rect: Any, x0: float, top: float, x1: float, bottom: float) -> None:
     if x1 - x0 <= THIN or bottom - top <= THIN:
-        _line(made, x0, top, x1, bottom)
+        _line(content, x0, top, x1, bottom)
         return
     if rect.fill and not _white(rect.non_stroking_color):
-        made.fills.append(Fill(x0, top, x1, bottom))
+        content.fills.append(Fill(x0, top, x1, bottom))
     if rect.stroke:
         for y in (top, bottom):
-            made.across.append(Rule(y, x0, x1))
+            content.across.append(Rule(y, x0, x1))
         for x in (x0, x1):
-            made.down.append(Rule(x, top, bottom))
+            content.down.append(Rule(x, top, bottom))
 
 
-def _curve(made: Page, curve: Any, shift: _Shift) -> None:
+def _curve(content: Page, curve: Any, shift: _Shift) -> None:
     """Rules drawn as paths: the straight pieces of them."""
     points = [(x + shift.x, shift.y - y) for x, y in curve.pts]
     for (xa, ya), (xb, yb) in itertools.pairwise(points):
-        _line(made, min(xa, xb), min(ya, yb), max(xa, xb), max(ya, yb))
+        _line(content, min(xa, xb), min(ya, yb), max(xa, xb), max(ya, yb))
 
 
 def _white(colour: object) -> bool:

@@ -27,7 +27,7 @@ _CONTINUED = re.compile(
 
 @dataclass(slots=True)
 class Piece:
-    """A part of a table that stands on one page. ``columns`` is None where it has no headings of its own."""
+    """Part of a table on one page. ``columns`` is None if the part has no headings."""
 
     box: Box
     bands: list[Band]
@@ -64,13 +64,13 @@ def items(pages: list[Page], profile: Profile) -> list[Item]:
         inside = ruled[page.number]
         words = [w for w in page.words if not any(r.holds(w) for r in inside)]
         loose[page.number] = lines(words)
-    kept = furniture.without(pages, loose, lambda line, near: _is_of_a_table(line, near, profile))
-    made: list[Item] = []
+    lines_of_page = furniture.without(pages, loose, lambda line, near: _is_of_a_table(line, near, profile))
+    in_order: list[Item] = []
     flow = _Flow(profile, itertools.chain.from_iterable(loose.values()))
     for page in pages:
-        for regions_of, lines_of in gutter.parts(page, ruled[page.number], kept[page.number]):
-            made += flow.page(page, regions_of, lines_of)
-    return made
+        for regions_of, lines_of in gutter.parts(page, ruled[page.number], lines_of_page[page.number]):
+            in_order += flow.page(page, regions_of, lines_of)
+    return in_order
 
 
 def _is_of_a_table(line: Line, near: list[Line], profile: Profile) -> bool:
@@ -79,7 +79,7 @@ def _is_of_a_table(line: Line, near: list[Line], profile: Profile) -> bool:
         return True
     if headings.segmented(line.text.split(), profile) is not None:
         return True
-    if any(one.what and one.value for one in labels.parse(line.text, profile)[:1]):
+    if any(label.what and label.value for label in labels.parse(line.text, profile)[:1]):
         return True
     parts = folded(line.text)  # a part of headings in several lines: the others stand next to it
     tight = any(max(line.top - other.bottom, other.top - line.bottom) < 0.5 * line.size for other in near)
@@ -104,23 +104,23 @@ class _Flow:
         self.extent = (0.0, 0.0)  # of that table, from left to right
 
     def page(self, page: Page, ruled: list[Region], loose: list[Line]) -> list[Item]:
-        made: list[Item] = []
+        items_of_page: list[Item] = []
         index = 0
         waiting = list(ruled)
         while index < len(loose) or waiting:
             if waiting and (index >= len(loose) or waiting[0].top <= loose[index].middle):
-                made.append(self.ruled(page, waiting.pop(0)))
+                items_of_page.append(self.ruled(page, waiting.pop(0)))
                 self.open = None
                 continue
             limit = waiting[0].top if waiting else float("inf")
             upto = index
             while upto < len(loose) and loose[upto].middle < limit:
                 upto += 1
-            taken, item = self.next(page, loose[index:upto], not made)
+            taken, item = self.next(page, loose[index:upto], not items_of_page)
             index += taken
             if item is not None:
-                made.append(item)
-        return made
+                items_of_page.append(item)
+        return items_of_page
 
     def ruled(self, page: Page, region: Region) -> Piece:
         inside = [w for w in page.words if region.holds(w)]
@@ -134,20 +134,20 @@ class _Flow:
             bands.append(Band(page.number, edges, words, region.open_above(top, edges)))
         return Piece(Box(page.number, region.x0, region.top, region.x1, region.bottom), bands, ruled=True)
 
-    def next(self, page: Page, rest: list[Line], first: bool) -> tuple[int, Item | None]:
-        """What begins with the first of these lines, and how many of them it takes."""
-        line = rest[0]
+    def next(self, page: Page, following: list[Line], first: bool) -> tuple[int, Item | None]:
+        """Return the number of lines that belong to the item at the first line, and the item."""
+        line = following[0]
         if _CONTINUED.match(line.text):
             return 1, None
         goes_on = first and self.open is not None and _begins_in_a_column(line, self.open.spans)
         if self.is_caption(line) and not goes_on:
             self.open = None
-            return self.caption(page, rest)
-        length, found = self.head_length(rest)
-        if found is not None or length:
-            return self.table(page, rest, length, found)
-        if first and self.continues(rest):
-            return self.continuation(page, rest)
+            return self.caption(page, following)
+        length, header = self.head_length(following)
+        if header is not None or length:
+            return self.table(page, following, length, header)
+        if first and self.continues(following):
+            return self.continuation(page, following)
         self.open = None
         kind, number, text = "text", "", line.text
         heading = _HEADING.match(line.text)
@@ -163,47 +163,51 @@ class _Flow:
         match = self.profile.caption.match(line.text)
         return match is not None and bool(match["mark"] or self.stands_out(line) or not match["title"])
 
-    def caption(self, page: Page, rest: list[Line]) -> tuple[int, Mark]:
+    def caption(self, page: Page, following: list[Line]) -> tuple[int, Mark]:
         """A caption with the lines that it wraps into: of the same style and size, close below, and no sentence."""
         taken = 1
-        while taken < min(3, len(rest)):
-            above, line = rest[taken - 1], rest[taken]
+        while taken < min(3, len(following)):
+            above, line = following[taken - 1], following[taken]
             if (
                 line.style != above.style
                 or abs(line.size - above.size) > 0.3
                 or line.top - above.bottom > 0.45 * line.size
                 or not self.stands_out(line)
                 or self.is_caption(line)
-                or self.head_length(rest[taken:]) != (0, None)
+                or self.head_length(following[taken:]) != (0, None)
             ):
                 break
             taken += 1
-        text = " ".join(line.text for line in rest[:taken])
-        cells = _cells(rest[0]) if taken == 1 else []
-        return taken, Mark("caption", text, box_around(page.number, rest[:taken]), rest[0].size, cells=cells)
+        text = " ".join(line.text for line in following[:taken])
+        cells = _cells(following[0]) if taken == 1 else []
+        return taken, Mark("caption", text, box_around(page.number, following[:taken]), following[0].size, cells=cells)
 
-    def head_length(self, rest: list[Line]) -> tuple[int, Columns | None]:
+    def head_length(self, following: list[Line]) -> tuple[int, Columns | None]:
         """How many lines above the headings a table has that begins here, and its headings; (0, None): none begins."""
-        found = columns.find(rest, self.profile)
-        if found is not None:
-            return 0, found
-        first = self.labelled(rest)
+        header = columns.find(following, self.profile)
+        if header is not None:
+            return 0, header
+        first = self.labelled(following)
         if not first:
             return 0, None
-        at = _value_column(rest[0])
+        at = _value_column(following[0])
         taken = first
-        for index in range(first, min(14, len(rest))):
-            line = rest[index]
-            found = columns.find(rest[index:], self.profile)
-            if found is not None:
-                return index, found
-            if self.is_caption(line) or self.labelled(rest[index:]):
+        for index in range(first, min(14, len(following))):
+            line = following[index]
+            header = columns.find(following[index:], self.profile)
+            if header is not None:
+                return index, header
+            if self.is_caption(line) or self.labelled(following[index:]):
                 break
-            said = labels.leads(line.text, self.profile)
-            gap = line.top - rest[index - 1].bottom
-            if not said and (line.x0 < at - 3 or gap > 1.5 * line.size) and not self.completes(rest[index - 1], line):
+            label = labels.leads(line.text, self.profile)
+            gap = line.top - following[index - 1].bottom
+            if (
+                not label
+                and (line.x0 < at - 3 or gap > 1.5 * line.size)
+                and not self.completes(following[index - 1], line)
+            ):
                 break
-            if said == "description":
+            if label == "description":
                 at = _value_column(line)
             taken = index + 1
         return taken, None
@@ -212,15 +216,15 @@ class _Flow:
         """Whether a line is the rest of the label above it, in a narrow column."""
         if line.top - above.bottom > 0.5 * line.size:
             return False
-        found = labels.parse(above.text, self.profile)
-        return bool(found) and bool(labels.meaning(f"{found[-1].label} {line.text}", self.profile))
+        labelled = labels.parse(above.text, self.profile)
+        return bool(labelled) and bool(labels.meaning(f"{labelled[-1].label} {line.text}", self.profile))
 
-    def labelled(self, rest: list[Line]) -> int:
+    def labelled(self, following: list[Line]) -> int:
         """How many lines the first row of a message's table takes that begins here: one, more where its cells wrap."""
-        for count in range(1, min(3, len(rest)) + 1):
-            if count > 1 and rest[count - 1].top - rest[count - 2].bottom > 0.6 * rest[0].size:
+        for count in range(1, min(3, len(following)) + 1):
+            if count > 1 and following[count - 1].top - following[count - 2].bottom > 0.6 * following[0].size:
                 return 0
-            if labels.begins(columns.side_by_side(rest[:count]), self.profile):
+            if labels.begins(columns.side_by_side(following[:count]), self.profile):
                 return count
         return 0
 
@@ -229,89 +233,96 @@ class _Flow:
         count = self.labelled(lines) if lines else 0
         return ([columns.side_by_side(lines[:count])] if count else []) + [line.text for line in lines[count:]]
 
-    def table(self, page: Page, rest: list[Line], length: int, found: Columns | None) -> tuple[int, Piece]:
-        head = self.head(rest[:length])
-        if found is None:
+    def table(self, page: Page, following: list[Line], length: int, header: Columns | None) -> tuple[int, Piece]:
+        head = self.head(following[:length])
+        if header is None:
             self.open = None
-            return length, Piece(box_around(page.number, rest[:length]), [], ruled=False, head=head)
-        start = length + found.lines
-        end = self.end(page, rest, start, found)
-        x0, x1 = min(line.x0 for line in rest[:start]), max(line.x1 for line in rest[:start])
-        body = self.cells(rest[start:end], found)
+            return length, Piece(box_around(page.number, following[:length]), [], ruled=False, head=head)
+        start = length + header.lines
+        end = self.end(page, following, start, header)
+        x0, x1 = min(line.x0 for line in following[:start]), max(line.x1 for line in following[:start])
+        body = self.cells(following[start:end], header)
         piece = Piece(
-            box_around(page.number, rest[:end]), [], ruled=False, columns=found, head=head, lines=body, page=page,
-            top=rest[start - 1].bottom, extent=(x0, x1),
+            box_around(page.number, following[:end]), [], ruled=False, columns=header, head=head, lines=body, page=page,
+            top=following[start - 1].bottom, extent=(x0, x1),
         )  # fmt: skip
-        self.open, self.size = found, rest[min(start, end - 1)].size
+        self.open, self.size = header, following[min(start, end - 1)].size
         self.extent = (min(x0, piece.box.x0), max(x1, piece.box.x1))
         return end, piece
 
-    def cells(self, found: list[Line], columns: Columns) -> list[Line]:
-        """The lines without the word that stands beside all fields, left of the headings: it is of no row."""
-        made = []
-        for line in found:
+    def cells(self, body: list[Line], columns: Columns) -> list[Line]:
+        """Lines without the word left of all headings (such as `Channels`), which labels all rows and belongs to none."""
+        cell_lines = []
+        for line in body:
             first = runs(line, 0.45)[0]
             text = " ".join(w.text for w in first)
             if first[-1].x1 <= columns.spans[0][0] and labels.meaning(text, self.profile) == "fields":
                 if len(first) < len(line.words):
-                    made.append(Line(line.words[len(first) :]))
+                    cell_lines.append(Line(line.words[len(first) :]))
             else:
-                made.append(line)
-        return made
+                cell_lines.append(line)
+        return cell_lines
 
-    def end(self, page: Page, rest: list[Line], start: int, found: Columns) -> int:
+    def end(self, page: Page, following: list[Line], start: int, header: Columns) -> int:
         """The index of the first line that is no longer of the table."""
-        size = rest[start].size if start < len(rest) else 0
-        end = next((index for index in range(start, len(rest)) if self.ends(rest, index, found, size)), len(rest))
-        bottom = rest[-1].bottom + 8
-        if start < end < len(rest) and self.begins_anew(rest, end):  # its upper rule is none of this table
-            bottom = (rest[end - 1].bottom + rest[end].top) / 2
-        limit = _lowest_rule(page, rest, start, found, bottom)
-        below = (i for i in range(start, end) if rest[i].middle > limit and not self.is_row(rest[i], found))
+        size = following[start].size if start < len(following) else 0
+        end = next(
+            (index for index in range(start, len(following)) if self.ends(following, index, header, size)),
+            len(following),
+        )
+        bottom = following[-1].bottom + 8
+        if start < end < len(following) and self.begins_anew(following, end):  # its upper rule is none of this table
+            bottom = (following[end - 1].bottom + following[end].top) / 2
+        limit = _lowest_rule(page, following, start, header, bottom)
+        below = (i for i in range(start, end) if following[i].middle > limit and not self.is_row(following[i], header))
         return next(below, end)
 
-    def ends(self, rest: list[Line], index: int, found: Columns, size: float) -> bool:
-        line = rest[index]
-        in_cell = _begins_in_a_column(line, found.spans)
+    def ends(self, following: list[Line], index: int, header: Columns, size: float) -> bool:
+        line = following[index]
+        in_cell = _begins_in_a_column(line, header.spans)
         if self.is_caption(line) and not in_cell:
             return True
-        if self.labelled(rest[index:]) or self.begins_anew(rest, index):
+        if self.labelled(following[index:]) or self.begins_anew(following, index):
             return True
         if abs(line.size - size) > 1.2 and not in_cell:
             return True
         if _HEADING.match(line.text) and self.stands_out(line) and line.size > size + 0.6:
             return True
-        if self.is_prose(rest[index:], found):
+        if self.is_prose(following[index:], header):
             return True
-        gap = line.top - rest[index - 1].bottom if index else 0
+        gap = line.top - following[index - 1].bottom if index else 0
         return gap > 2.2 * line.size and not self.has_key(line)
 
-    def begins_anew(self, rest: list[Line], index: int) -> bool:
-        """Whether headings begin with the line: below the line above, not beside it as a part of a cell does."""
-        line = rest[index]
-        if index and line.top < rest[index - 1].bottom - 0.2 * line.size:
+    def begins_anew(self, following: list[Line], index: int) -> bool:
+        """Whether the line is a heading row. A line at the height of the line above is a part of a cell."""
+        line = following[index]
+        if index and line.top < following[index - 1].bottom - 0.2 * line.size:
             return False
-        return columns.find(rest[index : index + 3], self.profile, loose=False) is not None
+        return columns.find(following[index : index + 3], self.profile, loose=False) is not None
 
-    def is_prose(self, rest: list[Line], found: Columns) -> bool:
+    def is_prose(self, following: list[Line], header: Columns) -> bool:
         """Whether the first line is of a paragraph, and none of a table with these columns."""
-        return self.reads_on(rest[0], found.spans) and not self.has_key(rest[0]) and not self.is_group(rest, found)
+        return (
+            self.reads_on(following[0], header.spans)
+            and not self.has_key(following[0])
+            and not self.is_group(following, header)
+        )
 
     def has_key(self, line: Line) -> bool:
         first = runs(line, 0.45)[0]
         return is_key(" ".join(w.text for w in first))
 
-    def is_row(self, line: Line, found: Columns) -> bool:
+    def is_row(self, line: Line, header: Columns) -> bool:
         """Whether the line can only be of a table: a key, a cell gone on, or several cells."""
         return (
             self.has_key(line)
-            or _begins_in_a_column(line, found.spans)
-            or len(runs(line, 0.9)) >= min(3, len(found.spans))
+            or _begins_in_a_column(line, header.spans)
+            or len(runs(line, 0.9)) >= min(3, len(header.spans))
         )
 
-    def is_group(self, rest: list[Line], found: Columns) -> bool:
+    def is_group(self, following: list[Line], header: Columns) -> bool:
         """Whether a line is a group heading of a list, however far it reaches: the next line has a key."""
-        return found.header.kind == "list" and len(rest) > 1 and self.has_key(rest[1])
+        return header.header.kind == "list" and len(following) > 1 and self.has_key(following[1])
 
     def reads_on(self, line: Line, spans: list[tuple[float, float]]) -> bool:
         """Whether text runs across three headings or more, as it does in a paragraph and not in a cell."""
@@ -321,22 +332,28 @@ class _Flow:
                 return True
         return False
 
-    def continues(self, rest: list[Line]) -> bool:
+    def continues(self, following: list[Line]) -> bool:
         """Whether the lines at the top of a page go on with the table before."""
-        line = rest[0]
-        if self.open is None or line.x0 < self.extent[0] - 8 or self.is_prose(rest, self.open):
+        line = following[0]
+        if self.open is None or line.x0 < self.extent[0] - 8 or self.is_prose(following, self.open):
             return False
         if _HEADING.match(line.text) and line.size > self.size + 0.6:
             return False
-        return any(map(self.has_key, rest[:8])) or self.is_row(line, self.open)
+        return any(map(self.has_key, following[:8])) or self.is_row(line, self.open)
 
-    def continuation(self, page: Page, rest: list[Line]) -> tuple[int, Piece]:
+    def continuation(self, page: Page, following: list[Line]) -> tuple[int, Piece]:
         assert self.open is not None
-        end = max(1, self.end(page, rest, 0, self.open))
-        body = self.cells(rest[:end], self.open)
-        top = rest[0].top - 1
+        end = max(1, self.end(page, following, 0, self.open))
+        body = self.cells(following[:end], self.open)
+        top = following[0].top - 1
         piece = Piece(
-            box_around(page.number, rest[:end]), [], ruled=False, lines=body, page=page, top=top, extent=self.extent
+            box_around(page.number, following[:end]),
+            [],
+            ruled=False,
+            lines=body,
+            page=page,
+            top=top,
+            extent=self.extent,
         )
         return end, piece
 
@@ -347,9 +364,9 @@ def _cells(line: Line) -> list[tuple[float, str]]:
 
 
 def _value_column(line: Line) -> float:
-    """Where the second run of a line begins: the values beside the labels."""
-    found = runs(line, 0.45)
-    return found[1][0].x0 if len(found) > 1 else line.x0
+    """Left side of the second run of words of a line, which is the value next to a label."""
+    runs_of_line = runs(line, 0.45)
+    return runs_of_line[1][0].x0 if len(runs_of_line) > 1 else line.x0
 
 
 def _begins_in_a_column(line: Line, spans: list[tuple[float, float]]) -> bool:
@@ -357,12 +374,16 @@ def _begins_in_a_column(line: Line, spans: list[tuple[float, float]]) -> bool:
     return any(abs(line.x0 - a) < 3 for a, _ in spans[2:])
 
 
-def _lowest_rule(page: Page, rest: list[Line], start: int, found: Columns, bottom: float) -> float:
+def _lowest_rule(page: Page, following: list[Line], start: int, header: Columns, bottom: float) -> float:
     """The lowest horizontal rule of the table above ``bottom``: no row stands below it. Infinite if the body has no rule."""
-    x0, x1 = found.spans[0][0], found.spans[-1][1]
-    top = rest[start - 1].bottom - 1 if start else 0
+    x0, x1 = header.spans[0][0], header.spans[-1][1]
+    top = following[start - 1].bottom - 1 if start else 0
     wide = [r for r in joined(page.across) if r.start <= x0 + 12 and r.end >= x1 - 12 and r.at > top]
     wide = [r for r in wide if r.at <= bottom]
-    head = [r for r in wide if start < len(rest) and r.at < rest[start].top + 2] if start < len(rest) else wide
+    head = (
+        [r for r in wide if start < len(following) and r.at < following[start].top + 2]
+        if start < len(following)
+        else wide
+    )
     below = [r.at for r in wide if r not in head]
     return max(below) if below else float("inf")

@@ -18,7 +18,7 @@ _NUMBERING = re.compile(r"(?:page|p\.|pg\.?|seite)?\s*[-–|]?\s*([0-9]+)\s*(?:(
 def without(
     pages: list[Page], lines: dict[int, list[Line]], keep: Callable[[Line, list[Line]], bool]
 ) -> dict[int, list[Line]]:
-    """The lines of each page without heads and feet. ``keep`` says which lines are never taken for such."""
+    """The lines of each page without heads and feet. ``keep`` selects lines that are never removed."""
     seen: dict[tuple[str, int], set[int]] = defaultdict(set)
     for page in pages:
         for line in lines[page.number]:
@@ -27,17 +27,17 @@ def without(
                     seen[key].add(page.number)
     needed = max(2, round(0.3 * len(pages)))
     offset = _offset(pages, lines)
-    kept = {}
+    by_page = {}
     for page in pages:
-        rest = []
-        found = lines[page.number]
-        for index, line in enumerate(found):
+        content = []
+        lines_of_page = lines[page.number]
+        for index, line in enumerate(lines_of_page):
             repeated = any(len(seen[key]) >= needed for key in _keys(line)) if _in_margin(line, page) else False
-            near = [*found[max(0, index - 1) : index], *found[index + 1 : index + 2]]
+            near = [*lines_of_page[max(0, index - 1) : index], *lines_of_page[index + 1 : index + 2]]
             if not (repeated or _numbers_the_page(line, page, offset)) or keep(line, near):
-                rest.append(line)
-        kept[page.number] = rest
-    return kept
+                content.append(line)
+        by_page[page.number] = content
+    return by_page
 
 
 def _in_margin(line: Line, page: Page) -> bool:
@@ -61,11 +61,11 @@ def _numbers_the_page(line: Line, page: Page, offset: int | None) -> bool:
 
 def _offset(pages: list[Page], lines: dict[int, list[Line]]) -> int | None:
     """By how much the printed page numbers differ from the count; None where pages are not numbered by bare figures."""
-    found: Counter[Any] = Counter()
+    offsets: Counter[Any] = Counter()
     for page in pages:
         figures = {line.text.strip() for line in lines[page.number] if _in_margin(line, page)}
-        found.update({int(text) - page.number for text in figures if text.isdigit() and len(text) < 5})
-    if not found:
+        offsets.update({int(text) - page.number for text in figures if text.isdigit() and len(text) < 5})
+    if not offsets:
         return None
-    offset, count = found.most_common(1)[0]
+    offset, count = offsets.most_common(1)[0]
     return offset if count >= max(2, len(pages) / 2) or (len(pages) == 1 and offset == 0) else None

@@ -1,4 +1,4 @@
-"""Tables without vertical rules whose headings nobody knows: lines of several cells that stand below each other."""
+"""Tables without vertical rules and with unknown headings: lines of several aligned cells."""
 
 from __future__ import annotations
 
@@ -29,17 +29,17 @@ def made(items: list[Draft | Mark]) -> list[Draft | Mark]:
 
 def _tables(marks: list[Mark]) -> list[tuple[int, int, Draft]]:
     """First and last index, and the table, of each run of text lines that looks like one."""
-    found = []
+    tables = []
     start = 0
     while start < len(marks):
         end = _end(marks, start)
         rows = [mark for mark in marks[start:end] if len(mark.cells) >= FEWEST_CELLS]
         if len(rows) >= FEWEST_LINES and not marks[start].text[:1].isdigit():
-            found.append((start, end, _table(marks[start:end])))
+            tables.append((start, end, _table(marks[start:end])))
             start = end
         else:
             start += 1
-    return found
+    return tables
 
 
 def _end(marks: list[Mark], start: int) -> int:
@@ -64,11 +64,11 @@ def _end(marks: list[Mark], start: int) -> int:
 def _table(marks: list[Mark]) -> Draft:
     box = box_around(marks[0].box.page, [mark.box for mark in marks])
     columns = [x for x, _ in marks[0].cells]
-    made = Draft([box])
+    draft = Draft([box])
     for mark in marks:
         cells = [""] * len(columns)
         for x, text in mark.cells:
             nearest = min(range(len(columns)), key=lambda i: abs(columns[i] - x))
             cells[nearest] = f"{cells[nearest]} {text}".strip()
-        made.head.append(PrintedRow(cells, page=box.page))
-    return made
+        draft.head.append(PrintedRow(cells, page=box.page))
+    return draft

@@ -12,22 +12,22 @@ WORDS = 7  # of such a line
 FULL = 0.8  # of the column's width
 
 
-def parts(page: Page, regions: list[Region], found: list[Line]) -> list[tuple[list[Region], list[Line]]]:
+def parts(page: Page, regions: list[Region], lines_of_page: list[Line]) -> list[tuple[list[Region], list[Line]]]:
     """The regions and lines of the page, column by column."""
-    words = words_of(found)
-    middle = _middle(page, regions, found)
+    words = words_of(lines_of_page)
+    middle = _middle(page, regions, lines_of_page)
     if middle is None:
-        return [(regions, found)]
-    made = []
+        return [(regions, lines_of_page)]
+    in_order = []
     for is_left in (True, False):
         inside = lines([word for word in words if (word.x1 <= middle) == is_left])
-        made.append(([region for region in regions if (region.x1 <= middle) == is_left], inside))
-    return made
+        in_order.append(([region for region in regions if (region.x1 <= middle) == is_left], inside))
+    return in_order
 
 
-def _middle(page: Page, regions: list[Region], found: list[Line]) -> float | None:
-    """Where the white between two columns lies; None where there is none, or hardly any text left of it."""
-    spans = [(word.x0, word.x1) for word in words_of(found)] + [(r.x0, r.x1) for r in regions]
+def _middle(page: Page, regions: list[Region], lines_of_page: list[Line]) -> float | None:
+    """Position of the gap between two columns of text; None if the page has one column, or little text left of the gap."""
+    spans = [(word.x0, word.x1) for word in words_of(lines_of_page)] + [(r.x0, r.x1) for r in regions]
     low, high = 0.4 * page.width, 0.6 * page.width
     best, at = (0.0, 0.0), low
     for x0, x1 in sorted((x0, x1) for x0, x1 in spans if x1 > low and x0 < high):
@@ -36,7 +36,7 @@ def _middle(page: Page, regions: list[Region], found: list[Line]) -> float | Non
     if best[0] < NARROWEST:
         return None
     middle = best[1]
-    column = lines(word for word in words_of(found) if word.x1 <= middle)
+    column = lines(word for word in words_of(lines_of_page) if word.x1 <= middle)
     right = max((line.x1 for line in column), default=0.0)
     text = [line for line in column if _is_text(line)]
     full = [line for line in text if line.x1 - line.x0 > FULL * (right - min(line.x0 for line in text))]

@@ -10,7 +10,7 @@ from icdgen.importer.words import folded, number
 
 
 def match(cells: list[str], profile: Profile, loose: bool = False) -> Header | None:
-    """The heading row that these cells are; None if they are none. ``loose``: fields may have no column of offsets."""
+    """Return the heading row that these cells form, or None. ``loose``: fields may have no column of offsets."""
     texts = [folded(cell) for cell in cells]
     if sum(bool(text) for text in texts) < 2 or any(number(cell) is not None for cell in cells):
         return None
@@ -43,9 +43,9 @@ def _roles(texts: list[tuple[str, ...]], roles: dict[str, list[tuple[str, ...]]]
     """The role of each cell; a role is given once, to the cell whose heading stands first in the vocabulary."""
     given = [""] * len(texts)
     for role, headings in roles.items():
-        found = [index for index, text in enumerate(texts) if text and not given[index] and text in headings]
-        if found:
-            given[found[0]] = role
+        matches = [index for index, text in enumerate(texts) if text and not given[index] and text in headings]
+        if matches:
+            given[matches[0]] = role
     return given
 
 
@@ -56,12 +56,12 @@ def segmented(words: list[str], profile: Profile) -> list[list[int]] | None:
     """
     best: tuple[int, list[list[int]]] = (0, [])
     flat = [folded(word) for word in words]
-    for kind, known in profile.known_headings.items():
+    for kind, titles in profile.known_headings.items():
         groups, index, hits = [], 0, 0
         while index < len(words):
             for length in range(min(5, len(words) - index), 0, -1):
                 chunk = tuple(part for text in flat[index : index + length] for part in text)
-                if chunk in known:
+                if chunk in titles:
                     groups.append(list(range(index, index + length)))
                     index, hits = index + length, hits + 1
                     break
@@ -84,11 +84,11 @@ def repeats(cells: list[str], header: Header, profile: Profile) -> bool:
         return True
     if len(given) >= 2 and _is_lower_half(given, titles):
         return True
-    found = match(cells, profile, loose=True)
+    repeated = match(cells, profile, loose=True)
     return (
-        found is not None
-        and found.kind == header.kind
-        and [r for r in found.roles if r] == [r for r in header.roles if r]
+        repeated is not None
+        and repeated.kind == header.kind
+        and [r for r in repeated.roles if r] == [r for r in header.roles if r]
     )
 
 
@@ -97,8 +97,8 @@ def _is_lower_half(given: list[tuple[str, ...]], titles: list[tuple[str, ...]]) 
     ends = [title[1:] for title in titles if len(title) > 1]
     places = []
     for text in given:
-        found = [i for i, end in enumerate(ends) if end == text and i not in places]
-        if not found:
+        matches = [i for i, end in enumerate(ends) if end == text and i not in places]
+        if not matches:
             return False
-        places.append(found[0])
+        places.append(matches[0])
     return all(a < b for a, b in pairwise(places))

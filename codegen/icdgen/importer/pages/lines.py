@@ -72,23 +72,23 @@ def text_of(words: list[Word]) -> str:
     return text
 
 
-def words_of(found: Iterable[Line]) -> list[Word]:
+def words_of(lines_of_words: Iterable[Line]) -> list[Word]:
     """The words of several lines."""
-    return [word for line in found for word in line.words]
+    return [word for line in lines_of_words for word in line.words]
 
 
 def box_around(page: int, things: Sequence[Line | Box]) -> Box:
     """The smallest box around things on one page."""
-    x0, top = min(one.x0 for one in things), min(one.top for one in things)
-    return Box(page, x0, top, max(one.x1 for one in things), max(one.bottom for one in things))
+    x0, top = min(thing.x0 for thing in things), min(thing.top for thing in things)
+    return Box(page, x0, top, max(thing.x1 for thing in things), max(thing.bottom for thing in things))
 
 
 def runs(line: Line, gap: float = 0.6) -> list[list[Word]]:
     """The line's words in runs; ``gap`` (of the type size) is how far apart runs stand at least."""
-    found = [[line.words[0]]]
+    groups = [[line.words[0]]]
     for before, word in zip(line.words, line.words[1:], strict=False):
         if word.x0 - before.x1 > gap * max(word.size, before.size):
-            found.append([word])
+            groups.append([word])
         else:
-            found[-1].append(word)
-    return found
+            groups[-1].append(word)
+    return groups

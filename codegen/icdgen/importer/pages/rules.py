@@ -33,23 +33,23 @@ class Region:
 
     def cuts(self) -> list[float]:
         """The heights at which rows begin and end."""
-        found = [self.top, self.bottom]
+        heights = [self.top, self.bottom]
         for y, length in _lengths(self.across):
             if length >= WIDE * (self.x1 - self.x0):
-                found.append(y)
+                heights.append(y)
         for rule in self.down:  # where a column ends or begins within the region, a row with other cells does
             if self.x0 + 3 < rule.at < self.x1 - 3:
-                found += [rule.start, rule.end]
-        return distinct([y for y in found if self.top <= y <= self.bottom], 3.0)
+                heights += [rule.start, rule.end]
+        return distinct([y for y in heights if self.top <= y <= self.bottom], 3.0)
 
     def separators(self, top: float, bottom: float) -> list[float]:
         """Where vertical rules part the band from ``top`` to ``bottom``; with the region's own edges."""
         height = bottom - top
-        found = [self.x0, self.x1]
+        places = [self.x0, self.x1]
         for rule in self.down:
             if min(rule.end, bottom) - max(rule.start, top) >= TALL * height:
-                found.append(rule.at)
-        return distinct(found, 3.0)
+                places.append(rule.at)
+        return distinct(places, 3.0)
 
     def open_above(self, top: float, edges: list[float]) -> tuple[bool, ...]:
         """For each cell whether no rule runs above it although rules run at this height elsewhere in the region."""
@@ -64,11 +64,11 @@ class Region:
 
 def distinct(values: list[float], snap: float = SNAP) -> list[float]:
     """Sorted, what lies closer than ``snap`` taken as one."""
-    found: list[float] = []
+    separate: list[float] = []
     for value in sorted(values):
-        if not found or value - found[-1] > snap:
-            found.append(value)
-    return found
+        if not separate or value - separate[-1] > snap:
+            separate.append(value)
+    return separate
 
 
 def _lengths(rules: list[Rule]) -> list[tuple[float, float]]:
@@ -80,13 +80,13 @@ def _lengths(rules: list[Rule]) -> list[tuple[float, float]]:
 
 
 def _joined_spans(rules: list[Rule]) -> list[Rule]:
-    made: list[Rule] = []
+    spans: list[Rule] = []
     for rule in sorted(rules, key=lambda r: r.start):
-        if made and rule.start <= made[-1].end + SNAP:
-            made[-1] = made[-1]._replace(end=max(made[-1].end, rule.end))
+        if spans and rule.start <= spans[-1].end + SNAP:
+            spans[-1] = spans[-1]._replace(end=max(spans[-1].end, rule.end))
         else:
-            made.append(rule)
-    return made
+            spans.append(rule)
+    return spans
 
 
 def joined(rules: list[Rule]) -> list[Rule]:
@@ -120,7 +120,7 @@ def regions(page: Page) -> list[Region]:
     groups: dict[int, tuple[list[Rule], list[Rule]]] = {}
     for i, rule in enumerate([*across, *down]):
         groups.setdefault(root(i), ([], []))[i >= len(across)].append(rule)
-    made: list[Region] = []
+    tables: list[Region] = []
     frames: list[Region] = []  # two sides without a column between them
     for flats, steeps in groups.values():
         if not steeps:
@@ -130,46 +130,50 @@ def regions(page: Page) -> list[Region]:
         region = Region(min(xs), min(ys), max(xs), max(ys), flats, steeps)
         if region.bottom - region.top > 6:
             has_columns = len(distinct([*(r.at for r in steeps), region.x0, region.x1], 3.0)) >= 3
-            (made if has_columns else frames).append(region)
-    made = _within_frames(sorted(made, key=lambda r: (r.top, r.x0)), frames)
-    return _stacked(_outermost(made))
+            (tables if has_columns else frames).append(region)
+    tables = _within_frames(sorted(tables, key=lambda r: (r.top, r.x0)), frames)
+    return _stacked(_outermost(tables))
 
 
 def _within_frames(regions: list[Region], frames: list[Region]) -> list[Region]:
-    """Regions one below the other put together where two sides run along all of them, and rows over all columns part them.
+    """Join regions between the same two vertical rules that are separated by rows over all columns.
 
-    A frame around a page or a text is none: there, more than a row stands between the regions.
+    A frame around a page or a text does not join tables: more than one row is between them.
     """
     for frame in frames:
         inner = [
-            one for one in regions if frame.x0 < one.x0 and one.x1 < frame.x1 and frame.top <= one.top < frame.bottom
+            region
+            for region in regions
+            if frame.x0 < region.x0 and region.x1 < frame.x1 and frame.top <= region.top < frame.bottom
         ]
-        ends = [frame.top, *(y for one in inner for y in (one.top, one.bottom)), frame.bottom]
-        columns = {tuple(round(x) for x in distinct([rule.at for rule in one.down])) for one in inner}
+        ends = [frame.top, *(y for region in inner for y in (region.top, region.bottom)), frame.bottom]
+        columns = {tuple(round(x) for x in distinct([rule.at for rule in region.down])) for region in inner}
         if (
             len(inner) > 1
             and len(columns) == 1
             and all(0 <= b - a < ROW for a, b in zip(ends[::2], ends[1::2], strict=True))
         ):
-            across = [rule for one in (frame, *inner) for rule in one.across]
-            down = [rule for one in (frame, *inner) for rule in one.down]
-            whole = Region(frame.x0, frame.top, frame.x1, frame.bottom, across, down)
-            regions = sorted([*(one for one in regions if one not in inner), whole], key=lambda r: (r.top, r.x0))
+            across = [rule for region in (frame, *inner) for rule in region.across]
+            down = [rule for region in (frame, *inner) for rule in region.down]
+            joint = Region(frame.x0, frame.top, frame.x1, frame.bottom, across, down)
+            regions = sorted(
+                [*(region for region in regions if region not in inner), joint], key=lambda r: (r.top, r.x0)
+            )
     return regions
 
 
 def _stacked(regions: list[Region]) -> list[Region]:
     """Regions put together where rules part the inner columns only, and a row over all of them interrupts the rules."""
-    made: list[Region] = []
-    for one in regions:
-        above = made[-1] if made else None
-        if above is not None and _goes_on(above, one):
-            made[-1] = Region(
-                above.x0, above.top, above.x1, one.bottom, above.across + one.across, above.down + one.down
+    stacked: list[Region] = []
+    for region in regions:
+        above = stacked[-1] if stacked else None
+        if above is not None and _goes_on(above, region):
+            stacked[-1] = Region(
+                above.x0, above.top, above.x1, region.bottom, above.across + region.across, above.down + region.down
             )
         else:
-            made.append(one)
-    return made
+            stacked.append(region)
+    return stacked
 
 
 def _goes_on(above: Region, below: Region) -> bool:
@@ -185,15 +189,15 @@ def _sides(down: list[Rule], first: int, parent: list[int], root: Callable[[int]
     floating = {i for i in range(first, len(parent)) if sizes[root(i)] == 1}
     places = [rule.at for rule in down]
     near: dict[int, list[int]] = {}  # by where they begin, so that only neighbours are compared
-    for i, one in enumerate(down, first):
-        cell = int(one.start // REACH)
+    for i, side in enumerate(down, first):
+        cell = int(side.start // REACH)
         for j in sorted(j for c in (cell - 1, cell, cell + 1) for j in near.get(c, ())):
             other = down[j - first]
-            if abs(one.start - other.start) < REACH and abs(one.end - other.end) < REACH:
+            if abs(side.start - other.start) < REACH and abs(side.end - other.end) < REACH:
                 if i in floating and j in floating:
-                    low, high = sorted((one.at, other.at))
+                    low, high = sorted((side.at, other.at))
                     for k in range(bisect_right(places, low), bisect_left(places, high)):
-                        if down[k].start >= one.start - REACH and down[k].end <= one.end + REACH:
+                        if down[k].start >= side.start - REACH and down[k].end <= side.end + REACH:
                             parent[root(first + k)] = root(i)
                 parent[root(i)] = root(j)
         near.setdefault(cell, []).append(i)
@@ -215,8 +219,8 @@ def row_marks(page: Page, x0: float, x1: float) -> list[float]:
     """Heights at which a rule or the edge of a shaded row runs over most of the width from ``x0`` to ``x1``."""
     shallow = [fill for fill in page.fills if fill.bottom - fill.top < 0.5 * page.height]
     edges = [Rule(y, fill.x0, fill.x1) for fill in shallow for y in (fill.top, fill.bottom)]
-    found = []
+    heights = []
     for rules in (page.across, edges):
         inside = [r._replace(start=max(r.start, x0), end=min(r.end, x1)) for r in rules if r.end > x0 and r.start < x1]
-        found += [y for y, length in _lengths(inside) if length >= 0.7 * (x1 - x0)]
-    return distinct(found)
+        heights += [y for y, length in _lengths(inside) if length >= 0.7 * (x1 - x0)]
+    return distinct(heights)

@@ -22,7 +22,7 @@ class Builder:
     """Goes through the items once; what belongs together ends up in one draft."""
 
     profile: Profile
-    known: frozenset[str]
+    document_words: frozenset[str]
     is_part: bool = False  # whether only some pages of the document are read
     out: list[Draft | Mark] = field(default_factory=list)
     loose_pieces: dict[int, list[Piece]] = field(
@@ -36,9 +36,9 @@ class Builder:
                 self.piece(item)
             else:
                 self.out.append(item)
-        for one in self.out:
-            if isinstance(one, Draft) and id(one) in self.loose_pieces:
-                self.cut(one, self.loose_pieces[id(one)])
+        for draft in self.out:
+            if isinstance(draft, Draft) and id(draft) in self.loose_pieces:
+                self.cut(draft, self.loose_pieces[id(draft)])
         return captions.attached(self.out, self.profile, self.is_part)
 
     def piece(self, piece: Piece) -> None:
@@ -125,7 +125,7 @@ class Builder:
         first = next((band for band in piece.bands if band.words), None)
         if first is None:
             return False
-        texts = (" ".join(t for t in first.texts(self.known) if t), lines(first.words)[0].text)
+        texts = (" ".join(t for t in first.texts(self.document_words) if t), lines(first.words)[0].text)
         return any(labels.begins(text, self.profile) for text in texts)
 
     def fits(self, draft: Draft, piece: Piece, follows: bool) -> bool:
@@ -148,9 +148,9 @@ class Builder:
 
     def header_of(self, piece: Piece) -> Header | None:
         for band in piece.bands[:3]:
-            found = headings.match(band.texts(self.known), self.profile, loose=True)
-            if found:
-                return found
+            header = headings.match(band.texts(self.document_words), self.profile, loose=True)
+            if header:
+                return header
         split = self.split(piece.bands[0]) if piece.bands else None  # no rule parts the headings from the rows
         return split[1] if split else None
 
@@ -163,37 +163,37 @@ class Builder:
             band = waiting.pop(0)
             if not band.words:
                 continue
-            texts = band.texts(self.known)
+            texts = band.texts(self.document_words)
             if self.is_new(draft, texts):
                 draft = self.begin(piece)
             if draft.header is None:
                 if not self.header(draft, band, waiting):
                     draft.head += self.head(band)
-            elif not draft.rows and (whole := self.lower_half(draft, texts)):
+            elif not draft.rows and (both_lines := self.lower_half(draft, texts)):
                 upper = draft.header.printed[-1:]
                 for row in upper:
                     row.texts = [f"{a}\n{b}".strip("\n") for a, b in zip(row.texts, texts, strict=True)]
-                whole.printed = upper
-                draft.header = whole
+                both_lines.printed = upper
+                draft.header = both_lines
             elif headings.repeats(texts, draft.header, self.profile):
                 if len(band.edges) == len(draft.edges or ()):
                     draft.edges = band.edges
-            elif fresh and len(draft.boxes) > 1 and (rest := self.below_headings(draft, band)) is not None:
-                if rest.words:
-                    waiting.insert(0, rest)
+            elif fresh and len(draft.boxes) > 1 and (remainder := self.below_headings(draft, band)) is not None:
+                if remainder.words:
+                    waiting.insert(0, remainder)
             else:
                 self.body(draft, band, torn=fresh and len(draft.boxes) > 1)
                 fresh = False
 
     def below_headings(self, draft: Draft, band: Band) -> Band | None:
-        """What follows the headings that a page repeats in one band with its rows; None where it repeats none."""
+        """Return the rest of a band that begins with the repeated headings; None if it does not."""
         header = draft.header
         assert header is not None
         titles = [squeezed(title) for title in header.titles]
-        found = lines(band.words)
-        for count in range(1, min(5, len(found) + 1)):
-            if [squeezed(text) for text in band.of(found[:count]).texts(self.known)] == titles:
-                return band.of(found[count:])
+        lines_of_band = lines(band.words)
+        for count in range(1, min(5, len(lines_of_band) + 1)):
+            if [squeezed(text) for text in band.of(lines_of_band[:count]).texts(self.document_words)] == titles:
+                return band.of(lines_of_band[count:])
         return None
 
     def lower_half(self, draft: Draft, texts: list[str]) -> Header | None:
@@ -202,8 +202,10 @@ class Builder:
         assert header is not None
         if len(texts) != len(header.titles):
             return None
-        whole = headings.match([f"{a} {b}".strip() for a, b in zip(header.titles, texts, strict=True)], self.profile)
-        return whole if whole and whole.known > header.known else None
+        both_lines = headings.match(
+            [f"{a} {b}".strip() for a, b in zip(header.titles, texts, strict=True)], self.profile
+        )
+        return both_lines if both_lines and both_lines.known > header.known else None
 
     def is_new(self, draft: Draft, texts: list[str]) -> bool:
         """Whether a band is the first of another message within the same rules."""
@@ -212,52 +214,54 @@ class Builder:
 
     def header(self, draft: Draft, band: Band, waiting: list[Band]) -> bool:
         """Takes the heading row if the band is it, begins with it, or is its upper half."""
-        found = headings.match(band.texts(self.known), self.profile)
-        if found is None and not waiting:
-            found = headings.match(band.texts(self.known), self.profile, loose=True)
-        printed = [band.printed(self.known)]
-        if found is None and waiting and len(lines(band.words)) < 4:
-            both = _stacked(band, waiting[0], self.known)
-            found = headings.match(both, self.profile) if both else None
-            if found is not None:
-                printed.append(waiting.pop(0).printed(self.known))
+        match = headings.match(band.texts(self.document_words), self.profile)
+        if match is None and not waiting:
+            match = headings.match(band.texts(self.document_words), self.profile, loose=True)
+        printed = [band.printed(self.document_words)]
+        if match is None and waiting and len(lines(band.words)) < 4:
+            both = _stacked(band, waiting[0], self.document_words)
+            match = headings.match(both, self.profile) if both else None
+            if match is not None:
+                printed.append(waiting.pop(0).printed(self.document_words))
             else:
-                found = headings.match(band.texts(self.known), self.profile, loose=True)
-        if found is None:
+                match = headings.match(band.texts(self.document_words), self.profile, loose=True)
+        if match is None:
             split = self.split(band)
             if split is None:
                 return False
-            above, found, rest = split
+            above, match, remainder = split
             draft.head += [PrintedRow([line.text], page=band.page) for line in above]
-            printed = [PrintedRow(found.titles, tuple(band.edges), page=band.page)]
-            if rest.words:
-                waiting.insert(0, rest)
-        found.printed = printed
-        draft.header, draft.edges = found, band.edges
+            printed = [PrintedRow(match.titles, tuple(band.edges), page=band.page)]
+            if remainder.words:
+                waiting.insert(0, remainder)
+        match.printed = printed
+        draft.header, draft.edges = match, band.edges
         return True
 
     def head(self, band: Band) -> list[PrintedRow]:
         """A band above the headings: one row, or where that labels more, one for each line."""
         single = [PrintedRow([line.text], page=band.page) for line in lines(band.words)]
-        whole = [band.printed(self.known)]
-        return single if len(single) > 1 and self.labelled(single) > self.labelled(whole) else whole
+        as_one_row = [band.printed(self.document_words)]
+        return single if len(single) > 1 and self.labelled(single) > self.labelled(as_one_row) else as_one_row
 
     def labelled(self, rows: list[PrintedRow]) -> int:
         """How many values have a label that the vocabulary knows."""
-        found = (labels.parse(" ".join(filter(None, row.lines)), self.profile) for row in rows)
-        return sum(1 for parts in found for one in parts if one.what and one.value)
+        labelled = (labels.parse(" ".join(filter(None, row.lines)), self.profile) for row in rows)
+        return sum(1 for parts in labelled for label in parts if label.what and label.value)
 
     def split(self, band: Band) -> tuple[list[Line], Header, Band] | None:
         """A band without rules between its rows: lines above the headings, headings, the rest."""
-        found = lines(band.words)
-        for start in range(min(8, len(found))):
+        lines_of_band = lines(band.words)
+        for start in range(min(8, len(lines_of_band))):
             best: tuple[int, Header] | None = None
-            for count in range(1, min(4, len(found) - start) + 1):
-                header = headings.match(band.of(found[start : start + count]).texts(self.known), self.profile)
+            for count in range(1, min(4, len(lines_of_band) - start) + 1):
+                header = headings.match(
+                    band.of(lines_of_band[start : start + count]).texts(self.document_words), self.profile
+                )
                 if header is not None and (best is None or header.known >= best[1].known):
                     best = count, header
             if best is not None:
-                return found[:start], best[1], band.of(found[start + best[0] :])
+                return lines_of_band[:start], best[1], band.of(lines_of_band[start + best[0] :])
         return None
 
     def body(self, draft: Draft, band: Band, torn: bool) -> None:
@@ -267,9 +271,9 @@ class Builder:
             plain = Band(band.page, draft.edges, band.words)
             if bands.has_keys(plain, header):  # rules part the headings only, the rows stand below them all the same
                 band = plain
-        rows = bands.rows(bands.aligned(band, draft.edges), header, self.known, torn)
+        rows = bands.rows(bands.aligned(band, draft.edges), header, self.document_words, torn)
         if len(rows) == 1:  # its cells as they are, not as they were moved below the headings
-            rows = [band.printed(self.known)]
+            rows = [band.printed(self.document_words)]
         draft.rows += rows
 
     # --- without vertical rules ------------------------------------------------------------------------------------
@@ -292,8 +296,8 @@ class Builder:
             own = piece.columns.spans if piece.columns is not None and len(piece.columns.spans) == len(spans) else spans
             edges = columns.boundaries(own, body, *piece.extent)
             for band in _bands(piece, edges):
-                if not headings.repeats(band.texts(self.known), header, self.profile):
-                    rows = bands.rows(band, header, self.known)
+                if not headings.repeats(band.texts(self.document_words), header, self.profile):
+                    rows = bands.rows(band, header, self.document_words)
                     for row in rows:
                         row.edges = ()  # columns are found on each page anew: cells go by their number
                     draft.rows += rows
@@ -305,17 +309,17 @@ def _bands(piece: Piece, edges: list[float]) -> list[Band]:
         return []
     top, bottom = piece.top, piece.lines[-1].bottom
     cuts = [top, *(y for y in row_marks(piece.page, edges[0], edges[-1]) if top < y < bottom), bottom + 1]
-    made = []
+    parts = []
     for upper, lower in pairwise(cuts):
         words = [word for word in words_of(piece.lines) if upper <= word.middle < lower]
         if words:
-            made.append(Band(piece.page.number, edges, words))
-    return made
+            parts.append(Band(piece.page.number, edges, words))
+    return parts
 
 
-def _stacked(upper: Band, lower: Band, known: frozenset[str]) -> list[str] | None:
+def _stacked(upper: Band, lower: Band, document_words: frozenset[str]) -> list[str] | None:
     """Two bands of cells as one heading row: the texts above and below each other."""
     if len(upper.edges) != len(lower.edges):
         lower = bands.aligned(lower, upper.edges)
-    above, below = upper.texts(known), lower.texts(known)
+    above, below = upper.texts(document_words), lower.texts(document_words)
     return [" ".join(filter(None, pair)) for pair in zip(above, below, strict=True)]

@@ -12,12 +12,12 @@ _LINE = re.compile(r"(?P<where>(?:bytes?|octets?)\s*\[?[0-9]+[^:=]{0,12}?)\s*[:=
 
 def make_tables(document: Document) -> None:
     """Replace each run of such lines by a table with the headings `Byte` and `Name`."""
-    made: list[Block] = []
+    result: list[Block] = []
     for is_line, run in itertools.groupby(document.blocks, lambda b: isinstance(b, Text) and bool(_LINE.match(b.text))):
         blocks = list(run)
         lines = [block for block in blocks if isinstance(block, Text)] if is_line else []
-        made += [_table(lines)] if lines else blocks
-    document.blocks = made
+        result += [_table(lines)] if lines else blocks
+    document.blocks = result
 
 
 def _table(lines: list[Text]) -> SourceTable:

@@ -1,7 +1,7 @@
 """Structs and enumerations of C -> tables: of header files, and of `typedef struct` in the text of documents.
 
 A struct is a table with the columns `COLUMNS`, so that rules read it like any other: its caption is the name of the struct, the
-texts before it are the comment above it and `sizeof N`. Positions are those of the System V ABI for little-endian machines, which
+texts before it are the comment above it and `sizeof N`. Positions follow the System V ABI for little-endian machines, which
 gcc and clang follow: bit fields from the least significant bit, members aligned to their size unless the struct is packed.
 """
 
@@ -82,11 +82,11 @@ def read_header(path: Path) -> Document:
 
 
 def in_document(document: Document) -> None:
-    """Put the tables of structs that a document prints as text behind their lines; those that are no C stay text."""
-    made: list[Block] = []
+    """Add a table behind each `typedef struct` in the text of a document. Text that is not valid C stays text."""
+    blocks: list[Block] = []
     waiting: list[Text] = []
     for block in document.blocks:
-        made.append(block)
+        blocks.append(block)
         begins = isinstance(block, Text) and re.match(r"(?:typedef\s+)?(?:\w+\s+)?struct\b[^;]*$", block.text.strip())
         if isinstance(block, Text) and (waiting or begins):
             waiting.append(block)
@@ -100,12 +100,12 @@ def in_document(document: Document) -> None:
                     if isinstance(table, SourceTable):
                         for row in table.rows:
                             row.page, row.line = waiting[0].page, None
-                        made.append(table)
+                        blocks.append(table)
                 document.troubles += [t._replace(spot=Spot(waiting[0].page, waiting[0].line)) for t in troubles]
                 waiting = []
         elif isinstance(block, (SourceTable, Heading)):
             waiting = []
-    document.blocks = made
+    document.blocks = blocks
 
 
 def read_structs(text: str) -> tuple[list[Block], list[Trouble]]:
@@ -177,16 +177,16 @@ class _Reader:
 
     def enum(self, node: Any, name: str) -> None:
         value, members = -1, []
-        for one in node.values.enumerators:
-            value = self.number(one.value) if one.value is not None else value + 1
-            members.append((value, one.name))
-            self.values[one.name] = value
+        for enumerator in node.values.enumerators:
+            value = self.number(enumerator.value) if enumerator.value is not None else value + 1
+            members.append((value, enumerator.name))
+            self.values[enumerator.name] = value
         for key in filter(None, (name, node.name)):
             self.enums[key] = members
         rows = [["Value", "Name", "Comment"]]
         rows += [
-            [str(v), n, self.source.beside(one.coord.line)]
-            for (v, n), one in zip(members, node.values.enumerators, strict=True)
+            [str(v), n, self.source.beside(enumerator.coord.line)]
+            for (v, n), enumerator in zip(members, node.values.enumerators, strict=True)
         ]
         self.add(f"enum {name}", node.coord.line, rows, [])
 
@@ -205,10 +205,12 @@ class _Reader:
                         "if it is sent as it lies in memory, this depends on the compiler; else mark it as packed")
             )  # fmt: skip
         rows = [list(COLUMNS)]
-        for one in layout.members:
-            count, bit = str(one.count) if one.count else "", "" if one.bit is None else str(one.bit)
-            comment = self.source.beside(one.line)
-            rows.append([str(one.byte), bit, str(one.bits), one.kind, one.name, count, one.members, comment])
+        for member in layout.members:
+            count, bit = str(member.count) if member.count else "", "" if member.bit is None else str(member.bit)
+            comment = self.source.beside(member.line)
+            rows.append(
+                [str(member.byte), bit, str(member.bits), member.kind, member.name, count, member.members, comment]
+            )
         self.add(name, line, rows, [f"sizeof {layout.size}"])
 
     def add(self, caption: str, line: int, rows: list[list[str]], texts: list[str]) -> None:
@@ -227,68 +229,76 @@ class _Reader:
             if inner is None:
                 raise Unreadable(f"struct `{node.name}` is not declared", "add its declaration in front of this one")
             node = inner
-        made = Layout()
+        layout = Layout()
         is_packed = node.coord.line in self.source.packed
         at = 0  # bits used so far
-        for one in node.decls:
-            if one.bitsize is not None:
-                kind, size = self.scalar(one.type)
-                width = self.number(one.bitsize)
+        for declaration in node.decls:
+            if declaration.bitsize is not None:
+                kind, size = self.scalar(declaration.type)
+                width = self.number(declaration.bitsize)
                 # A bit field of a struct that is not packed crosses no boundary of its type (System V ABI, "Bit-Fields").
                 crosses = at // size != (at + width - 1) // size if width else True
                 if width == 0 or (crosses and not is_packed):
-                    at = self.aligned(at, size, made, one.name or "")
-                if one.name and width:
+                    at = self.aligned(at, size, layout, declaration.name or "")
+                if declaration.name and width:
                     kind = "int" if kind == "int" else "uint"
-                    made.members.append(Member(at // 8, width, kind, one.name, at % 8, line=one.coord.line))
-                    made.alignment = max(made.alignment, 1 if is_packed else size // 8)
+                    layout.members.append(
+                        Member(at // 8, width, kind, declaration.name, at % 8, line=declaration.coord.line)
+                    )
+                    layout.alignment = max(layout.alignment, 1 if is_packed else size // 8)
                 at += width
                 continue
-            members, size, alignment = self.member(one)
+            members, size, alignment = self.member(declaration)
             alignment = 1 if is_packed else alignment
-            at = self.aligned(at, 8 * alignment, made, one.name or "an inner struct")
-            made.alignment = max(made.alignment, alignment)
+            at = self.aligned(at, 8 * alignment, layout, declaration.name or "an inner struct")
+            layout.alignment = max(layout.alignment, alignment)
             for inner_member in members:
                 inner_member.byte += at // 8
-            made.members += members
+            layout.members += members
             at += 8 * size
-        made.size = self.aligned(at, 8 * made.alignment, made, "") // 8
-        return made
+        layout.size = self.aligned(at, 8 * layout.alignment, layout, "") // 8
+        return layout
 
-    def aligned(self, at: int, boundary: int, made: Layout, name: str) -> int:
+    def aligned(self, at: int, boundary: int, layout: Layout, name: str) -> int:
         """The next multiple of a number of bits; whole bytes on the way are noted as padding."""
         padding = -at % boundary
         if padding >= 8:
             where = f"in front of `{name}`" if name else "at the end"
-            made.padding.append(f"{where} ({padding // 8} byte{'s' if padding >= 16 else ''})")
+            layout.padding.append(f"{where} ({padding // 8} byte{'s' if padding >= 16 else ''})")
         return at + padding
 
-    def member(self, one: Any) -> tuple[list[Member], int, int]:
+    def member(self, declaration: Any) -> tuple[list[Member], int, int]:
         """The members that a declaration gives, counted from its own beginning, its size and its alignment in bytes."""
-        kind, counts = one.type, []
+        kind, counts = declaration.type, []
         while isinstance(kind, self.ast.ArrayDecl):
             if kind.dim is None:
-                raise Unreadable(f"`{one.name}` has no size", "write its size, or describe it in the ICD by hand")
+                raise Unreadable(
+                    f"`{declaration.name}` has no size", "write its size, or describe it in the ICD by hand"
+                )
             counts.append(self.number(kind.dim))
             kind = kind.type
         if isinstance(kind, self.ast.PtrDecl):
-            raise Unreadable(f"`{one.name}` is a pointer", "a struct with pointers is no frame")
+            raise Unreadable(f"`{declaration.name}` is a pointer", "a struct with pointers is no frame")
         inner = self.resolved(kind)
         if isinstance(inner, (self.ast.Struct, self.ast.Union)):
             if isinstance(inner, self.ast.Union):
                 raise Unreadable(
-                    f"`{one.name or 'a member'}` is a union", "take one of its members in a copy of the header"
+                    f"`{declaration.name or 'a member'}` is a union", "take one of its members in a copy of the header"
                 )
             layout = self.layout(inner)
             total = 1
             for count in counts:
                 total *= count
             if total > MOST_ELEMENTS:
-                raise Unreadable(f"`{one.name}` has {total} elements", f"arrays of structs may have {MOST_ELEMENTS}")
-            made = []
+                raise Unreadable(
+                    f"`{declaration.name}` has {total} elements", f"arrays of structs may have {MOST_ELEMENTS}"
+                )
+            result = []
             for index in range(total):
-                prefix = f"{one.name}[{index}]." if counts else f"{one.name}." if one.name else ""
-                made += [
+                prefix = (
+                    f"{declaration.name}[{index}]." if counts else f"{declaration.name}." if declaration.name else ""
+                )
+                result += [
                     Member(
                         m.byte + index * layout.size,
                         m.bits,
@@ -297,11 +307,11 @@ class _Reader:
                         m.bit,
                         m.count,
                         m.members,
-                        one.coord.line,
+                        declaration.coord.line,
                     )
                     for m in layout.members
                 ]
-            return made, layout.size * total, layout.alignment
+            return result, layout.size * total, layout.alignment
         name, size = self.scalar(kind)
         count = 1
         for n in counts:
@@ -309,15 +319,15 @@ class _Reader:
         members = "; ".join(f"{value}: {label}" for value, label in self.members_of(kind))
         shown = name if name in ("char", "bool", "enum") else f"{name}{size}"
         shown = f"uint{size}" if name in ("bool", "enum") else shown
-        place = Member(0, size, shown, one.name, None, count if counts else 0, members, one.coord.line)
+        place = Member(0, size, shown, declaration.name, None, count if counts else 0, members, declaration.coord.line)
         return [place], size // 8 * count, size // 8
 
     def resolved(self, kind: Any) -> Any:
         """The type behind typedefs."""
         inner = kind.type if isinstance(kind, self.ast.TypeDecl) else kind
         while isinstance(inner, self.ast.IdentifierType) and len(inner.names) == 1 and inner.names[0] in self.typedefs:
-            found = self.typedefs[inner.names[0]]
-            inner = found.type if isinstance(found, self.ast.TypeDecl) else found
+            definition = self.typedefs[inner.names[0]]
+            inner = definition.type if isinstance(definition, self.ast.TypeDecl) else definition
         return inner
 
     def scalar(self, kind: Any) -> tuple[str, int]:

@@ -57,7 +57,7 @@ class CText:
 
     def _declarations(self, code: str, pragmas: list[tuple[int, re.Match[str]]]) -> str:
         """The struct, enum and typedef declarations, everything else made blank."""
-        kept = [(match.start(), match.end()) for match in _TYPEDEF.finditer(code)]
+        ranges = [(match.start(), match.end()) for match in _TYPEDEF.finditer(code)]
         at = 0
         while (match := _BEGINS.search(code, at)) is not None:
             depth, end = 1, match.end()
@@ -70,17 +70,17 @@ class CText:
             pack = next((m for number, m in reversed(pragmas) if number < line), None)
             if re.search(_PACKED, code[match.start() : end]) or (pack is not None and pack[2] == "1" and not pack[3]):
                 self.packed |= set(range(line, code.count("\n", 0, end) + 2))
-            kept.append((match.start(), end))
+            ranges.append((match.start(), end))
             at = end
-        made, last = [], 0
+        texts, last = [], 0
         self.beginnings: list[tuple[int, str]] = []  # line of each declaration, and the code up to its end
-        for start, end in sorted(kept):
+        for start, end in sorted(ranges):
             if start < last:
                 continue
-            made += ["\n" * code.count("\n", last, start), " " + re.sub(_PACKED, " ", code[start:end])]
+            texts += ["\n" * code.count("\n", last, start), " " + re.sub(_PACKED, " ", code[start:end])]
             last = end
-            self.beginnings.append((code.count("\n", 0, start) + 1, "".join(made)))
-        return "".join(made) + "\n"
+            self.beginnings.append((code.count("\n", 0, start) + 1, "".join(texts)))
+        return "".join(texts) + "\n"
 
     def above(self, line: int) -> str:
         """The comment that ends on the line above."""

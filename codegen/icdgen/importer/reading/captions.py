@@ -33,21 +33,21 @@ def attach_captions(blocks: Sequence[Block | Caption]) -> list[Block]:
         if (target := (after if above else before)[index]) is not None:
             owner[target] = index
     used = set(owner.values())
-    made: list[Block] = []
+    result: list[Block] = []
     for index, block in enumerate(blocks):
         if isinstance(block, Caption):
             if index not in used:
-                made.append(Text(block.text, block.page, block.line))
+                result.append(Text(block.text, block.page, block.line))
             continue
         if isinstance(block, SourceTable) and index in owner:
             caption = blocks[owner[index]]
             assert isinstance(caption, Caption)
-            if made and isinstance(made[-1], SourceTable) and made[-1].label == caption.number:
-                made[-1].rows += block.rows
+            if result and isinstance(result[-1], SourceTable) and result[-1].label == caption.number:
+                result[-1].rows += block.rows
                 continue
             block.label, block.caption = caption.number, caption.title
-        made.append(block)
-    return made
+        result.append(block)
+    return result
 
 
 def _table_beside(blocks: Sequence[Block | Caption], index: int, step: int) -> int | None:

@@ -32,8 +32,8 @@ def read_markdown(path: Path, profile: Profile) -> Document:
     from markdown_it import MarkdownIt
 
     text = utf8_text(path, "save it as UTF-8")
-    made = MarkdownIt("commonmark", {"html": True}).enable("table").render(text)
-    return _of_html(f'<html><meta charset="utf-8"><body>{made}</body></html>'.encode(), str(path), profile)
+    html = MarkdownIt("commonmark", {"html": True}).enable("table").render(text)
+    return _of_html(f'<html><meta charset="utf-8"><body>{html}</body></html>'.encode(), str(path), profile)
 
 
 def _of_html(data: bytes, name: str, profile: Profile) -> Document:
@@ -115,7 +115,7 @@ def _text(element: Any) -> str:
 
 
 def _cell_text(element: Any) -> str:
-    """The text of a cell, one line for each line that the source states; blanks and line ends of the markup are none."""
+    """Return the text of a cell with the line breaks of the document. Line ends of the markup are blanks."""
     for child in element.iter():
         if isinstance(child.tag, str) and child.tag != "pre":
             child.text = " ".join(child.text.split("\n")) if child.text else child.text
@@ -173,7 +173,7 @@ def read_docx(path: Path, profile: Profile) -> Document:
 
 def _word_rows(table: Any) -> list[SourceRow]:
     """The rows of a Word table; a cell that goes on below has its row span."""
-    made: list[SourceRow] = []
+    rows: list[SourceRow] = []
     above: dict[int, Cell] = {}  # column -> the cell that may go on
     for row in table._tbl.tr_lst:
         cells = []
@@ -192,5 +192,5 @@ def _word_rows(table: Any) -> list[SourceRow]:
                 here[column] = cell
             column += span
         above = here
-        made.append(SourceRow(cells))
-    return made
+        rows.append(SourceRow(cells))
+    return rows

@@ -48,8 +48,8 @@ def read(
             seen += _captions(page, profile)
             progress(len(pages), count, seen)
     _look_over(pages, document, name)
-    made = flow.items(pages, profile)
-    document.blocks = tables.Builder(profile, _known(pages), is_part=only is not None).run(made)
+    items = flow.items(pages, profile)
+    document.blocks = tables.Builder(profile, _known(pages), is_part=only is not None).run(items)
     return document
 
 
@@ -139,8 +139,8 @@ def _weigh(page: Any) -> None:
     from pdfminer.pdftypes import stream_value
 
     left = MOST_CONTENTS
-    for one in page.page_obj.contents:
-        raw = stream_value(one).rawdata or b""
+    for stream in page.page_obj.contents:
+        raw = stream_value(stream).rawdata or b""
         unpacked = len(raw)
         with contextlib.suppress(zlib.error):
             unpacked = max(unpacked, len(zlib.decompressobj().decompress(raw, left + 1)))
@@ -150,7 +150,7 @@ def _weigh(page: Any) -> None:
 
 
 def _look_over(pages: list[Page], document: Document, name: str) -> None:
-    """What is wrong with the pages as a whole. Raises `Findings` if there is no text at all."""
+    """Report pages without text and with unreadable characters. Raises `Findings` if the document has no text."""
     words = sum(len(page.words) for page in pages)
     if not words:
         images = sum(page.images for page in pages)
@@ -166,7 +166,7 @@ def _look_over(pages: list[Page], document: Document, name: str) -> None:
 
 
 def _of_page(page: Page) -> Iterator[Trouble]:
-    """What of a page cannot be read; where it stands is added."""
+    """Report the parts of a page that cannot be read."""
     if page.failed:
         help = "its content is missing from the ICD"
         yield Trouble("IMP010", f"the page cannot be read ({page.failed})", help=help, severity="error")

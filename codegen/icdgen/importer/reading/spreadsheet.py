@@ -92,7 +92,7 @@ class _Sheet:
             spans[area.min_row, area.min_col] = right - area.min_col + 1, bottom - area.min_row + 1
             covered |= {(r, c) for r in range(area.min_row, bottom + 1) for c in range(area.min_col, right + 1)}
         covered -= set(spans)
-        made: Cells = []
+        result: Cells = []
         for row in range(1, height + 1):
             cells = []
             for column in range(1, width + 1):
@@ -100,8 +100,8 @@ class _Sheet:
                     continue
                 columns, rows = spans.get((row, column), (1, 1))
                 cells.append(Cell(self.text(row, column), columns, rows))
-            made.append((row, cells))
-        return made
+            result.append((row, cells))
+        return result
 
     def text(self, row: int, column: int) -> str:
         """The value of a cell as text; reports values that are not what was typed."""
@@ -135,7 +135,7 @@ class _Sheet:
 
 def _blocks(rows: Cells, sheet: str) -> list[Block]:
     """Tables between rows without text, and the texts above them."""
-    made: list[Block] = []
+    blocks: list[Block] = []
     table: list[SourceRow] = []
     open_rows = 0  # that a merged cell above reaches into
 
@@ -144,7 +144,7 @@ def _blocks(rows: Cells, sheet: str) -> list[Block]:
             rows = list(table)
             while rows and not rows[-1].shown:
                 rows.pop()
-            made.append(SourceTable(sheet=sheet, rows=_without_empty_columns(rows)))
+            blocks.append(SourceTable(sheet=sheet, rows=_without_empty_columns(rows)))
             table.clear()
 
     for number, cells in rows:
@@ -153,12 +153,12 @@ def _blocks(rows: Cells, sheet: str) -> list[Block]:
         if not filled and not open_rows:
             close()
         elif len(filled) == 1 and not table and not open_rows and (cells[0].text or len(cells) > 1):
-            made.append(Text(filled[0], line=number))
+            blocks.append(Text(filled[0], line=number))
         else:
             table.append(SourceRow(cells, line=number))
         open_rows = max([open_rows, *(cell.rows for cell in cells if cell.text)])
     close()
-    return made
+    return blocks
 
 
 def _without_empty_columns(rows: list[SourceRow]) -> list[SourceRow]:

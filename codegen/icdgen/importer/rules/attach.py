@@ -82,7 +82,7 @@ def _lookup(part: Part, field: Draft, notes: Notes) -> None:
 
 def _divide(part: Part, host: Part, field: Draft, order: Order, notes: Notes) -> None:
     """Put the fields of bits in the place of the field that they divide."""
-    whole = bits_of(field.at, field.bits, field.order or order)
+    host_bits = bits_of(field.at, field.bits, field.order or order)
     covered = {bit for draft in part.drafts for bit in range(draft.at, draft.end)}
     missing = sorted(set(range(field.bits)) - covered)
     if missing or max(covered, default=0) >= field.bits:
@@ -94,10 +94,10 @@ def _divide(part: Part, host: Part, field: Draft, order: Order, notes: Notes) ->
             "make sure that no row was lost",
             part.rule.place,
         )
-    made = []
+    pieces = []
     group = {role: text for role in _GROUP if field.roles.get("group") and (text := field.roles.get(role))}
     for draft in part.drafts:
-        run = run_of(whole[draft.at : draft.end], order) if draft.end <= field.bits else None
+        run = run_of(host_bits[draft.at : draft.end], order) if draft.end <= field.bits else None
         if run is None:
             notes.error(
                 "IMP105",
@@ -109,14 +109,14 @@ def _divide(part: Part, host: Part, field: Draft, order: Order, notes: Notes) ->
             continue
         own_order = run[1] if run[1] != order else None
         roles = replace(draft.roles, given=draft.roles.given | group)
-        made.append(replace(draft, at=run[0], order=own_order, facts=dict(draft.facts), roles=roles))
+        pieces.append(replace(draft, at=run[0], order=own_order, facts=dict(draft.facts), roles=roles))
     index = next(i for i, draft in enumerate(host.drafts) if draft is field)
-    host.drafts[index : index + 1] = made
+    host.drafts[index : index + 1] = pieces
 
 
-def check_index(index: list[Part], found: list[Found], notes: Notes) -> None:
+def check_index(index: list[Part], results: list[Found], notes: Notes) -> None:
     """Complete messages from the index, and report what it contradicts, lists without a table, or lacks."""
-    messages = [one.thing for one in found if isinstance(one.thing, ReadMessage)]
+    messages = [result.thing for result in results if isinstance(result.thing, ReadMessage)]
     for entry in index:
         id, name = entry.number("id"), normalised(entry.name)
         where = f"{entry.table.title}, row of `{name or id}`"
@@ -140,7 +140,7 @@ def _complete(message: ReadMessage, entry: Part, id: int | None, name: str, note
     if not message.name:
         message.name = name
     stated = {"kind": entry.given.get("kind"), "length": entry.number("length")}
-    if all(one is None for one in message.ids) and id is not None:
+    if all(number is None for number in message.ids) and id is not None:
         if (message.kind or stated["kind"]) == "configuration":
             message.set_id = message.get_id = id
         else:
@@ -149,7 +149,7 @@ def _complete(message: ReadMessage, entry: Part, id: int | None, name: str, note
         notes.error(
             "IMP060",
             f"{entry.table.title}: it gives `{message.name}` the id {id}, its own table says "
-            f"{next(one for one in message.ids if one is not None)}",
+            f"{next(number for number in message.ids if number is not None)}",
             entry.table.spot,
             "compare both tables",
             entry.rule.place,

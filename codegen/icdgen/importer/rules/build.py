@@ -31,17 +31,17 @@ class Builder:
             self.place(part)
         messages = self.continued(messages)
         attach.attach(parts, messages, self.order, self.notes)
-        made = []
+        results = []
         for part in messages:
             message = self.message(part)
-            made.append(Found(message.table, "message", message))
-        made += self.enums_found
-        made += [
+            results.append(Found(message.table, "message", message))
+        results += self.enums_found
+        results += [
             lists.enumeration_of(part)
             for part in parts
             if part.rule.what == "enumeration" and part.given.get("enumeration")
         ]
-        return sorted(made, key=lambda found: found.table.number)
+        return sorted(results, key=lambda result: result.table.number)
 
     def place(self, part: Part) -> None:
         """Put the pieces of split fields together and bring bits into the node's order."""
@@ -51,13 +51,13 @@ class Builder:
 
     def continued(self, parts: list[Part]) -> list[Part]:
         """The messages, those put together that one rule reads from tables that follow each other with the same id and kind."""
-        made: list[Part] = []
+        merged: list[Part] = []
         last: Part | None = None
         for part in parts:
             before, last = last, part
             if before is None or not _is_same_message(before, part):
-                made.append(part)
-            elif _overlap(made[-1].drafts, part.drafts):
+                merged.append(part)
+            elif _overlap(merged[-1].drafts, part.drafts):
                 self.notes.error(
                     "IMP105",
                     f"{part.where}: table {before.table.number} describes a message of the same id, and fields of both overlap",
@@ -65,18 +65,18 @@ class Builder:
                     "correct the pattern of the id, or read each by its own rule",
                     part.rule.place,
                 )
-                made.append(part)
+                merged.append(part)
             else:
-                made[-1].drafts = sorted([*made[-1].drafts, *part.drafts], key=lambda draft: draft.at)
-        return made
+                merged[-1].drafts = sorted([*merged[-1].drafts, *part.drafts], key=lambda draft: draft.at)
+        return merged
 
     def message(self, part: Part) -> ReadMessage:
         """Return the message of a part."""
         table = part.table
         kind = known_kind(part.given.get("kind", ""), part.where, table.spot, part.rule, self.notes)
-        made = ReadMessage(normalised(part.name), kind, table, bit_order=self.order.bit_order)
-        made.summary = part.given.get("message_text", "")
-        made.group = part.given.get("section", "")
+        message = ReadMessage(normalised(part.name), kind, table, bit_order=self.order.bit_order)
+        message.summary = part.given.get("message_text", "")
+        message.group = part.given.get("section", "")
         for role in ("id", "set_id", "get_id", "length"):
             text = part.given.get(role)
             value = part.number(role)
@@ -88,18 +88,18 @@ class Builder:
                     "correct the pattern, or state `base: 16`",
                     part.rule.place,
                 )
-            setattr(made, role, value)
-        if kind == "configuration" and made.id is not None:
-            made.set_id = made.get_id = made.id
-            made.id = None
-        self.fields(made, part)
-        self.check_announced_formulas(made, part)
-        return made
+            setattr(message, role, value)
+        if kind == "configuration" and message.id is not None:
+            message.set_id = message.get_id = message.id
+            message.id = None
+        self.fields(message, part)
+        self.check_announced_formulas(message, part)
+        return message
 
-    def check_announced_formulas(self, made: ReadMessage, part: Part) -> None:
+    def check_announced_formulas(self, message: ReadMessage, part: Part) -> None:
         """Report formulas that give another value than the words before them announce: one finding for a table."""
         for announced, given in (("raw", "physical"), ("physical", "raw")):
-            names = [field.name for field in made.fields if field.described.formula_for == announced]
+            names = [field.name for field in message.fields if field.described.formula_for == announced]
             if names:
                 which = f"the formula of `{names[0]}`" + (f" and of {len(names) - 1} more fields" if names[1:] else "")
                 self.notes.warn(
@@ -110,21 +110,21 @@ class Builder:
                     part.rule.place,
                 )
 
-    def fields(self, made: ReadMessage, part: Part) -> None:
+    def fields(self, message: ReadMessage, part: Part) -> None:
         """Give the message its fields, reserved bits and structs."""
         groups: dict[str, list[Draft]] = defaultdict(list)
         seen: set[str] = set()
         for draft in part.drafts:
             if self.profile.is_reserved(draft.name):
-                made.reserved.append(Extent(draft.at, draft.end, (draft.order or self.order).bit_order))
+                message.reserved.append(Extent(draft.at, draft.end, (draft.order or self.order).bit_order))
             elif draft.roles.get("group"):
                 groups[normalised(draft.roles.get("group"))].append(draft)
             else:
                 self.check_name(draft, part, seen)
-                made.fields.append(self.field(draft, part))
+                message.fields.append(self.field(draft, part))
         for name, drafts in groups.items():
-            self.group(made, name, drafts, part)
-        made.fields.sort(key=lambda field: field.at)
+            self.group(message, name, drafts, part)
+        message.fields.sort(key=lambda field: field.at)
 
     def check_name(self, draft: Draft, part: Part, seen: set[str]) -> None:
         """Report names that look like a mistake of a rule."""
@@ -142,11 +142,11 @@ class Builder:
 
     def field(self, draft: Draft, part: Part) -> ReadField:
         """Return the field of a draft."""
-        made = ReadField(draft.name, draft.at, draft.bits, draft.kind, draft.described, draft.spot, draft.count)
-        made.facts = dict(draft.facts)
+        field = ReadField(draft.name, draft.at, draft.bits, draft.kind, draft.described, draft.spot, draft.count)
+        field.facts = dict(draft.facts)
         if draft.order is not None:
             node = self.order
-            made.facts |= {
+            field.facts |= {
                 key: getattr(draft.order, key)
                 for key in Order._fields
                 if getattr(draft.order, key) != getattr(node, key)
@@ -159,9 +159,9 @@ class Builder:
                 "represented as uint",
                 part.rule.place,
             )
-            made.type = "uint"
+            field.type = "uint"
         if draft.members:
-            made.enum = self.enumeration(draft, part)
+            field.enum = self.enumeration(draft, part)
         elif draft.kind == "enum" and (draft.described.enum_table is None and not draft.described.enum_title):
             self.notes.error(
                 "IMP050",
@@ -170,8 +170,8 @@ class Builder:
                 "give them with the role `members`, or with a rule `what: enumeration`",
                 part.rule.place,
             )
-            made.type = "uint"
-        return made
+            field.type = "uint"
+        return field
 
     def enumeration(self, draft: Draft, part: Part) -> str:
         """The name of the enumeration with the field's members; one for all fields of this name and these members."""
@@ -186,7 +186,7 @@ class Builder:
                 return name
         return draft.name
 
-    def group(self, made: ReadMessage, name: str, drafts: list[Draft], part: Part) -> None:
+    def group(self, message: ReadMessage, name: str, drafts: list[Draft], part: Part) -> None:
         """A struct that is repeated: as often as the frame has room for it, as a field counts, or so many times."""
         strides = {draft.roles.get("stride") for draft in drafts} - {""}
         start = min(draft.at for draft in drafts)
@@ -220,11 +220,11 @@ class Builder:
             field.at -= start
             fields.append(field)
         title = f"{part.name} {name}".strip()
-        made.structs.append(ReadStruct(title, size, fields))
+        message.structs.append(ReadStruct(title, size, fields))
         facts = {"struct": title, "count": int(counted) if counted.isdigit() else counted}
-        whole = ReadField(name, start, 8 * size, "struct", drafts[0].described.__class__(), drafts[0].spot)
-        whole.facts = facts | ({"up_to": int(bound)} if bound and not counted.isdigit() else {})
-        made.fields.append(whole)
+        array = ReadField(name, start, 8 * size, "struct", drafts[0].described.__class__(), drafts[0].spot)
+        array.facts = facts | ({"up_to": int(bound)} if bound and not counted.isdigit() else {})
+        message.fields.append(array)
 
 
 def _is_same_message(first: Part, second: Part) -> bool:

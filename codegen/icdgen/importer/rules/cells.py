@@ -15,7 +15,7 @@ from icdgen.importer.rules.rule import Column, Rule
 
 @dataclass
 class Roles:
-    """The roles of a field, or of a row that is none, with the row they come from. ``members``: value and name as printed."""
+    """Roles of a field or of a row, with their row. ``members``: values and names as printed."""
 
     given: dict[str, str]
     row: DataRow
@@ -28,7 +28,7 @@ class Roles:
 
 
 class RoleReader:
-    """Reads the roles of the rows of one table. ``words`` are those of the document, ``empty`` texts that mean no value."""
+    """Reads the roles of the rows of one table. ``words`` has all words of the document, ``empty`` the texts that mean no value."""
 
     def __init__(
         self,
@@ -89,7 +89,7 @@ class RoleReader:
             _add(given, taken)
 
     def columns(self, rows: list[DataRow]) -> list[tuple[Column, list[str]]]:
-        """The entries of `columns` with the headings of the table; reports those it lacks and those that no entry names."""
+        """Return the entries of `columns` with their headings; report missing columns and columns without a role."""
         rule, table, titles = self.rule, self.table, self.titles
         entries: list[tuple[Column, list[str]]] = []
         used: set[str] = set()

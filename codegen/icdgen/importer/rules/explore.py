@@ -1,7 +1,7 @@
 """The kinds of tables of a document, each with the skeleton of a rule: `icdgen import FILE --explore`.
 
 A kind is a set of tables with the same headings; tables of different kinds are never put together. The skeleton names every
-column and gives none a role: what a column means is for a person to say.
+column and gives none a role: the user states what a column means.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ _WORDS = {"y", "n", "yes", "no", "on", "off", "true", "false", "null"}
 
 def as_json(tables: list[SourceTable], document: str) -> str:
     """Return the kinds of tables for programs."""
-    found: list[dict[str, Any]] = [
+    entries: list[dict[str, Any]] = [
         {
             "headings": group[0].titles,
             "count": len(group),
@@ -84,4 +84,4 @@ def as_json(tables: list[SourceTable], document: str) -> str:
         }
         for group in kinds(tables)
     ]
-    return json.dumps({"document": document, "kinds": found}, indent=2, ensure_ascii=False)
+    return json.dumps({"document": document, "kinds": entries}, indent=2, ensure_ascii=False)

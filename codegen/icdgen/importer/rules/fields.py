@@ -31,7 +31,7 @@ _MEMBER = re.compile(  # a comma separates members only in front of a value: nam
 
 @dataclass
 class Draft:
-    """A field in the making. ``bits`` are those of one element, ``places`` the bits of the frame that it has."""
+    """Field before references are resolved. ``bits`` is the size of one element."""
 
     name: str
     at: int
@@ -162,11 +162,11 @@ class FieldReader:
                 "is it an array? `set: [{where: {name: ...}, bits: 16, count: 3}]`, or `type: bytes`",
             )
             return None
-        made = Draft(name, at, bits, kind, self.described(roles, kind, where, spot), spot, roles, count)
-        made.frame_bits = frame_bits
-        self.facts(made, numbers, where, spot)
-        self.next = made.end
-        return made
+        draft = Draft(name, at, bits, kind, self.described(roles, kind, where, spot), spot, roles, count)
+        draft.frame_bits = frame_bits
+        self.facts(draft, numbers, where, spot)
+        self.next = draft.end
+        return draft
 
     def error(self, code: str, message: str, spot: Spot, help: str) -> None:
         self.notes.error(code, message, spot, help, self.rule.place, self.subject)
@@ -175,8 +175,8 @@ class FieldReader:
         self.notes.warn(code, message, spot, help, self.rule.place, self.subject)
 
     def numbers(self, roles: Roles, where: str, spot: Spot) -> dict[str, int] | None:
-        """The whole numbers among the roles; None, with a finding, if one is none."""
-        made = {}
+        """Return the roles that are whole numbers; None, with a finding, if a text is not a number."""
+        numbers = {}
         for role in ("byte", "last_byte", "bit", "last_bit", "end_bit", "bytes", "bits", "count", "stride", "up_to"):
             text = roles.get(role)
             if not text:
@@ -195,8 +195,8 @@ class FieldReader:
                     ),
                 )
                 return None
-            made[role] = value
-        return made
+            numbers[role] = value
+        return numbers
 
     def type_of(self, roles: Roles, where: str, spot: Spot) -> TypeName | None:
         """The type that the rule, the row or the profile's `types` state."""
@@ -212,15 +212,15 @@ class FieldReader:
             )
             return None
         own = self.profile.types_of_profile.get("".join(name.casefold().split()))
-        found = own or type_of(name)
-        if found is None:
+        type_name = own or type_of(name)
+        if type_name is None:
             self.error(
                 "IMP026",
                 f"{where}: the type `{name[:40]}` is unknown",
                 spot,
                 f"explain it in the profile: `types: {{{name[:30]}: {{type: uint, bits: 16}}}}`",
             )
-        return found
+        return type_name
 
     def size(
         self, numbers: dict[str, int], printed: TypeName, roles: Roles, where: str, spot: Spot
@@ -259,14 +259,14 @@ class FieldReader:
     def described(self, roles: Roles, kind: str, where: str, spot: Spot) -> Described:
         """Unit, formula and description."""
         text = roles.get("text")
-        made = Described(rest=text)
+        described = Described(rest=text)
         if self.profile.reads_descriptions:
-            made = descriptions.read(text, self.profile, is_enum=kind == "enum")
-        for problem in made.problems:
+            described = descriptions.read(text, self.profile, is_enum=kind == "enum")
+        for problem in described.problems:
             self.warn("IMP040", f"{where}: {problem}: `{text[-160:]}`", spot, "read the page")
         unit = _IN_PARENTHESES.sub(r"\1", tidy_unit(roles.get("unit")))
         if unit.casefold() not in _EMPTY:
-            made.unit = unit
+            described.unit = unit
         if const := roles.get("const"):
             raw = whole_number(const)
             if raw is None:
@@ -277,7 +277,7 @@ class FieldReader:
                     "correct the pattern or the table file",
                 )
             else:
-                made.const = const if re.fullmatch(r"0[xX][0-9A-Fa-f]+", const) else str(raw)
+                described.const = const if re.fullmatch(r"0[xX][0-9A-Fa-f]+", const) else str(raw)
         formula = roles.get("formula")
         if formula.casefold() not in _EMPTY:
             scaled = formulas.per_step(formula, descriptions.names(self.profile))
@@ -289,7 +289,7 @@ class FieldReader:
                     "take its numbers with `{scale}`, `{offset}` and `{bias}`",
                 )
             else:
-                made.formula, made.unit = scaled.formula, scaled.unit or made.unit
+                described.formula, described.unit = scaled.formula, scaled.unit or described.unit
         values = {}
         for role in NUMBERS:
             given = roles.get(role)
@@ -306,23 +306,25 @@ class FieldReader:
             else:
                 values[role] = value
         roles.given = {role: text for role, text in roles.given.items() if role not in NUMBERS} | values
-        made.formula = scale_formula(values.get("scale"), values.get("offset"), values.get("bias")) or made.formula
-        return made
+        described.formula = (
+            scale_formula(values.get("scale"), values.get("offset"), values.get("bias")) or described.formula
+        )
+        return described
 
-    def facts(self, made: Draft, numbers: dict[str, int], where: str, spot: Spot) -> None:
+    def facts(self, draft: Draft, numbers: dict[str, int], where: str, spot: Spot) -> None:
         """Limits, members, arrays of open length, parts."""
-        roles = made.roles
+        roles = draft.roles
         for role in ("min", "max"):
             if role in roles.given and roles.get(role):
                 value = float(roles.get(role))
-                made.facts[role] = int(value) if value == int(value) else value
-        self.check_range(made, where, spot)
+                draft.facts[role] = int(value) if value == int(value) else value
+        self.check_range(draft, where, spot)
         if (roles.get("rest") or roles.get("counter")) and not roles.get("group"):
             counted: Any = roles.get("counter") or "rest"
-            key = "size" if made.kind in ("text", "bytes") else "count"
-            made.facts[key] = counted
+            key = "size" if draft.kind in ("text", "bytes") else "count"
+            draft.facts[key] = counted
             if "up_to" in numbers:
-                made.facts["up_to"] = numbers["up_to"]
+                draft.facts["up_to"] = numbers["up_to"]
             else:
                 self.error(
                     "IMP105",
@@ -330,16 +332,16 @@ class FieldReader:
                     spot,
                     "state it: `each: {up_to: 255}`, or under `set:`",
                 )
-        made.members = self.members(roles, where, spot)
+        draft.members = self.members(roles, where, spot)
         enumeration = roles.get("enumeration")
-        if (made.members or enumeration) and made.kind in ("uint", "int") and not made.described.formula:
-            made.kind = "enum"
-        if enumeration and not made.members:
-            made.described.enum_title = enumeration
-            if made.kind != "enum":
+        if (draft.members or enumeration) and draft.kind in ("uint", "int") and not draft.described.formula:
+            draft.kind = "enum"
+        if enumeration and not draft.members:
+            draft.described.enum_title = enumeration
+            if draft.kind != "enum":
                 self.error(
                     "IMP050",
-                    f"{where}: a field of the type {made.kind}{' with a formula' if made.described.formula else ''} "
+                    f"{where}: a field of the type {draft.kind}{' with a formula' if draft.described.formula else ''} "
                     f"cannot have the enumeration `{enumeration[:40]}`",
                     spot,
                     "correct the roles `type` and `enumeration`",
@@ -347,7 +349,7 @@ class FieldReader:
         text = roles.get("part")
         if text:
             first = 0 if text in "Ll" else 1 if text in "Hh" else int(text)
-            made.part = first, int(roles.get("last_part") or first)
+            draft.part = first, int(roles.get("last_part") or first)
 
     def members(self, roles: Roles, where: str, spot: Spot) -> list[tuple[int, str]]:
         printed = roles.members + [(m["value"], m["name"]) for m in _MEMBER.finditer(roles.get("members"))]
@@ -359,7 +361,7 @@ class FieldReader:
                 spot,
                 "write `0: off; 1: on`, or take values and names with patterns under `lines`",
             )
-        made = []
+        members = []
         for text, name in printed:
             value = whole_number(text, self.rule.base)
             if value is None:
@@ -370,25 +372,25 @@ class FieldReader:
                     "correct the pattern",
                 )
             else:
-                made.append((value, name))
-        return made
+                members.append((value, name))
+        return members
 
-    def check_range(self, made: Draft, where: str, spot: Spot) -> None:
+    def check_range(self, draft: Draft, where: str, spot: Spot) -> None:
         """Report a range that the raw values of an unsigned number do not reach: an offset taken for a bias shows there."""
-        if made.kind != "uint" or made.bits > 53 or not {"min", "max"} & set(made.facts):
+        if draft.kind != "uint" or draft.bits > 53 or not {"min", "max"} & set(draft.facts):
             return
         scale, offset, bias = (
-            Decimal(made.roles.get(r) or d) for r, d in (("scale", "1"), ("offset", "0"), ("bias", "0"))
+            Decimal(draft.roles.get(r) or d) for r, d in (("scale", "1"), ("offset", "0"), ("bias", "0"))
         )
-        low, high = sorted(scale * (raw - bias) + offset for raw in (Decimal(0), Decimal(2**made.bits - 1)))
+        low, high = sorted(scale * (raw - bias) + offset for raw in (Decimal(0), Decimal(2**draft.bits - 1)))
         for role, reaches in (
-            ("min", low <= Decimal(str(made.facts.get("min", low)))),
-            ("max", high >= Decimal(str(made.facts.get("max", high)))),
+            ("min", low <= Decimal(str(draft.facts.get("min", low)))),
+            ("max", high >= Decimal(str(draft.facts.get("max", high)))),
         ):
             if not reaches:
                 self.notes.warn(
                     "IMP106",
-                    f"{where}: its range has the {role} {made.facts[role]}, its raw values give {low:f} to {high:f}",
+                    f"{where}: its range has the {role} {draft.facts[role]}, its raw values give {low:f} to {high:f}",
                     spot,
                     "`offset` is added after scaling, `bias` is subtracted before: is one the other?",
                 )
@@ -401,7 +403,7 @@ def scale_formula(scale: str | None, offset: str | None, bias: str | None) -> st
     if bias is not None and Decimal(bias) != 0:
         raw = f"raw {'+' if bias.startswith('-') else '-'} {bias.lstrip('-')}"
         raw = f"({raw})" if factor else raw
-    made = f"{raw}*{factor}" if factor else raw
+    formula = f"{raw}*{factor}" if factor else raw
     if offset is not None and Decimal(offset) != 0:
-        made = f"{made} {'-' if offset.startswith('-') else '+'} {offset.lstrip('-')}"
-    return "" if made == "raw" else made
+        formula = f"{formula} {'-' if offset.startswith('-') else '+'} {offset.lstrip('-')}"
+    return "" if formula == "raw" else formula

@@ -27,7 +27,7 @@ _HEX = re.compile(r"\b(?:0[xX][0-9A-Fa-f]+|[0-9A-Fa-f]*[0-9][0-9A-Fa-f]*[hH])\b"
 
 @dataclass
 class Interpretation:
-    """What the rules of a profile make of the tables of a document."""
+    """Result of applying the rules of a profile to the tables of a document."""
 
     choices: list[Choice]
     parts: list[Part]
@@ -49,7 +49,7 @@ class _Interpreter:
         self.attributes: dict[int, dict[str, str]] = {}
         self.found: list[Found] = []
         words = (word.strip(".,;:()[]") for table in tables for text in texts(table) for word in text.split())
-        self.known = frozenset(words)
+        self.document_words = frozenset(words)
         self.order = Order(*profile.orders)
 
     def run(self, extra: list[Trouble]) -> Interpretation:
@@ -60,14 +60,14 @@ class _Interpreter:
                 if rule.what != "ignore":
                     self.read(rule, choice.table)
         self.check_use(choices)
-        made = build.Builder(self.profile, self.order, self.notes).build(self.parts)
-        attach.check_index([part for part in self.parts if part.rule.what == "index"], made, self.notes)
-        self.check_orders(made)
+        results = build.Builder(self.profile, self.order, self.notes).build(self.parts)
+        attach.check_index([part for part in self.parts if part.rule.what == "index"], results, self.notes)
+        self.check_orders(results)
         self.notes.finish(self.profile.rules)
         survey = Survey(troubles=[*extra, *self.notes.troubles])
         things: dict[int, list[Found]] = {}
-        for found in [*self.found, *made]:
-            things.setdefault(found.table.number, []).append(found)
+        for result in [*self.found, *results]:
+            things.setdefault(result.table.number, []).append(result)
         for choice in choices:
             table = choice.table
             ignored = bool(choice.rules) and choice.rules[-1].what == "ignore"
@@ -86,7 +86,7 @@ class _Interpreter:
             rows = []  # the table describes a message without parameters
         given = self.around(rule, table)
         self.attributes[table.number] = given
-        role_reader = RoleReader(rule, table, titles, self.known, self.profile.empty, self.notes)
+        role_reader = RoleReader(rule, table, titles, self.document_words, self.profile.empty, self.notes)
         if rule.what in ("list", "loggable"):
             listed = role_reader.read(rows)
             is_list = rule.what == "list"
@@ -173,17 +173,19 @@ class _Interpreter:
     def texts(self, rule: Rule, table: SourceTable, source: str) -> list[str]:
         """The texts of a source, the nearest first. Of rows: each of them, then those above the headings as one text."""
         if source == "row":
-            found = [" | ".join(filter(None, (cell_text(c.text, self.known) for c in r.cells))) for r in table.rows]
+            texts = [
+                " | ".join(filter(None, (cell_text(c.text, self.document_words) for c in r.cells))) for r in table.rows
+            ]
             head = heading_rows(rule, texts_of(table, rule.transpose))
-            found.append(" | ".join(filter(None, found[: head.start] if head else found)))
+            texts.append(" | ".join(filter(None, texts[: head.start] if head else texts)))
         else:
-            found = {
+            texts = {
                 "caption": [table.caption],
                 "heading": table.headings[::-1],
                 "before": table.before[::-1],
                 "sheet": [table.sheet],
             }[source]
-        return [normalised(text) for text in found]
+        return [normalised(text) for text in texts]
 
     def doubt(self, rule: Rule, table: SourceTable, roles: dict[str, str], left: str) -> None:
         """Report an id that is a plain number where the same text has a hexadecimal one."""
@@ -227,9 +229,9 @@ class _Interpreter:
                         correction.place,
                     )
 
-    def check_orders(self, made: list[Found]) -> None:
+    def check_orders(self, results: list[Found]) -> None:
         """Report fields whose bits depend on a byte or bit order that the profile does not state."""
-        fields = [f for found in made if isinstance(found.thing, ReadMessage) for f in found.thing.all_fields]
+        fields = [f for result in results if isinstance(result.thing, ReadMessage) for f in result.thing.all_fields]
         numbers = [f for f in fields if f.type in ("uint", "int", "enum", "float", "bool")]
         dependent = {
             "byte_order": ("several bytes", [f for f in numbers if f.at % 8 + f.bits > 8], "`big` or `little`"),
@@ -286,7 +288,7 @@ class _Interpreter:
 
     def report_without_table(self, choices: list[Choice], survey: Survey) -> None:
         """Report texts that give the id of a message by the pattern of a rule, if no table gives a message with this id."""
-        known = {part.number(role) for part in self.parts for role in _IDS}
+        ids_with_table = {part.number(role) for part in self.parts for role in _IDS}
         used = {rule.name for choice in choices for rule in choice.rules}
         patterns = [
             (rule, pattern)
@@ -304,7 +306,7 @@ class _Interpreter:
                         if taken
                         else set()
                     )
-                    if not ids - {None} or ids & known:
+                    if not ids - {None} or ids & ids_with_table:
                         continue
                     survey.troubles.append(
                         Trouble(
@@ -315,7 +317,7 @@ class _Interpreter:
                             place=pattern.place,
                         )
                     )
-                    known |= ids
+                    ids_with_table |= ids
 
 
 def _what(choice: Choice, ignored: bool) -> str:

@@ -112,7 +112,7 @@ class PatternError(Exception):
 
 @dataclass(frozen=True)
 class Pattern:
-    """A pattern of a profile: a bare role (``regex`` is None), or a regular expression with groups that are roles."""
+    """Pattern of a profile: a bare role without ``regex``, or a regular expression with groups that are roles."""
 
     text: str
     place: Place
@@ -124,7 +124,7 @@ class Pattern:
         return frozenset({self.text}) if self.regex is None else frozenset(self.regex.groupindex)
 
     def order_of(self, *roles: str) -> list[str]:
-        """Those of the roles that the pattern gives, in the order in which it takes them."""
+        """Return the roles that the pattern takes, in their order within the pattern."""
         return [] if self.regex is None else [role for role in self.regex.groupindex if role in roles]
 
 
@@ -202,9 +202,9 @@ def normalised(text: str) -> str:
     return plain(wide)
 
 
-def cell_text(text: str, known: frozenset[str]) -> str:
-    """The text of a cell in one line; a word that a line break parts at its hyphen is put together if ``known`` has it."""
-    return normalised(join(text.split("\n"), known) if "\n" in text else text)
+def cell_text(text: str, document_words: frozenset[str]) -> str:
+    """The text of a cell in one line; a word that a line break parts at its hyphen is put together if ``document_words`` has it."""
+    return normalised(join(text.split("\n"), document_words) if "\n" in text else text)
 
 
 def whole_number(text: str, base: int = 10) -> int | None:
@@ -221,7 +221,7 @@ def whole_number(text: str, base: int = 10) -> int | None:
 
 
 def decimal(text: str) -> str | None:
-    """The number as an ICD writes it, with the digits of the source; None if it is none."""
+    """Return a number as an ICD writes it, with the digits of the source; None for another text."""
     text = text.replace("−", "-").replace("–", "-").replace(" ", "").lstrip("+")
     if not re.fullmatch(NUMBER, text):
         return None
@@ -229,7 +229,7 @@ def decimal(text: str) -> str | None:
 
 
 class TypeName(NamedTuple):
-    """What a type name says: the type in an ICD, and its width in bits, 0 if it says none."""
+    """Meaning of a type name: the type in an ICD, and its width in bits or 0."""
 
     kind: str
     bits: int = 0

@@ -19,7 +19,7 @@ _IDS = ("id", "set_id", "get_id")
 def list_of(rule: Rule, table: SourceTable, given: dict[str, str], rows: list[Roles], notes: Notes) -> Found:
     """Return the list of messages that a table is."""
     kind = known_kind(given.get("kind", ""), table.title, table.spot, rule, notes)
-    made = ReadList(kind, normalised(given.get("node", "")), [])
+    result = ReadList(kind, normalised(given.get("node", "")), [])
     for roles in rows:
         spot = table.spot_of(roles.row.source)
         numbers = {role: _number(rule, table, roles, role, notes) for role in (*_IDS, "length")}
@@ -34,7 +34,7 @@ def list_of(rule: Rule, table: SourceTable, given: dict[str, str], rows: list[Ro
                 rule.place,
             )
             continue
-        made.rows.append(
+        result.rows.append(
             Listed(
                 known_kind(roles.get("kind"), f"{table.title}, row of `{name}`", spot, rule, notes) or kind,
                 name,
@@ -46,12 +46,12 @@ def list_of(rule: Rule, table: SourceTable, given: dict[str, str], rows: list[Ro
                 spot,
             )
         )
-    return Found(table, "list", made)
+    return Found(table, "list", result)
 
 
 def log_of(rule: Rule, table: SourceTable, rows: list[Roles], notes: Notes) -> Found:
     """Return the frames that can be logged, by the bit of the mask."""
-    made = ReadLog([])
+    log = ReadLog([])
     for roles in rows:
         bit = bit_of_mask(roles.get("mask")) if roles.get("mask") else whole_number(roles.get("bit") or "?")
         frame = _number(rule, table, roles, "id", notes)
@@ -64,8 +64,8 @@ def log_of(rule: Rule, table: SourceTable, rows: list[Roles], notes: Notes) -> F
                 rule.place,
             )
             continue
-        made.bits.append(LogBit(bit, frame, roles.get("message")))
-    return Found(table, "loggable frames", made)
+        log.bits.append(LogBit(bit, frame, roles.get("message")))
+    return Found(table, "loggable frames", log)
 
 
 def enumeration_of(part: Part) -> Found:

@@ -1,4 +1,4 @@
-"""What rules report: findings with the place in the source and the place of the rule, and counts of what they drop."""
+"""Findings of rules, with the places in the source and in the profile, and counts of dropped rows."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ class Notes:
 
     @property
     def troubles(self) -> list[Trouble]:
-        """All findings, those of one cause as one."""
+        """All findings, with one finding per cause."""
         return [*self.single, *(group.as_trouble() for group in self.groups.values())]
 
     def drop(self, rule: Rule, operation: str, text: str) -> None:

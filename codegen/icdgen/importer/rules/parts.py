@@ -1,4 +1,4 @@
-"""What a rule reads from a table for one message, enumeration, lookup table, index entry or set of bits."""
+"""Results of one rule for one table: fields or values of a message, enumeration, lookup table or set of bits."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from icdgen.importer.rules.rule import Rule
 
 @dataclass
 class Part:
-    """What a rule read from one table for one message, enumeration, lookup table, index entry or set of bits."""
+    """Fields or values of one message, enumeration, lookup table, index entry or set of bits in one table."""
 
     rule: Rule
     table: SourceTable

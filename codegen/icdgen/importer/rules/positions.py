@@ -44,9 +44,9 @@ def bits_between(first: Bit, last: Bit, size: int, order: Order) -> list[Bit] | 
     is the same two bytes). The size decides between them. None if no reading, or both, have this size.
     """
     (low, first_number), (high, last_number) = first, last
-    whole = [(byte, number) for byte in range(low + 1, high) for number in range(8)]
-    ascending = [(low, n) for n in range(first_number, 8)] + whole + [(high, n) for n in range(last_number + 1)]
-    by_weight = [(low, n) for n in range(first_number + 1)] + whole + [(high, n) for n in range(last_number, 8)]
+    between = [(byte, number) for byte in range(low + 1, high) for number in range(8)]
+    ascending = [(low, n) for n in range(first_number, 8)] + between + [(high, n) for n in range(last_number + 1)]
+    by_weight = [(low, n) for n in range(first_number + 1)] + between + [(high, n) for n in range(last_number, 8)]
     readings = [numbered for numbered in (ascending, by_weight) if len(numbered) == size]
     if len(readings) != 1:
         return None

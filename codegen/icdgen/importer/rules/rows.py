@@ -55,11 +55,11 @@ def read_rows(rule: Rule, table: SourceTable, notes: Notes) -> tuple[list[str], 
 def _titles(heads: list[list[Slot]]) -> list[str]:
     """The heading of each column; one over several columns gets a number behind it (``Name``, ``Name.2``)."""
     width = max(map(len, heads), default=0)
-    made: list[str] = []
+    titles: list[str] = []
     for column in range(width):
         slots = [row[column] for row in heads if column < len(row)]
-        made.append(" ".join(dict.fromkeys(filter(None, (normalised(slot.cell.text) for slot in slots)))))
-    return [_numbered(title, made[:index]) for index, title in enumerate(made)]
+        titles.append(" ".join(dict.fromkeys(filter(None, (normalised(slot.cell.text) for slot in slots)))))
+    return [_numbered(title, titles[:index]) for index, title in enumerate(titles)]
 
 
 def _numbered(title: str, before: list[str]) -> str:
@@ -77,17 +77,17 @@ def _completed(rule: Rule, titles: list[str], slots: list[Slot]) -> list[Slot]:
 
 
 def _row(titles: list[str], slots: list[Slot], source: SourceRow) -> DataRow:
-    made = DataRow(dict.fromkeys(filter(None, titles), ""), source, is_short=len(slots) < len(titles))
+    data_row = DataRow(dict.fromkeys(filter(None, titles), ""), source, is_short=len(slots) < len(titles))
     for column, slot in enumerate(slots):
         title = titles[column] if column < len(titles) else ""
         if not title and slot.is_origin and slot.cell.text.strip():
             title = f"column {column + 1}"
         if not title or not slot.is_origin:
             continue
-        made.values[title] = slot.cell.text
-        made.cells[title] = slot.cell
-        made.ranges[title] = column, min(column + slot.cell.columns, len(titles)) - 1
-    return made
+        data_row.values[title] = slot.cell.text
+        data_row.cells[title] = slot.cell
+        data_row.ranges[title] = column, min(column + slot.cell.columns, len(titles)) - 1
+    return data_row
 
 
 def _transposed(table: SourceTable, grid: list[list[Slot]], head: int) -> tuple[list[str], list[DataRow]]:
@@ -96,7 +96,7 @@ def _transposed(table: SourceTable, grid: list[list[Slot]], head: int) -> tuple[
     names = [normalised(slots[head].cell.text) if head < len(slots) else "" for slots in grid]
     starts = [index for index, name in enumerate(names) if name == names[0]]
     titles = names[: starts[1] if len(starts) > 1 else None]
-    made: list[DataRow] = []
+    data_rows: list[DataRow] = []
     for block, start in enumerate(starts):
         rows = grid[start : starts[block + 1] if block + 1 < len(starts) else None]
         source = table.rows[start]
@@ -111,13 +111,13 @@ def _transposed(table: SourceTable, grid: list[list[Slot]], head: int) -> tuple[
             for name, slots in zip(titles, rows, strict=False):
                 texts = [slot.cell.text for slot in slots[column:end] if slot.is_origin]
                 values[name] = texts[0] if len(texts) == 1 else f"{texts[0]}:{texts[-1]}" if texts else ""
-            made.append(DataRow(values, source, roles={"byte": str(block)} if len(starts) > 1 else {}))
+            data_rows.append(DataRow(values, source, roles={"byte": str(block)} if len(starts) > 1 else {}))
             column = max(end, column + 1)
-    return titles, made
+    return titles, data_rows
 
 
 def _operated(rule: Rule, rows: list[DataRow], notes: Notes) -> list[DataRow]:
-    made: list[DataRow] = []
+    joined: list[DataRow] = []
     section = ""
     for row in rows:
         if not any(text.strip() for text in row.values.values()):
@@ -133,24 +133,24 @@ def _operated(rule: Rule, rows: list[DataRow], notes: Notes) -> list[DataRow]:
                 section = filled[0]
                 continue
             row.roles["section"] = section
-        if made and rule.join and all(_goes_on(made[-1], row, title) for title in rule.join):
-            _append(made[-1], row)
+        if joined and rule.join and all(_goes_on(joined[-1], row, title) for title in rule.join):
+            _append(joined[-1], row)
             continue
-        made.append(row)
+        joined.append(row)
     above: dict[str, str] = {}
-    for row in made:
+    for row in joined:
         for title in rule.fill:
             above[title] = row.values[title] = row.values.get(title) or above.get(title, "")
         for title in rule.glue:
             if title in row.values:
                 row.values[title] = re.sub(r"\s*\n\s*", "", row.values[title])
-    kept = []
-    for row in made:
+    selected = []
+    for row in joined:
         if all(pattern.search(normalised(row.values.get(title, ""))) for title, pattern in rule.keep.items()):
-            kept.append(row)
+            selected.append(row)
         else:
             notes.drop(rule, "keep", row.text)
-    return kept
+    return selected
 
 
 def _goes_on(above: DataRow, row: DataRow, title: str) -> bool:
@@ -160,7 +160,7 @@ def _goes_on(above: DataRow, row: DataRow, title: str) -> bool:
 
 
 def _append(above: DataRow, row: DataRow) -> None:
-    """Put the cells of a row below those of the row above.
+    """Append the cells of a row to the cells of the row above.
 
     A cell that spans both rows stands there already, and so does the rest of a cell that a page break repeats.
     """
@@ -174,6 +174,6 @@ def _append(above: DataRow, row: DataRow) -> None:
     }
 
 
-def one_line(row: DataRow, title: str, known: frozenset[str]) -> str:
+def one_line(row: DataRow, title: str, document_words: frozenset[str]) -> str:
     """The text of a cell in one line."""
-    return cell_text(row.values.get(title, ""), known)
+    return cell_text(row.values.get(title, ""), document_words)

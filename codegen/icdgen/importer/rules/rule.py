@@ -48,7 +48,7 @@ class Correction:
 
 @dataclass
 class Rule:
-    """What tables of one kind mean. Every key is described in ``docs/reference/import-rules.md``."""
+    """Rule for tables of one kind. Every key is described in ``docs/reference/import-rules.md``."""
 
     name: str
     place: Place
@@ -137,21 +137,21 @@ def read_rules(tree: Seq) -> list[Rule]:
 
 
 def _laid_over(base: Map, own: Map) -> Map:
-    """The keys of an earlier rule with those of this one over them."""
-    made = Map(own.spot)
+    """Return the keys of an earlier rule, replaced or extended by the keys of this one."""
+    merged = Map(own.spot)
     for source in (base, own):
         for key, value in source.items():
             if key in ("rule", "like") and source is base:
                 continue
-            if key in _MERGED and key in made and isinstance(value, Map):
+            if key in _MERGED and key in merged and isinstance(value, Map):
                 inner = Map(value.spot)
-                for part in (made[key], value):
+                for part in (merged[key], value):
                     inner.update(part)
                     inner.spots.update(part.spots)
                 value = inner
-            made[key] = value
-            made.spots[key] = source.spots[key]
-    return made
+            merged[key] = value
+            merged.spots[key] = source.spots[key]
+    return merged
 
 
 class _Reader:
@@ -162,103 +162,103 @@ class _Reader:
 
     def read(self, tree: Map, name: str, place: Place) -> Rule:
         """Return the rule; what cannot be read of it is left out, with a finding."""
-        made = Rule(name, place, tree.get("what", "message"))
-        made.head_rows, made.transpose = tree.get("head_rows", 1), tree.get("transpose", False)
-        made.also, made.origin, made.base = tree.get("also", False), tree.get("origin", 0), tree.get("base", 10)
-        made.is_unit_wide = tree.get("width") == "unit"
-        made.group_rows = tree.get("group_rows", False)
-        self.conditions(made, tree["tables"])
-        self.message(made, tree.get("message") or Map(place))
+        rule = Rule(name, place, tree.get("what", "message"))
+        rule.head_rows, rule.transpose = tree.get("head_rows", 1), tree.get("transpose", False)
+        rule.also, rule.origin, rule.base = tree.get("also", False), tree.get("origin", 0), tree.get("base", 10)
+        rule.is_unit_wide = tree.get("width") == "unit"
+        rule.group_rows = tree.get("group_rows", False)
+        self.conditions(rule, tree["tables"])
+        self.message(rule, tree.get("message") or Map(place))
         for key in ("columns", "lines"):
             entries = tree.get(key) or Map(place)
-            getattr(made, key).extend(
+            getattr(rule, key).extend(
                 Column(c, self.patterns(v, entries.at(c)), entries.key_at(c)) for c, v in entries.items()
             )
         if "melt" in tree:
-            made.melt = next(iter(self.patterns(tree["melt"], tree.at("melt"))), None)
-        made.each = self.roles(tree.get("each"))
+            rule.melt = next(iter(self.patterns(tree["melt"], tree.at("melt"))), None)
+        rule.each = self.roles(tree.get("each"))
         for role, words in (tree.get("map") or {}).items():
             self.role(role, tree["map"].key_at(role))
-            made.map[role] = {str(word).casefold(): str(meaning) for word, meaning in words.items()}
+            rule.map[role] = {str(word).casefold(): str(meaning) for word, meaning in words.items()}
         for index, entry in enumerate(tree.get("set", ())):
             where = {role: self.regex(text, entry["where"].at(role)) for role, text in entry["where"].items()}
             for role in entry["where"]:
                 self.role(role, entry["where"].key_at(role))
             given = self.roles(entry, leave_out="where")
-            made.corrections.append(Correction(where, given, tree["set"].item_at(index)))
+            rule.corrections.append(Correction(where, given, tree["set"].item_at(index)))
         for key in ("skip", "stop"):
             if key in tree:
-                setattr(made, key, self.regex(tree[key], tree.at(key)))
-        made.keep = {c: self.regex(text, tree["keep"].at(c)) for c, text in (tree.get("keep") or {}).items()}
+                setattr(rule, key, self.regex(tree[key], tree.at(key)))
+        rule.keep = {c: self.regex(text, tree["keep"].at(c)) for c, text in (tree.get("keep") or {}).items()}
         for key in ("join", "fill", "glue", "ignore", "absent"):
-            getattr(made, key).extend(str(text) for text in tree.get(key, ()))
-        self.together(made, tree)
-        self.belongs(made)
-        self.used(made, tree)
-        return made
+            getattr(rule, key).extend(str(text) for text in tree.get(key, ()))
+        self.together(rule, tree)
+        self.belongs(rule)
+        self.used(rule, tree)
+        return rule
 
-    def conditions(self, made: Rule, tree: Map) -> None:
-        made.head = str(tree.get("head", ""))
-        for title in re.split(r"\s\|\s", made.head):
+    def conditions(self, rule: Rule, tree: Map) -> None:
+        rule.head = str(tree.get("head", ""))
+        for title in re.split(r"\s\|\s", rule.head):
             if title.startswith("~"):
                 self.regex(title[1:], tree.at("head"))
         if "page" in tree:
             first, _, last = str(tree["page"]).partition("-")
-            made.pages = int(first), int(last or first)
-        made.nth = tree.get("nth")
-        made.conditions = {
+            rule.pages = int(first), int(last or first)
+        rule.nth = tree.get("nth")
+        rule.conditions = {
             key: self.regex(tree[key], tree.at(key)) for key in ("caption", "heading", "before", "sheet") if key in tree
         }
 
-    def message(self, made: Rule, tree: Map) -> None:
+    def message(self, rule: Rule, tree: Map) -> None:
         for key, value in tree.items():
             source = key.rstrip("?")
             if source in SOURCES:
-                made.sources[source] = list(self.patterns(value, tree.at(key)))
+                rule.sources[source] = list(self.patterns(value, tree.at(key)))
                 if key.endswith("?"):
-                    made.optional.add(source)
+                    rule.optional.add(source)
                 continue
-            made.literals["message" if key == "name" else key] = str(value)
-        kind = made.literals.get("kind")
+            rule.literals["message" if key == "name" else key] = str(value)
+        kind = rule.literals.get("kind")
         if kind is not None and kind not in KINDS:
             self.add(f"`{kind}` is not a kind of message", tree.at("kind"), f"write {', '.join(KINDS)}")
 
-    def belongs(self, made: Rule) -> None:
+    def belongs(self, rule: Rule) -> None:
         """Check that a table of values or bits says to which field it belongs."""
-        if made.what in ("enumeration", "lookup", "bits") and not any(
-            role in ("of", "enumeration") for role in roles_of_message(made)
+        if rule.what in ("enumeration", "lookup", "bits") and not any(
+            role in ("of", "enumeration") for role in roles_of_message(rule)
         ):
             self.add(
-                f"the rule does not say to which field the {made.what} belongs",
-                made.place,
+                f"the rule does not say to which field the {rule.what} belongs",
+                rule.place,
                 "add `message: {of: FIELD}`, or a pattern with `{of}`",
             )
 
-    def used(self, made: Rule, tree: Map) -> None:
+    def used(self, rule: Rule, tree: Map) -> None:
         """Check that rules of this kind use the roles that the rule gives."""
-        if made.what not in ROLES_OF:
+        if rule.what not in ROLES_OF:
             return
-        message = tree.get("message") or Map(made.place)
+        message = tree.get("message") or Map(rule.place)
         given = [("message" if key == "name" else key, message.at(key)) for key in message]
-        given = [(role, place) for role, place in given if role in made.literals]
-        given += [(role, tree["each"].key_at(role)) for role in made.each]
-        given += [(role, correction.place) for correction in made.corrections for role in correction.roles]
-        columns = (pattern for column in (*made.columns, *made.lines) for pattern in column.patterns)
-        sources = (pattern for patterns in made.sources.values() for pattern in patterns)
-        melt = (made.melt,) if made.melt is not None else ()
+        given = [(role, place) for role, place in given if role in rule.literals]
+        given += [(role, tree["each"].key_at(role)) for role in rule.each]
+        given += [(role, correction.place) for correction in rule.corrections for role in correction.roles]
+        columns = (pattern for column in (*rule.columns, *rule.lines) for pattern in column.patterns)
+        sources = (pattern for patterns in rule.sources.values() for pattern in patterns)
+        melt = (rule.melt,) if rule.melt is not None else ()
         given += [(role, p.place) for p in (*sources, *columns, *melt) for role in sorted(p.roles)]
         for role, place in given:
             kinds = [what for what, roles in ROLES_OF.items() if role in roles]
-            if role in ROLES and made.what not in kinds:
+            if role in ROLES and rule.what not in kinds:
                 self.add(
-                    f"a rule with `what: {made.what}` does not use the role `{role}`",
+                    f"a rule with `what: {rule.what}` does not use the role `{role}`",
                     place,
                     f"rules with `what: {'`, `'.join(kinds)}` use it; a column without a role belongs under `ignore`",
                 )
 
     def patterns(self, value: Any, place: Place) -> tuple[Pattern, ...]:
         """The patterns of a text, or of a list of them."""
-        made = []
+        compiled = []
         for index, text in enumerate(value if isinstance(value, Seq) else [value]):
             where = value.item_at(index) if isinstance(value, Seq) else place
             try:
@@ -274,8 +274,8 @@ class _Reader:
                     where,
                     "write `{end_bit}` for the bit of the last byte: `{byte}.{bit}-{last_byte}.{end_bit}`",
                 )
-            made.append(pattern)
-        return tuple(made)
+            compiled.append(pattern)
+        return tuple(compiled)
 
     def regex(self, text: Any, place: Place) -> re.Pattern[str]:
         try:
@@ -298,31 +298,31 @@ class _Reader:
             help = f"did you mean `{close}`?" if close else f"roles are {', '.join(sorted(ROLES))}"
             self.add(f"unknown role `{role}`", place, help)
 
-    def together(self, made: Rule, tree: Map) -> None:
-        """What single keys do not show."""
-        if made.what == "ignore":
+    def together(self, rule: Rule, tree: Map) -> None:
+        """Check combinations of keys."""
+        if rule.what == "ignore":
             used = [key for key in ("columns", "message", "lines", "melt", "each", "set") if key in tree]
             if used:
                 self.add(
                     f"`{used[0]}` has no effect in a rule that ignores its tables", tree.key_at(used[0]), "remove it"
                 )
             return
-        named = [c for c in (*made.columns, *made.lines) if c.key != "*" and not all(t.isdigit() for t in c.titles)]
-        if made.head in ("", "none") and named:
+        named = [c for c in (*rule.columns, *rule.lines) if c.key != "*" and not all(t.isdigit() for t in c.titles)]
+        if rule.head in ("", "none") and named:
             self.add(
                 f"`{named[0].key}` is a heading, and `tables` does not say in which row headings stand",
                 named[0].place,
                 "add `head: A | B`, or name columns by their numbers",
             )
-        if not (made.columns or made.lines or made.ignore):
-            self.add(f"the rule `{made.name}` gives no column a role", made.place, "add `columns:`")
-        if made.melt is not None and not any(column.key == "*" for column in made.columns):
+        if not (rule.columns or rule.lines or rule.ignore):
+            self.add(f"the rule `{rule.name}` gives no column a role", rule.place, "add `columns:`")
+        if rule.melt is not None and not any(column.key == "*" for column in rule.columns):
             self.add("`melt` needs the pattern of the cells", tree.key_at("melt"), 'add `"*": name` to `columns`')
-        if made.melt is None and (star := next((c for c in made.columns if c.key == "*"), None)):
+        if rule.melt is None and (star := next((c for c in rule.columns if c.key == "*"), None)):
             self.add(
                 "`*` stands for the cells of melted columns, but the rule has no `melt`", star.place, "add `melt:`"
             )
-        if made.melt is not None and made.lines:
+        if rule.melt is not None and rule.lines:
             self.add("`melt` and `lines` exclude each other", tree.key_at("lines"), "remove one of them")
 
     def add(self, message: str, place: Place, help: str) -> None:

@@ -99,7 +99,7 @@ def _agreement(wanted: list[str], row: list[str]) -> int:
 
 def choose(rules: list[Rule], tables: list[SourceTable]) -> list[Choice]:
     """Decide for each table: the first rule that fits, and rules before it that leave the table to others (`also`)."""
-    made = []
+    choices = []
     seen: Counter[str] = Counter()
     for table in tables:
         choice = Choice(table)
@@ -115,5 +115,5 @@ def choose(rules: list[Rule], tables: list[SourceTable]) -> list[Choice]:
             choice.rules.append(rule)
             if not rule.also:
                 break
-        made.append(choice)
-    return made
+        choices.append(choice)
+    return choices

@@ -14,18 +14,18 @@ from icdgen.importer.rules.rule import Rule
 def joined_parts(
     drafts: list[Draft], order: Order, is_register: bool, length: int, notes: Notes, rule: Rule
 ) -> list[Draft]:
-    """Return the fields with those of one name and consecutive parts put together (``CB5`` to ``CB1``, ``D15`` to ``D0``).
+    """Join parts of one name with consecutive bit numbers to fields (``CB5`` to ``CB1``, ``D15`` to ``D0``).
 
     Each field gets the number of its first bit in the node's order, or an order of its own if it is no run of bits there.
     """
-    made: list[Draft] = []
+    fields: list[Draft] = []
     pieces: dict[str, list[Draft]] = {}
     for draft in drafts:
         if draft.part is None:
-            made.append(draft)
+            fields.append(draft)
             continue
         if draft.name not in pieces:
-            made.append(draft)
+            fields.append(draft)
         pieces.setdefault(draft.name, []).append(draft)
     for name, split in pieces.items():
         split.sort(key=lambda piece: piece.part or (0, 0))
@@ -39,9 +39,9 @@ def joined_parts(
                 "a part is missing, or two have the same number: compare with the table",
                 rule.place,
             )
-            made = [draft for draft in made if draft.name != name or draft.part is None]
-    kept = []
-    for draft in made:
+            fields = [draft for draft in fields if draft.name != name or draft.part is None]
+    placed = []
+    for draft in fields:
         parts = pieces[draft.name] if draft.part is not None else [draft]
         bits = [bit for piece in parts for bit in _bits(piece, order, is_register, length)]
         if draft.count and draft.frame_bits:
@@ -54,7 +54,7 @@ def joined_parts(
             )
             continue
         if draft.count or draft.size == 0:
-            kept.append(draft)  # elements stand one after the other: their first bit is as printed
+            placed.append(draft)  # elements stand one after the other: their first bit is as printed
             continue
         run = bit_order.run_of(bits, order)
         if run is None:
@@ -68,8 +68,8 @@ def joined_parts(
             continue
         draft.at, draft.bits = run[0], len(bits)
         draft.order = run[1] if run[1] != order else None
-        kept.append(draft)
-    return sorted(kept, key=lambda draft: draft.at)
+        placed.append(draft)
+    return sorted(placed, key=lambda draft: draft.at)
 
 
 def _bits(piece: Draft, order: Order, is_register: bool, length: int) -> list[Bit]:

@@ -1,4 +1,4 @@
-"""A local page on which a person writes the rules of a profile: `icdgen import FILE --workbench`.
+"""Local page for writing the rules of a profile: `icdgen import FILE --workbench`.
 
 `session` holds the document and the profile and answers questions about them; `rule_text` edits the profile as text, so that
 comments stay; `server` serves the page (`page.html`, `page.css`, `page.js`) and the answers as JSON.

@@ -120,7 +120,7 @@ def rules_of(text: str) -> list[dict[str, Any]]:
 
 
 def parse_rule(text: str) -> dict[str, Any]:
-    """Return the rule that a person wrote as YAML, with or without the dash of a list. Raises `Findings`."""
+    """Parse a rule in YAML, with or without the dash of a list. Raises `Findings`."""
     stripped = re.sub(r"\A(\s*)-(?= )", r"\1 ", text)
     tree = source.parse(stripped.encode("utf-8"), "rule")
     return {key: _plain(value) for key, value in tree.items()}

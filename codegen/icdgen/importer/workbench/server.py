@@ -79,8 +79,8 @@ def handler(session: Session) -> type[BaseHTTPRequestHandler]:
                 done = action(json.loads(self.rfile.read(int(length)) or b"null"))
                 self.send_json({"done": done, "state": session.state()})
             except Findings as error:
-                found = [{"message": f.message, "help": f.help, "line": f.place.line} for f in error.findings]
-                self.send_json({"refused": found})
+                refused = [{"message": f.message, "help": f.help, "line": f.place.line} for f in error.findings]
+                self.send_json({"refused": refused})
             except UserError as error:
                 self.send_json({"refused": [{"message": str(error), "help": error.help, "line": None}]})
             except (KeyError, TypeError, ValueError, AttributeError) as error:

@@ -1,4 +1,4 @@
-"""What a person works on in the workbench: a document, its tables, and the profile as text."""
+"""State of the workbench: a document, its tables, and the profile as text."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Session:
         self.apply()
 
     def apply(self) -> None:
-        """Read the tables anew; a profile that is wrong keeps the last result, and its findings are shown."""
+        """Apply the rules to all tables. Findings of an invalid profile are shown with the last result."""
         try:
             words = profile.of_tree(source.parse(self.text.encode("utf-8"), self.path.name))
         except Findings as error:
@@ -112,7 +112,7 @@ class Session:
         }  # fmt: skip
 
     def parts(self, table: SourceTable) -> list[Part]:
-        """What rules read from a table."""
+        """Parts that rules read from a table."""
         if self.result is None:
             return []
         return [part for part in self.result.interpretation.parts if part.table.number == table.number]
@@ -141,13 +141,13 @@ class Session:
         if self.result is not None:
             for choice in self.result.interpretation.choices:
                 if choice.table.number == table.number and choice.rules:
-                    found = heading_rows(choice.rules[-1], texts_of(table, choice.rules[-1].transpose))
-                    if found is not None and not choice.rules[-1].transpose:
-                        return found.start if found else -1
+                    head = heading_rows(choice.rules[-1], texts_of(table, choice.rules[-1].transpose))
+                    if head is not None and not choice.rules[-1].transpose:
+                        return head.start if head else -1
         return next((i for i, row in enumerate(table.rows) if sum(bool(c.text.strip()) for c in row.cells) > 1), 0)
 
     def picture(self, number: int) -> bytes:
-        """The picture of a page as PNG. Raises `KeyError` if there is none."""
+        """Return the picture of a page as PNG. Raises `KeyError` if the document has no such page."""
         with self.lock:
             if number not in self.pictures:
                 self.pictures[number] = _render(Path(self.document.file), number)
@@ -201,7 +201,7 @@ class Session:
                 self.apply()
 
     def save(self) -> dict[str, Any]:
-        """Write the profile and the ICDs; return what was written and what `icdgen check` says of it. Raises `UserError`."""
+        """Write the profile and the ICDs; return the files and the findings of `icdgen check`. Raises `UserError`."""
         from icdgen.generation.write import replace
 
         with self.lock:
