@@ -71,7 +71,7 @@ def test_what_is_described_for_the_rules_about_names_is_described_for_code_too(t
     icd = status(VOLTAGE, "at: 8, bits: 16, name: Current, type: uint", length=3)
     accepted = ACCEPTED.replace("{message: Status}", "{message: Status, field: Current}").replace("ICD024", "ICD021")
     model = loaded(tmp_path, icd + accepted).icd
-    assert any(known.icd is model for known in nodes._kept)
+    assert any(description.icd is model for description in nodes._recent)
 
 
 def test_findings_stand_in_the_order_of_the_file(tmp_path):
