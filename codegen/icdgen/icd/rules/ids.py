@@ -31,19 +31,20 @@ class Use(NamedTuple):
     message: Message | None = None  # None for an entry of `missing`
 
 
-def _message_ids(node: Node) -> Iterator[Use]:
-    """Yield the ids of the messages of a node."""
+def _uses(node: Node) -> Iterator[Use]:
+    """Yield the ids of the messages of a node, and of its entries of `missing`."""
     for message in node.messages:
         for key, direction in KEYS_OF_IDS[message.kind]:
             yield Use(node, direction, wire_ids.number(message.source[key]), message.source, key, message)
-
-
-def _uses(node: Node) -> Iterator[Use]:
-    """Yield the ids of the messages of a node, and of its entries of `missing`."""
-    yield from _message_ids(node)
     for item in mappings(node.source.get("missing")):
         if item.get("kind") in (TELECOMMAND, TELEMETRY) and _is_id(item.get("id")):
             yield Use(node, item["kind"], wire_ids.number(item["id"]), item, "id")
+
+
+def _uses_in_scope(ctx: Context, node: Node) -> Iterator[Use]:
+    """Yield the uses of ids in a node and its included nodes."""
+    for owner in ctx.scope(node):
+        yield from _uses(owner)
 
 
 def _is_id(value: object) -> bool:
@@ -60,7 +61,7 @@ def messages_of_one_id_are_distinguishable(ctx: Context) -> Iterator[Fault]:
         # On a link other than `stream`, only the id identifies a message.
         is_linked = ctx.is_linked(node)
         seen: dict[tuple[str, int], list[Use]] = {}
-        for use in (u for n in ctx.scope(node) for u in _uses(n)):
+        for use in _uses_in_scope(ctx, node):
             before = seen.setdefault((use.direction, use.id), [])
             for first in before:
                 if not is_linked and _are_distinguishable(first, use):
@@ -80,7 +81,7 @@ def shared_ids_are_confirmed(ctx: Context) -> Iterator[Fault]:
     """
     for node in filter(lambda node: not ctx.is_linked(node), ctx.icd.nodes):
         seen: dict[tuple[str, int], Use] = {}
-        for use in (u for n in ctx.scope(node) for u in _uses(n) if u.message is not None):
+        for use in (use for use in _uses_in_scope(ctx, node) if use.message is not None):
             first = seen.setdefault((use.direction, use.id), use)
             if (
                 first is use
@@ -111,7 +112,7 @@ def confirmed_ids_are_shared(ctx: Context) -> Iterator[Fault]:
     shared: set[int] = set()
     for node in ctx.icd.nodes:
         users: dict[tuple[str, int], list[Use]] = {}
-        for use in (u for n in ctx.scope(node) for u in _uses(n)):
+        for use in _uses_in_scope(ctx, node):
             users.setdefault((use.direction, use.id), []).append(use)
         shared.update(id(use.source) for uses in users.values() if len(uses) > 1 for use in uses)
     for message, _ in ctx.messages:
@@ -155,7 +156,7 @@ def _first_use(use: Use) -> Related:
 def ids_are_in_range(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         ranges = _ranges(ctx, node)
-        for use in (u for n in ctx.scope(node) for u in _uses(n)):
+        for use in _uses_in_scope(ctx, node):
             first, last = ranges.get(use.direction, (0, (1 << node.id_bits) - 1))
             if not first <= use.id <= last and _has_its_bytes(use):
                 help = _remedy(ctx, node, use, ranges)
@@ -221,7 +222,7 @@ def uart_ids_determine_the_direction(ctx: Context) -> Iterator[Fault]:
         # ICD056 and ICD103 check declared ranges.
         if ctx.fact(node, "uart", "framing") is None or len(declared) == 2:
             continue
-        uses = [use for owner in ctx.scope(node) for use in _message_ids(owner)]
+        uses = [use for use in _uses_in_scope(ctx, node) if use.message is not None]
         ids = [use.id for use in uses if use.direction == TELEMETRY]
         first, last = declared.get(TELEMETRY, (min(ids, default=0), max(ids, default=-1)))
         for use in uses:
