@@ -23,14 +23,14 @@
 #include "bootloader/link.h"
 #include "bootloader/client.h"
 
-/** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
+/** First 16 hex digits of the SHA-256 of the ICD, its errata and the ICDs that it includes. */
 #define BOOTLOADER_ICD_DIGEST "d2e4997b46248f80"
 /** Type that the node reports. */
 #define BOOTLOADER_NODE_TYPE 110u
 /** Version of the interface that it reports. */
 #define BOOTLOADER_INTERFACE_VERSION 3u
 
-/** Any telemetry of Bootloader: the member of `as` that goes with the id. */
+/** Any telemetry message of Bootloader. `id` determines which member of `as` is valid. */
 typedef struct {
     uint8_t id;
     union {
@@ -67,7 +67,7 @@ typedef struct {
     } as;
 } bootloader_telemetry_t;
 
-/** Name as printed in the manual; NULL for an unknown id. */
+/** Return the name as printed in the manual; NULL for an unknown id. */
 static inline const char *bootloader_telemetry_name(uint8_t id)
 {
     switch (id) {
@@ -136,7 +136,7 @@ static inline const char *bootloader_telemetry_name(uint8_t id)
     }
 }
 
-/** Bytes of a frame, without the id; ICD_ERROR_UNKNOWN_ID, and `length` unchanged, for an unknown id. */
+/** Get the length of a frame in bytes, without the id. Return ICD_ERROR_UNKNOWN_ID for an unknown id. */
 static inline icd_status_t bootloader_telemetry_length(uint8_t id, size_t *length)
 {
     switch (id) {
@@ -235,7 +235,7 @@ static inline icd_status_t bootloader_telemetry_length(uint8_t id, size_t *lengt
     }
 }
 
-/** Decodes a frame by its id. The message is valid only if the result is ICD_OK. */
+/** Decode a frame by its id. The message is valid only if the result is ICD_OK. */
 static inline icd_status_t bootloader_telemetry_decode(
     bootloader_telemetry_t *ICDGEN_RESTRICT message,
     uint8_t id,
@@ -318,7 +318,7 @@ static inline icd_status_t bootloader_telemetry_decode(
     }
 }
 
-/** Writes the frame of the message that `id` tells. bootloader_telemetry_length() gives its length. */
+/** Encode the message that `id` selects. bootloader_telemetry_length() returns its length in bytes. */
 static inline icd_status_t bootloader_telemetry_encode(
     const bootloader_telemetry_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -402,7 +402,7 @@ static inline icd_status_t bootloader_telemetry_encode(
     }
 }
 
-/** Any telecommand of Bootloader: the member of `as` that goes with the id. */
+/** Any telecommand message of Bootloader. `id` determines which member of `as` is valid. */
 typedef struct {
     uint8_t id;
     union {
@@ -440,7 +440,7 @@ typedef struct {
     } as;
 } bootloader_telecommand_t;
 
-/** Name as printed in the manual; NULL for an unknown id. */
+/** Return the name as printed in the manual; NULL for an unknown id. */
 static inline const char *bootloader_telecommand_name(uint8_t id)
 {
     switch (id) {
@@ -511,7 +511,7 @@ static inline const char *bootloader_telecommand_name(uint8_t id)
     }
 }
 
-/** Bytes of a frame, without the id; ICD_ERROR_UNKNOWN_ID, and `length` unchanged, for an unknown id. */
+/** Get the length of a frame in bytes, without the id. Return ICD_ERROR_UNKNOWN_ID for an unknown id. */
 static inline icd_status_t bootloader_telecommand_length(uint8_t id, size_t *length)
 {
     switch (id) {
@@ -613,7 +613,7 @@ static inline icd_status_t bootloader_telecommand_length(uint8_t id, size_t *len
     }
 }
 
-/** Decodes a frame by its id. The message is valid only if the result is ICD_OK. */
+/** Decode a frame by its id. The message is valid only if the result is ICD_OK. */
 static inline icd_status_t bootloader_telecommand_decode(
     bootloader_telecommand_t *ICDGEN_RESTRICT message,
     uint8_t id,
@@ -692,7 +692,7 @@ static inline icd_status_t bootloader_telecommand_decode(
     }
 }
 
-/** Writes the frame of the message that `id` tells. bootloader_telecommand_length() gives its length. */
+/** Encode the message that `id` selects. bootloader_telecommand_length() returns its length in bytes. */
 static inline icd_status_t bootloader_telecommand_encode(
     const bootloader_telecommand_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

@@ -55,10 +55,10 @@
 #include "common/link.h"
 #include "common/client.h"
 
-/** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
+/** First 16 hex digits of the SHA-256 of the ICD, its errata and the ICDs that it includes. */
 #define COMMON_ICD_DIGEST "7bb2ab51d9f372bf"
 
-/** Any telemetry of Common messages: the member of `as` that goes with the id. */
+/** Any telemetry message of Common messages. `id` determines which member of `as` is valid. */
 typedef struct {
     uint8_t id;
     union {
@@ -92,7 +92,7 @@ typedef struct {
     } as;
 } common_telemetry_t;
 
-/** Name as printed in the manual; NULL for an unknown id. */
+/** Return the name as printed in the manual; NULL for an unknown id. */
 static inline const char *common_telemetry_name(uint8_t id)
 {
     switch (id) {
@@ -155,7 +155,7 @@ static inline const char *common_telemetry_name(uint8_t id)
     }
 }
 
-/** Bytes of a frame, without the id; ICD_ERROR_UNKNOWN_ID, and `length` unchanged, for an unknown id. */
+/** Get the length of a frame in bytes, without the id. Return ICD_ERROR_UNKNOWN_ID for an unknown id. */
 static inline icd_status_t common_telemetry_length(uint8_t id, size_t *length)
 {
     switch (id) {
@@ -245,7 +245,7 @@ static inline icd_status_t common_telemetry_length(uint8_t id, size_t *length)
     }
 }
 
-/** Decodes a frame by its id. The message is valid only if the result is ICD_OK. */
+/** Decode a frame by its id. The message is valid only if the result is ICD_OK. */
 static inline icd_status_t common_telemetry_decode(
     common_telemetry_t *ICDGEN_RESTRICT message,
     uint8_t id,
@@ -319,7 +319,7 @@ static inline icd_status_t common_telemetry_decode(
     }
 }
 
-/** Writes the frame of the message that `id` tells. common_telemetry_length() gives its length. */
+/** Encode the message that `id` selects. common_telemetry_length() returns its length in bytes. */
 static inline icd_status_t common_telemetry_encode(
     const common_telemetry_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -394,7 +394,7 @@ static inline icd_status_t common_telemetry_encode(
     }
 }
 
-/** Any telecommand of Common messages: the member of `as` that goes with the id. */
+/** Any telecommand message of Common messages. `id` determines which member of `as` is valid. */
 typedef struct {
     uint8_t id;
     union {
@@ -427,7 +427,7 @@ typedef struct {
     } as;
 } common_telecommand_t;
 
-/** Name as printed in the manual; NULL for an unknown id. */
+/** Return the name as printed in the manual; NULL for an unknown id. */
 static inline const char *common_telecommand_name(uint8_t id)
 {
     switch (id) {
@@ -488,7 +488,7 @@ static inline const char *common_telecommand_name(uint8_t id)
     }
 }
 
-/** Bytes of a frame, without the id; ICD_ERROR_UNKNOWN_ID, and `length` unchanged, for an unknown id. */
+/** Get the length of a frame in bytes, without the id. Return ICD_ERROR_UNKNOWN_ID for an unknown id. */
 static inline icd_status_t common_telecommand_length(uint8_t id, size_t *length)
 {
     switch (id) {
@@ -575,7 +575,7 @@ static inline icd_status_t common_telecommand_length(uint8_t id, size_t *length)
     }
 }
 
-/** Decodes a frame by its id. The message is valid only if the result is ICD_OK. */
+/** Decode a frame by its id. The message is valid only if the result is ICD_OK. */
 static inline icd_status_t common_telecommand_decode(
     common_telecommand_t *ICDGEN_RESTRICT message,
     uint8_t id,
@@ -644,7 +644,7 @@ static inline icd_status_t common_telecommand_decode(
     }
 }
 
-/** Writes the frame of the message that `id` tells. common_telecommand_length() gives its length. */
+/** Encode the message that `id` selects. common_telecommand_length() returns its length in bytes. */
 static inline icd_status_t common_telecommand_encode(
     const common_telecommand_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

@@ -130,14 +130,14 @@
 #include "cubeacp/link.h"
 #include "cubeacp/client.h"
 
-/** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
+/** First 16 hex digits of the SHA-256 of the ICD, its errata and the ICDs that it includes. */
 #define CUBEACP_ICD_DIGEST "968abd943efa63cb"
 /** Type that the node reports. */
 #define CUBEACP_NODE_TYPE 10u
 /** Version of the interface that it reports. */
 #define CUBEACP_INTERFACE_VERSION 7u
 
-/** Any telemetry of CubeACP: the member of `as` that goes with the id. */
+/** Any telemetry message of CubeACP. `id` determines which member of `as` is valid. */
 typedef struct {
     uint8_t id;
     union {
@@ -270,7 +270,7 @@ typedef struct {
     } as;
 } cubeacp_telemetry_t;
 
-/** Name as printed in the manual; NULL for an unknown id. */
+/** Return the name as printed in the manual; NULL for an unknown id. */
 static inline const char *cubeacp_telemetry_name(uint8_t id)
 {
     switch (id) {
@@ -531,7 +531,7 @@ static inline const char *cubeacp_telemetry_name(uint8_t id)
     }
 }
 
-/** Bytes of a frame, without the id; ICD_ERROR_UNKNOWN_ID, and `length` unchanged, for an unknown id. */
+/** Get the length of a frame in bytes, without the id. Return ICD_ERROR_UNKNOWN_ID for an unknown id. */
 static inline icd_status_t cubeacp_telemetry_length(uint8_t id, size_t *length)
 {
     switch (id) {
@@ -918,7 +918,7 @@ static inline icd_status_t cubeacp_telemetry_length(uint8_t id, size_t *length)
     }
 }
 
-/** Decodes a frame by its id. The message is valid only if the result is ICD_OK. */
+/** Decode a frame by its id. The message is valid only if the result is ICD_OK. */
 static inline icd_status_t cubeacp_telemetry_decode(
     cubeacp_telemetry_t *ICDGEN_RESTRICT message,
     uint8_t id,
@@ -1226,7 +1226,7 @@ static inline icd_status_t cubeacp_telemetry_decode(
     }
 }
 
-/** Writes the frame of the message that `id` tells. cubeacp_telemetry_length() gives its length. */
+/** Encode the message that `id` selects. cubeacp_telemetry_length() returns its length in bytes. */
 static inline icd_status_t cubeacp_telemetry_encode(
     const cubeacp_telemetry_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -1538,7 +1538,7 @@ static inline icd_status_t cubeacp_telemetry_encode(
     }
 }
 
-/** Any telecommand of CubeACP: the member of `as` that goes with the id. */
+/** Any telecommand message of CubeACP. `id` determines which member of `as` is valid. */
 typedef struct {
     uint8_t id;
     union {
@@ -1613,7 +1613,7 @@ typedef struct {
     } as;
 } cubeacp_telecommand_t;
 
-/** Name as printed in the manual; NULL for an unknown id. */
+/** Return the name as printed in the manual; NULL for an unknown id. */
 static inline const char *cubeacp_telecommand_name(uint8_t id)
 {
     switch (id) {
@@ -1758,7 +1758,7 @@ static inline const char *cubeacp_telecommand_name(uint8_t id)
     }
 }
 
-/** Bytes of a frame, without the id; ICD_ERROR_UNKNOWN_ID, and `length` unchanged, for an unknown id. */
+/** Get the length of a frame in bytes, without the id. Return ICD_ERROR_UNKNOWN_ID for an unknown id. */
 static inline icd_status_t cubeacp_telecommand_length(uint8_t id, size_t *length)
 {
     switch (id) {
@@ -1971,7 +1971,7 @@ static inline icd_status_t cubeacp_telecommand_length(uint8_t id, size_t *length
     }
 }
 
-/** Decodes a frame by its id. The message is valid only if the result is ICD_OK. */
+/** Decode a frame by its id. The message is valid only if the result is ICD_OK. */
 static inline icd_status_t cubeacp_telecommand_decode(
     cubeacp_telecommand_t *ICDGEN_RESTRICT message,
     uint8_t id,
@@ -2154,7 +2154,7 @@ static inline icd_status_t cubeacp_telecommand_decode(
     }
 }
 
-/** Writes the frame of the message that `id` tells. cubeacp_telecommand_length() gives its length. */
+/** Encode the message that `id` selects. cubeacp_telecommand_length() returns its length in bytes. */
 static inline icd_status_t cubeacp_telecommand_encode(
     const cubeacp_telecommand_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

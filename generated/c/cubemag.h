@@ -16,10 +16,10 @@
 #include "cubemag/redundant_magnetometer_measurement.h"
 #include "cubemag/primary_magnetometer_measurement.h"
 
-/** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
+/** First 16 hex digits of the SHA-256 of the ICD, its errata and the ICDs that it includes. */
 #define CUBEMAG_ICD_DIGEST "ee8b1fc5a231b184"
 
-/** Any telemetry of CubeMag: the member of `as` that goes with the id. */
+/** Any telemetry message of CubeMag. `id` determines which member of `as` is valid. */
 typedef struct {
     uint8_t id;
     union {
@@ -30,7 +30,7 @@ typedef struct {
     } as;
 } cubemag_telemetry_t;
 
-/** Name as printed in the manual; NULL for an unknown id. */
+/** Return the name as printed in the manual; NULL for an unknown id. */
 static inline const char *cubemag_telemetry_name(uint8_t id)
 {
     switch (id) {
@@ -47,7 +47,7 @@ static inline const char *cubemag_telemetry_name(uint8_t id)
     }
 }
 
-/** Bytes of a frame, without the id; ICD_ERROR_UNKNOWN_ID, and `length` unchanged, for an unknown id. */
+/** Get the length of a frame in bytes, without the id. Return ICD_ERROR_UNKNOWN_ID for an unknown id. */
 static inline icd_status_t cubemag_telemetry_length(uint8_t id, size_t *length)
 {
     switch (id) {
@@ -68,7 +68,7 @@ static inline icd_status_t cubemag_telemetry_length(uint8_t id, size_t *length)
     }
 }
 
-/** Decodes a frame by its id. The message is valid only if the result is ICD_OK. */
+/** Decode a frame by its id. The message is valid only if the result is ICD_OK. */
 static inline icd_status_t cubemag_telemetry_decode(
     cubemag_telemetry_t *ICDGEN_RESTRICT message,
     uint8_t id,
@@ -96,7 +96,7 @@ static inline icd_status_t cubemag_telemetry_decode(
     }
 }
 
-/** Writes the frame of the message that `id` tells. cubemag_telemetry_length() gives its length. */
+/** Encode the message that `id` selects. cubemag_telemetry_length() returns its length in bytes. */
 static inline icd_status_t cubemag_telemetry_encode(
     const cubemag_telemetry_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

@@ -15,10 +15,10 @@
 #include "cubewheel/wheel_reference_speed.h"
 #include "cubewheel/motor_power.h"
 
-/** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
+/** First 16 hex digits of the SHA-256 of the ICD, its errata and the ICDs that it includes. */
 #define CUBEWHEEL_ICD_DIGEST "849292d8783b4481"
 
-/** Any telemetry of CubeWheel: the member of `as` that goes with the id. */
+/** Any telemetry message of CubeWheel. `id` determines which member of `as` is valid. */
 typedef struct {
     uint8_t id;
     union {
@@ -28,7 +28,7 @@ typedef struct {
     } as;
 } cubewheel_telemetry_t;
 
-/** Name as printed in the manual; NULL for an unknown id. */
+/** Return the name as printed in the manual; NULL for an unknown id. */
 static inline const char *cubewheel_telemetry_name(uint8_t id)
 {
     switch (id) {
@@ -43,7 +43,7 @@ static inline const char *cubewheel_telemetry_name(uint8_t id)
     }
 }
 
-/** Bytes of a frame, without the id; ICD_ERROR_UNKNOWN_ID, and `length` unchanged, for an unknown id. */
+/** Get the length of a frame in bytes, without the id. Return ICD_ERROR_UNKNOWN_ID for an unknown id. */
 static inline icd_status_t cubewheel_telemetry_length(uint8_t id, size_t *length)
 {
     switch (id) {
@@ -61,7 +61,7 @@ static inline icd_status_t cubewheel_telemetry_length(uint8_t id, size_t *length
     }
 }
 
-/** Decodes a frame by its id. The message is valid only if the result is ICD_OK. */
+/** Decode a frame by its id. The message is valid only if the result is ICD_OK. */
 static inline icd_status_t cubewheel_telemetry_decode(
     cubewheel_telemetry_t *ICDGEN_RESTRICT message,
     uint8_t id,
@@ -81,7 +81,7 @@ static inline icd_status_t cubewheel_telemetry_decode(
     }
 }
 
-/** Writes the frame of the message that `id` tells. cubewheel_telemetry_length() gives its length. */
+/** Encode the message that `id` selects. cubewheel_telemetry_length() returns its length in bytes. */
 static inline icd_status_t cubewheel_telemetry_encode(
     const cubewheel_telemetry_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

@@ -4,11 +4,14 @@
 
 /**
  * @file
- * What all generated messages share. Users need only icd_status_t; everything else is for the generated code.
+ * Common part of all generated messages. Applications need only icd_status_t; everything else is used by the
+ * generated code.
  *
- * ICDGEN_NO_DOUBLE  define it to leave out everything that needs floating-point arithmetic. Floating-point fields are
- *                   still there, moved as bits.
- * ICDGEN_PORTABLE   define it to use nothing but C: no byte order, word access or built-in of the compiler is assumed.
+ * Macros that may be defined before this header is included:
+ *
+ * ICDGEN_NO_DOUBLE  Leave out everything that needs floating-point arithmetic. Floating-point fields remain and are
+ *                   copied as bits.
+ * ICDGEN_PORTABLE   Use standard C only. Nothing is assumed about byte order, unaligned access or compiler built-ins.
  */
 
 #include <stdbool.h>
@@ -16,20 +19,20 @@
 #include <stdint.h>
 #include <string.h>
 
-/** What became of a call. */
+/** Result of a function. ICD_OK is 0; all other values are errors. */
 typedef enum {
     ICD_OK = 0,
-    /** The buffer does not have the length of the message; for encoding: it is smaller. */
+    /** Length mismatch: data of the wrong length, or an output buffer that is too small. */
     ICD_ERROR_LENGTH = 1,
-    /** A value does not fit its field, or is not finite. */
+    /** Value out of range of its field, or not finite. */
     ICD_ERROR_RANGE = 2,
-    /** The node has no message of that id. */
+    /** The ICD has no message with this id. */
     ICD_ERROR_UNKNOWN_ID = 3,
-    /** On the wire: the ICD does not describe this part of the protocol. */
+    /** Wire layer only: the ICD does not describe this part of the protocol. */
     ICD_ERROR_UNSUPPORTED = 4,
-    /** On the wire: the checksum is not that of the data. */
+    /** Wire layer only: checksum mismatch. */
     ICD_ERROR_CHECKSUM = 5,
-    /** On the wire: a request is going on, another one would overrun the node. */
+    /** Wire layer only: another request is in progress. */
     ICD_ERROR_BUSY = 6
 } icd_status_t;
 
@@ -63,8 +66,8 @@ typedef enum {
 #define ICDGEN_I64(value) ICDGEN_CAST(int64_t, value)
 
 /*
- * Words are loaded and stored as they lie in memory where the processor can do that at any address, and swapped if its
- * byte order is the other one; elsewhere they are put together byte by byte.
+ * Words are loaded and stored directly if the processor supports unaligned access, and swapped if its byte order
+ * differs. On other processors they are assembled byte by byte.
  */
 #if !defined(ICDGEN_PORTABLE) && defined(__GNUC__) && defined(__BYTE_ORDER__) &&                                       \
     (defined(__x86_64__) || defined(__i386__) || defined(__aarch64__) || defined(__ARM_FEATURE_UNALIGNED) ||           \
@@ -230,7 +233,7 @@ ICDGEN_INLINE void icdgen_store_u64be(uint8_t *bytes, uint64_t value)
 #endif
 }
 
-/* The two's complement number that the bits stand for. */
+/* Return the two's complement number with these bits. */
 ICDGEN_INLINE int8_t icdgen_i8(uint8_t bits)
 {
     int8_t value;
@@ -259,7 +262,7 @@ ICDGEN_INLINE int64_t icdgen_i64(uint64_t bits)
     return value;
 }
 
-/* The same for fewer bits than the type has; `sign` is the highest of them. */
+/* Sign-extend a number that has fewer bits than its type. `sign` is the mask of its highest bit. */
 ICDGEN_INLINE int32_t icdgen_extend32(uint32_t bits, uint32_t sign)
 {
     return ICDGEN_I32(bits ^ sign) - ICDGEN_I32(sign);
@@ -270,7 +273,7 @@ ICDGEN_INLINE int64_t icdgen_extend64(uint64_t bits, uint64_t sign)
     return ICDGEN_I64(bits ^ sign) - ICDGEN_I64(sign);
 }
 
-/* Floating-point fields are moved as bits, so that every NaN keeps its payload. */
+/* Floating-point fields are copied as bits, so that every NaN keeps its payload. */
 ICDGEN_INLINE void icdgen_set_f32(float *value, uint32_t bits)
 {
     (void)memcpy(value, &bits, sizeof bits);
@@ -295,7 +298,10 @@ ICDGEN_INLINE uint64_t icdgen_bits_f64(const double *value)
     return bits;
 }
 
-/** The float of these bits: special values that are no numbers are made so, for not every target has names for them. */
+/**
+ * Return the float with these bits. Special values such as NaN are defined this way because NAN and INFINITY are
+ * optional in C.
+ */
 static inline float icd_f32_of(uint32_t bits)
 {
     float value;
@@ -303,7 +309,7 @@ static inline float icd_f32_of(uint32_t bits)
     return value;
 }
 
-/** The double of these bits. */
+/** Return the double with these bits. */
 static inline double icd_f64_of(uint64_t bits)
 {
     double value;
@@ -311,7 +317,9 @@ static inline double icd_f64_of(uint64_t bits)
     return value;
 }
 
-/** Whether a float is a special value, which no comparison says of NaN: all NaNs are the same here, and both zeros. */
+/**
+ * Return whether a float equals a special value. Unlike with `==`, any NaN equals any other NaN. Both zeros are equal.
+ */
 static inline bool icd_is_special_f32(float value, float special)
 {
     const uint32_t infinity = UINT32_C(0x7F800000);
@@ -322,7 +330,9 @@ static inline bool icd_is_special_f32(float value, float special)
     return (one == other) || ((most | others) == 0u) || ((most > infinity) && (others > infinity));
 }
 
-/** Whether a double is a special value, which no comparison says of NaN: all NaNs are the same here, and both zeros. */
+/**
+ * Return whether a double equals a special value. Unlike with `==`, any NaN equals any other NaN. Both zeros are equal.
+ */
 static inline bool icd_is_special_f64(double value, double special)
 {
     const uint64_t infinity = UINT64_C(0x7FF0000000000000);
@@ -334,9 +344,9 @@ static inline bool icd_is_special_f64(double value, double special)
 }
 
 /*
- * Four or eight neighbouring bools of a struct that are neighbouring bits of a byte, from bit 0 up (FALLING: down to
- * bit 0). Where bools are bytes, one multiplication moves all of them: it puts a copy of the bits over each byte of a
- * word, shifted so that each copy has another bit where the byte's bit 0 is. The way back is the same in reverse.
+ * Copy four or eight adjacent bools of a struct from or to adjacent bits of a byte, from bit 0 up (FALLING: down to bit
+ * 0). If a bool is one byte, a single multiplication copies all of them: it places a shifted copy of the bits over each
+ * byte of a word, so that bit 0 of each byte is a different bit. The inverse uses the same trick in reverse.
  */
 #if ICDGEN_WORDS
 #define ICDGEN_FLAGS_ARE_BYTES(type, first, last, count)                                                               \
@@ -474,8 +484,8 @@ ICDGEN_INLINE int icdgen_join_8(const void *message, size_t offset, bool falling
                ((message)->e << 3) | ((message)->f << 2) | ((message)->g << 1) | (message)->h))
 
 /*
- * A row of neighbouring members of one size, from the first to the last named: they are words in the buffer, one after
- * the other, and are moved as one where the machine has their byte order.
+ * A row of adjacent struct members of one size, from the first to the last named member. They are consecutive words in
+ * the buffer and are copied at once if the machine has the same byte order.
  */
 ICDGEN_INLINE bool icdgen_is_little(void)
 {
@@ -514,7 +524,7 @@ ICDGEN_INLINE void icdgen_write_row(
     icdgen_copy(buffer, ICDGEN_CAST(const uint8_t *, message) + offset, length, size, little);
 }
 
-/* The bytes of a row; does not compile if there is anything between its members. */
+/* Size of a row in bytes. Compilation fails if there is padding between its members. */
 #define ICDGEN_ROW(type, size, count, first, last)                                                                     \
     (sizeof(char[offsetof(type, last) - offsetof(type, first) == ((count) - 1u) * (size) ? 1 : -1]) * (count) * (size))
 
@@ -536,7 +546,7 @@ ICDGEN_INLINE void icdgen_write_row(
         message, offsetof(type, first), buffer, ICDGEN_ROW(type, sizeof((message)->first), count, first, last),        \
         sizeof((message)->first), false)
 
-/* The nearest whole number to a quotient, ties to even; the divisor is above 0. */
+/* Return the integer nearest to a quotient, ties to even. The divisor is positive. */
 static inline int32_t icdgen_nearest32(int32_t value, int32_t divisor)
 {
     int32_t quotient = value / divisor;
@@ -564,9 +574,9 @@ static inline int64_t icdgen_nearest64(int64_t value, int64_t divisor)
 #ifndef ICDGEN_NO_DOUBLE
 
 /*
- * Physical values: (raw * factor + offset) / divisor, where factor and divisor have up to 33 bits and divisor is above
- * 0. Everything below is whole numbers of 128 bits and the bits of a double, so neither the processor's rounding nor
- * the compiler's freedom with floating-point arithmetic can change a result.
+ * Physical values: (raw * factor + offset) / divisor. Factor and divisor have up to 33 bits; the divisor is positive.
+ * The computation uses 128-bit integers and the bits of a double, so that neither the rounding mode of the processor
+ * nor floating-point optimizations of the compiler change a result.
  */
 typedef struct {
     uint64_t high;
@@ -608,7 +618,7 @@ static inline icdgen_wide_t icdgen_sum(icdgen_wide_t left, uint64_t right, bool 
     return sum;
 }
 
-/* Divides the magnitude; returns what is left over. */
+/* Divide the magnitude and return the remainder. */
 static inline uint64_t icdgen_divide(icdgen_wide_t *value, uint64_t divisor)
 {
     uint64_t rest = 0;
@@ -629,7 +639,7 @@ static inline uint64_t icdgen_divide(icdgen_wide_t *value, uint64_t divisor)
     return rest;
 }
 
-/* The correctly rounded double of a quotient. */
+/* Return the quotient as a correctly rounded double. */
 static inline double icdgen_rounded(icdgen_wide_t value, uint64_t divisor)
 {
     uint64_t bits = 0;
@@ -681,8 +691,8 @@ static inline double icdgen_physical_u64(uint64_t raw, int64_t factor, int64_t o
 }
 
 /*
- * The same where both numbers are doubles without rounding: one division, if the compiler promises to round it once and
- * correctly.
+ * Return the quotient of two numbers that are exact as doubles. This is a single division if the compiler guarantees to
+ * round it once and correctly.
  */
 ICDGEN_INLINE double icdgen_quotient(int64_t value, int64_t divisor)
 {
@@ -699,8 +709,8 @@ ICDGEN_INLINE double icdgen_quotient(int64_t value, int64_t divisor)
 }
 
 /*
- * The way back: the magnitude and the sign of the nearest raw value, ties to even. The double is taken as the exact
- * number that it is, so 0.005 is above one half of 0.01.
+ * The inverse: magnitude and sign of the nearest raw value, ties to even. The double is used as the exact number that
+ * it represents, so 0.005 is above one half of 0.01.
  */
 static inline icd_status_t icdgen_nearest(
     double value, int64_t factor, int64_t offset, int64_t divisor, bool *negative, uint64_t *magnitude)
@@ -714,7 +724,9 @@ static inline icd_status_t icdgen_nearest(
     const uint64_t fraction = bits & UINT64_C(0xFFFFFFFFFFFFF);
     const uint64_t significand = exponent == 0u ? fraction : fraction | (UINT64_C(1) << 52);
 
-    /* |value| * divisor = whole + fraction, where the fraction is told by its first bit and whether there are more. */
+    /*
+     * |value| * divisor = whole + fraction. The fraction is reduced to its first bit and a flag for any further bits.
+     */
     icdgen_wide_t whole = icdgen_product(significand, ICDGEN_U64(divisor), false);
     bool half = false;
     bool more = false;
@@ -735,7 +747,7 @@ static inline icd_status_t icdgen_nearest(
         whole.high >>= 1;
     }
 
-    /* With a minus sign before the value or the factor, all is turned round, and the result turned back in the end. */
+    /* A negative value or factor negates the computation; the result is negated back at the end. */
     const bool turned = (bits >> 63 != 0u) != (factor < 0);
     const bool minus = bits >> 63 != 0u;
     const uint64_t step = icdgen_magnitude(factor);
@@ -745,7 +757,7 @@ static inline icd_status_t icdgen_nearest(
         return ICD_ERROR_RANGE;
     }
 
-    /* Floor of the quotient, and what is left over of the step and missing to it, without the fraction. */
+    /* Floor of the quotient, the remainder, and the distance to the next step, without the fraction. */
     const bool below = whole.negative && rest != 0u;
     if (below) {
         rest = step - rest;
@@ -760,7 +772,7 @@ static inline icd_status_t icdgen_nearest(
         up = half && more;
         tie = half && !more;
     } else {
-        /* the fraction decides nothing */
+        /* the fraction does not change the result */
     }
     const bool odd = ((whole.low & 1u) != 0u) != below;
     up = up || (tie && odd);
@@ -870,14 +882,14 @@ static inline icd_status_t icdgen_set_u8(
 #ifndef ICDGEN_NO_DOUBLE
 
 /*
- * Physical values by curves, which are made of pieces: from a raw value on, a polynomial in what is above that.
- * Horner's rule, where every difference, product and sum is a double of its own. That the steps are volatile keeps
- * compilers from making one of two, and from reckoning with more digits in between.
+ * Calibration curves, made of pieces. Each piece begins at a raw value and is a polynomial in the difference from that
+ * value, computed by Horner's rule. Every difference, product and sum is rounded to a double. The intermediate results
+ * are volatile, so that compilers neither fuse two operations nor compute with excess precision.
  */
 typedef struct {
     double start;
-    const double *terms; /* the constant first */
-    size_t count;        /* without terms there is no number */
+    const double *terms; /* coefficients; the constant term first */
+    size_t count;        /* 0: the curve is not defined for this piece (NaN) */
 } icdgen_piece_t;
 
 static inline bool icdgen_is_finite(double value)
@@ -894,7 +906,7 @@ static inline bool icdgen_is_nan(double value)
     return (bits & UINT64_C(0x7FFFFFFFFFFFFFFF)) > UINT64_C(0x7FF0000000000000);
 }
 
-/* The last piece that begins at the raw value or below, or else the first one. */
+/* Return the last piece that begins at or below the raw value, or the first piece if there is none. */
 static inline const icdgen_piece_t *icdgen_piece(double raw, const icdgen_piece_t *pieces, size_t count)
 {
     size_t first = 0u;
@@ -910,7 +922,7 @@ static inline const icdgen_piece_t *icdgen_piece(double raw, const icdgen_piece_
     return &pieces[first];
 }
 
-/* A value that is no number has always the same bits. */
+/* Replace any NaN by the NaN with fixed bits, so that results are the same on all targets. */
 static inline double icdgen_curve(double raw, const icdgen_piece_t *pieces, size_t count)
 {
     const icdgen_piece_t *piece = icdgen_piece(raw, pieces, count);
@@ -934,7 +946,7 @@ static inline double icdgen_curve(double raw, const icdgen_piece_t *pieces, size
     return result;
 }
 
-/* The raw value whose physical one is nearest, of two the even one; the physical values rise, or fall, all along. */
+/* Return the raw value with the nearest physical value, ties to even. The physical values must be monotonic. */
 static inline icd_status_t icdgen_curve_nearest(
     int32_t *raw, double value, const icdgen_piece_t *pieces, size_t count, int32_t low, int32_t high)
 {
@@ -1003,7 +1015,7 @@ static inline icd_status_t icdgen_set_curve_u8(
     return status;
 }
 
-/* The number of a line: (value - constant) / slope, each step a double of its own. */
+/* Invert a line: (value - constant) / slope, each step rounded to a double. */
 static inline icd_status_t icdgen_set_curve_f64(double *raw, double value, const icdgen_piece_t *line)
 {
     volatile double inverse = value - line->terms[0];
@@ -1018,7 +1030,7 @@ static inline icd_status_t icdgen_set_curve_f64(double *raw, double value, const
 
 static inline icd_status_t icdgen_set_curve_f32(float *raw, double value, const icdgen_piece_t *line)
 {
-    const double beyond = 3.4028235677973366e38; /* half way from the largest float to what would follow */
+    const double beyond = 3.4028235677973366e38; /* halfway between the largest float and the next power of two */
     double wide = 0.0;
     const icd_status_t status = icdgen_set_curve_f64(&wide, value, line);
     if (status != ICD_OK) {
@@ -1036,11 +1048,11 @@ static inline icd_status_t icdgen_set_curve_f32(float *raw, double value, const 
 #ifndef ICDGEN_NO_DOUBLE
 
 /*
- * Values that are derived from several fields: each step is a double of its own. That steps are volatile keeps
- * compilers from making one of two, and from reckoning with more digits in between.
+ * Values derived from several fields. Every step is rounded to a double. The intermediate results are volatile, so that
+ * compilers neither fuse two operations nor compute with excess precision.
  */
 
-/* A value that is no number has always the same bits. */
+/* Replace any NaN by the NaN with fixed bits, so that results are the same on all targets. */
 static inline double icdgen_quiet(double value)
 {
     double result = value;
@@ -1051,7 +1063,10 @@ static inline double icdgen_quiet(double value)
     return result;
 }
 
-/* By squaring, from the lowest bit of a whole exponent on; of a negative one the reciprocal. */
+/*
+ * Compute an integer power by repeated squaring, lowest bit of the exponent first. A negative exponent gives the
+ * reciprocal.
+ */
 static inline double icdgen_power(double base, double exponent)
 {
     const int32_t whole = ICDGEN_I32(exponent);
@@ -1109,30 +1124,33 @@ static inline icd_status_t icdgen_set_text(uint8_t *bytes, size_t size, const ch
     return ICD_OK;
 }
 
-/** In which way a limit holds. */
+/** Kind of a limit: value >= limit, > limit, <= limit or < limit. */
 typedef enum { ICD_LIMIT_MIN, ICD_LIMIT_ABOVE, ICD_LIMIT_MAX, ICD_LIMIT_BELOW } icd_limit_kind_t;
 
-/** A limit of the physical value (of the raw value where there is no scale). */
+/** A limit of the physical value, or of the raw value if the field has no scale. */
 typedef struct {
     icd_limit_kind_t kind;
     double value;
 } icd_limit_t;
 
-/** What the ICD says of a field. */
+/** Description of a field, as data for generic code such as displays. */
 typedef struct icd_field {
-    const char *name; /**< What the ICD calls it. */
-    const char *unit; /**< Of the physical value; empty without one. */
-    uint32_t at;   /**< Its first bit in the frame, or struct; behind the longest, if only a frame's length tells it. */
-    uint32_t bits; /**< How many bits it has; of an array, each element. */
-    uint32_t count; /**< How many elements an array has, or can have; 1 if it is none. */
+    const char *name; /**< Name in the ICD. */
+    const char *unit; /**< Unit of the physical value; empty if there is none. */
+    uint32_t at;      /**< First bit in the frame or struct; beyond the frame if the frame length gives the value. */
+    uint32_t bits;    /**< Size in bits; for an array, of each element. */
+    uint32_t count;   /**< Number of elements of an array, at most; 1 for other fields. */
     const icd_limit_t *limits;
     size_t limit_count;
-    const struct icd_field *(*fields)(size_t *count); /**< What a struct is made of; NULL of what is none. */
+    const struct icd_field *(*fields)(size_t *count); /**< Returns the fields of a struct; NULL for other fields. */
 } icd_field_t;
 
 #ifndef ICDGEN_NO_DOUBLE
 
-/** Whether a physical value (a raw one where there is no scale) keeps the limits of its field; NaN keeps none. */
+/**
+ * Return whether a value is within the limits of its field. `value` is physical, or raw if the field has no scale. NaN
+ * is never within a limit.
+ */
 static inline bool icd_allows(const icd_field_t *field, double value)
 {
     bool holds = true;

@@ -3,8 +3,8 @@
 #define ICDGEN_WIRE_C
 
 /*
- * The functions of icdgen_wire.h: compiled once for a program whose units define ICDGEN_SHARED, else part of that
- * header.
+ * Functions of icdgen_wire.h. Compile this file once if the program defines ICDGEN_SHARED. Otherwise, icdgen_wire.h
+ * includes it.
  */
 
 #if !defined(ICDGEN_WIRE_H) && !defined(ICDGEN_SHARED)
@@ -50,7 +50,7 @@ ICDGEN_API const icd_message_t *icd_find_message(const icd_link_t *link, icd_dir
     return NULL;
 }
 
-/* A number of several bytes in the node's byte order. */
+/* Read a number of several bytes in the byte order of the node. */
 static inline uint32_t icdgen_number(const icd_link_t *link, const uint8_t *bytes, size_t count)
 {
     uint32_t number = 0;
@@ -60,7 +60,7 @@ static inline uint32_t icdgen_number(const icd_link_t *link, const uint8_t *byte
     return number;
 }
 
-/* The reverse; ICD_ERROR_RANGE if it does not fit. */
+/* Write a number of several bytes. Return ICD_ERROR_RANGE if it does not fit. */
 static inline icd_status_t icdgen_put_number(const icd_link_t *link, uint8_t *bytes, size_t count, uint32_t number)
 {
     for (size_t i = 0; i < count; ++i) {
@@ -80,7 +80,7 @@ static inline const icd_place_t *icdgen_place(const icd_step_t *step, icd_role_t
     return NULL;
 }
 
-/* The raw value of a role in a frame, 0 if the frame has no such role. */
+/* Return the raw value of the field with a role; 0 if the frame has no such field. */
 static inline uint32_t icdgen_get(const icd_link_t *link, const icd_step_t *step, const uint8_t *frame, icd_role_t role)
 {
     const icd_place_t *const place = icdgen_place(step, role);
@@ -100,7 +100,7 @@ static inline uint32_t icdgen_get(const icd_link_t *link, const icd_step_t *step
     return value;
 }
 
-/* Puts the raw value of a role into a frame in which its bits are 0. */
+/* Write the raw value of the field with a role. Its bits in the frame must be 0. */
 static inline void icdgen_put(
     const icd_link_t *link, const icd_step_t *step, uint8_t *frame, icd_role_t role, uint32_t value)
 {
@@ -119,7 +119,7 @@ static inline void icdgen_put(
     }
 }
 
-/* Whether a number is one of those that are allowed, of which NULL stands for all. */
+/* Return whether a number is in the list. NULL allows all numbers. */
 static inline bool icdgen_allowed(const uint8_t *allowed, size_t count, uint8_t number)
 {
     bool found = allowed == NULL;
@@ -157,7 +157,7 @@ static inline icd_event_t icdgen_event(icd_event_kind_t kind, uint8_t id)
     return event;
 }
 
-/* Whether a time has come; times may wrap. */
+/* Return whether a time is reached. Times may wrap around. */
 static inline bool icdgen_reached(uint32_t now, uint32_t time)
 {
     return now - time < UINT32_C(0x80000000);
@@ -179,7 +179,7 @@ static inline uint32_t icdgen_reflected(uint32_t value, unsigned width)
     return reflected;
 }
 
-/* A byte with its bits the other way round: halves change places, then quarters, then bits. */
+/* Reverse the bits of a byte: swap halves, then quarters, then bits. */
 static inline uint32_t icdgen_reflected_byte(uint32_t byte)
 {
     const uint32_t halves = ((byte & 0x0Fu) << 4) | (byte >> 4);
@@ -194,8 +194,8 @@ ICDGEN_API void icd_crc_feed(icd_crc_t *crc, const uint8_t *bytes, size_t length
     const uint32_t mask = UINT32_C(0xFFFFFFFF) >> (32u - width);
     const uint32_t top = UINT32_C(1) << (width - 1u);
 #ifndef ICDGEN_NO_TABLES
-    const unsigned beyond = width > 8u ? width - 8u : 0u;  /* bits of the register below those that meet a byte */
-    const unsigned missing = width < 8u ? 8u - width : 0u; /* bits of a byte that meet none of the register */
+    const unsigned beyond = width > 8u ? width - 8u : 0u;  /* bits of the register below the byte */
+    const unsigned missing = width < 8u ? 8u - width : 0u; /* bits of the byte below the register */
 #endif
     uint32_t value = crc->value;
     for (size_t i = 0; i < length; ++i) {
@@ -337,14 +337,14 @@ icd_uart_decoder_init(icd_uart_decoder_t *decoder, const icd_link_t *link, uint8
 
 static inline void icdgen_uart_start(icd_uart_decoder_t *decoder)
 {
-    decoder->discarded += decoder->pending - 2u; /* all but the two bytes of the start itself */
+    decoder->discarded += decoder->pending - 2u; /* all except the two bytes of the start sequence */
     decoder->pending = 2;
     decoder->inside = true;
     decoder->escaped = false;
     decoder->length = 0;
 }
 
-/* Drops what was decided to be no message; an escape byte may still begin one. */
+/* Drop bytes that are not part of a message. A final escape byte is kept because it may start one. */
 static inline void icdgen_uart_outside(icd_uart_decoder_t *decoder, bool escaped)
 {
     decoder->discarded += decoder->pending - (escaped ? 1u : 0u);
@@ -388,7 +388,7 @@ static inline void icdgen_uart_end(icd_uart_decoder_t *decoder, icd_event_fn *on
     icdgen_uart_outside(decoder, false);
 }
 
-/* A byte that follows an escape byte within a message. */
+/* Process the byte after an escape byte within a message. */
 static inline void icdgen_uart_escaped(icd_uart_decoder_t *decoder, uint8_t byte, icd_event_fn *on_event, void *context)
 {
     const icd_framing_t *const framing = decoder->framing;
@@ -431,7 +431,7 @@ ICDGEN_API void icd_uart_feed(
     }
 }
 
-/* The slots of a log that a mask selects; what the mask lacks of its length counts as not selected. */
+/* Return the number of slots that a mask selects. Missing bytes of an incomplete mask count as 0. */
 static inline size_t icdgen_log_slots(const icd_link_t *link, const uint8_t *mask, size_t length)
 {
     size_t count = 0;
@@ -466,16 +466,16 @@ ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *
     return ICD_UART_OTHER;
 }
 
-#define ICDGEN_NO_SEQUENCE UINT32_C(0xFFFFFFFF) /* which no sequence number is: they have at most 31 bits */
+#define ICDGEN_NO_SEQUENCE UINT32_C(0xFFFFFFFF) /* not a valid sequence number: these have at most 31 bits */
 
-/* Fields and checksum of a frame, for both encoder and decoder. */
+/* Access to the fields and the checksum of a frame, for encoder and decoder. */
 
 static inline uint32_t icdgen_envelope_mask(const icd_envelope_field_t *field)
 {
     return UINT32_C(0xFFFFFFFF) >> (32u - field->bits);
 }
 
-/* The field of a role; NULL if there is none. */
+/* Return the field with this role; NULL if there is none. */
 static inline const icd_envelope_field_t *icdgen_envelope_field(const icd_stream_form_t *form, icd_envelope_role_t role)
 {
     for (size_t i = 0; i < form->field_count; ++i) {
@@ -486,7 +486,7 @@ static inline const icd_envelope_field_t *icdgen_envelope_field(const icd_stream
     return NULL;
 }
 
-/* `bytes` begin with the header, or the trailer, that the field stands in. */
+/* Return the value of a field. `bytes` is the header or the trailer that contains the field. */
 static inline uint32_t icdgen_envelope_get(const icd_envelope_field_t *field, const uint8_t *bytes)
 {
     uint32_t number = 0;
@@ -506,7 +506,7 @@ static inline void icdgen_envelope_put(const icd_envelope_field_t *field, uint8_
     }
 }
 
-/* A checksum that is fed piece by piece. */
+/* State of a checksum that is computed piece by piece. */
 typedef struct {
     const icd_check_form_t *form;
     icd_crc_t crc;
@@ -559,7 +559,7 @@ static inline uint32_t icdgen_check_result(const icdgen_check_t *check)
     }
 }
 
-/* Of a message in three pieces. `row` may be NULL where the checksum has no seed. */
+/* Return the checksum of header, data and trailer. `row` may be NULL if the checksum has no seed. */
 static inline uint32_t icdgen_envelope_check(
     const icd_stream_form_t *form,
     const icd_stream_row_t *row,
@@ -580,7 +580,7 @@ static inline uint32_t icdgen_envelope_check(
     return icdgen_check_result(&check);
 }
 
-/* The message of an id; NULL if there is none. */
+/* Return the message with this id; NULL if there is none. */
 static inline const icd_stream_row_t *icdgen_stream_row(
     const icd_stream_form_t *form, icd_direction_t direction, uint32_t id)
 {
@@ -601,7 +601,7 @@ static inline const icd_stream_row_t *icdgen_stream_row(
     return NULL;
 }
 
-#define ICDGEN_ENVELOPE_BYTES 64u /* of a header or trailer, at most */
+#define ICDGEN_ENVELOPE_BYTES 64u /* largest header or trailer */
 
 #define ICDGEN_SLIP_END 0xC0u
 #define ICDGEN_SLIP_ESCAPE 0xDBu
@@ -610,16 +610,16 @@ static inline const icd_stream_row_t *icdgen_stream_row(
 #define ICDGEN_HDLC_FLAG 0x7Eu
 #define ICDGEN_HDLC_ESCAPE 0x7Du
 #define ICDGEN_HDLC_FLIP 0x20u
-#define ICDGEN_COBS_WHOLE 0xFFu /* a block that has no zero behind it */
+#define ICDGEN_COBS_WHOLE 0xFFu /* length byte of a full block, which no zero follows */
 
-/* Where a message is written, with what delimits it. */
+/* Output buffer for a message with its delimiters. */
 typedef struct {
     icd_delimiter_t delimiter;
     uint8_t *buffer;
     size_t capacity;
     size_t count;
-    size_t block; /* of COBS: where its length stands */
-    bool ended;   /* of COBS: the last block was a whole one */
+    size_t block; /* COBS: position of the length byte of the block */
+    bool ended;   /* COBS: the last block was a full one */
     bool full;
 } icdgen_line_t;
 
@@ -633,7 +633,7 @@ static inline void icdgen_line_byte(icdgen_line_t *line, uint32_t byte)
     }
 }
 
-/* Ends a block of COBS, whose length stands before it, and begins the next one. */
+/* COBS: write the length byte in front of the block and start the next block. */
 static inline void icdgen_line_block(icdgen_line_t *line)
 {
     if (!line->full) {
@@ -680,14 +680,14 @@ static inline void icdgen_line_delimiter(icdgen_line_t *line, bool begins)
     } else if (line->delimiter == ICD_DELIMITED_BY_HDLC) {
         icdgen_line_byte(line, ICDGEN_HDLC_FLAG);
     } else if (line->delimiter == ICD_DELIMITED_BY_COBS && begins) {
-        icdgen_line_byte(line, 0); /* becomes the length of the first block */
+        icdgen_line_byte(line, 0); /* placeholder for the length of the first block */
     } else if (line->delimiter == ICD_DELIMITED_BY_COBS) {
         if (!line->ended) {
             icdgen_line_block(line);
         }
         icdgen_line_byte(line, 0);
     } else {
-        /* nothing delimits it but its length */
+        /* delimited by its length only */
     }
 }
 
@@ -713,7 +713,7 @@ ICDGEN_API icd_envelope_values_t icd_envelope_values(const icd_link_t *link, icd
     return values;
 }
 
-/* Writes all fields but the checksum; false if a value does not fit. */
+/* Write all fields except the checksum. Return false if a value does not fit. */
 static inline bool icdgen_envelope_fill(
     const icd_stream_form_t *form,
     icd_direction_t direction,
@@ -746,7 +746,7 @@ static inline bool icdgen_envelope_fill(
     return true;
 }
 
-/* Bytes of the data without the zeros at their end, but for one. */
+/* Return the data length without trailing zeros, at least 1. */
 static inline size_t icdgen_without_zeros(const uint8_t *data, size_t length)
 {
     size_t left = length;
@@ -850,10 +850,10 @@ ICDGEN_API icd_status_t icd_stream_send(
     return status;
 }
 
-/* What a frame turned out to be: taken; one beyond doubt, though of no use; perhaps none at all. */
+/* Result of checking a frame: accepted; certainly a frame, but not usable; possibly not a frame. */
 typedef enum { ICDGEN_TAKEN, ICDGEN_PROVEN, ICDGEN_DOUBTFUL } icdgen_verdict_t;
 
-/* Who is told. */
+/* The event callback. */
 typedef struct {
     icd_stream_event_fn *on_event;
     void *context;
@@ -919,7 +919,7 @@ ICDGEN_API icd_status_t icd_stream_decoder_init(
     return ICD_OK;
 }
 
-/* Tells of sequence numbers that did not come. */
+/* Report missing sequence numbers. */
 static inline void icdgen_stream_count(
     icd_stream_decoder_t *decoder, const icd_stream_row_t *row, uint32_t number, const icdgen_listener_t *listener)
 {
@@ -964,7 +964,7 @@ static inline void icdgen_stream_message(
     listener->on_event(listener->context, &event);
 }
 
-/* Whether the constants of the header, as far as it came, and of the trailer, if `trailer` is given, are right. */
+/* Return whether the constants are correct in the received part of the header and, unless NULL, in the trailer. */
 static inline bool icdgen_stream_constants(
     const icd_stream_decoder_t *decoder, const uint8_t *frame, size_t count, const uint8_t *trailer)
 {
@@ -981,7 +981,7 @@ static inline bool icdgen_stream_constants(
     return true;
 }
 
-/* Bytes of a header of which `left` came with which more can be said of it: those up to the next constant, or all. */
+/* Return the number of header bytes needed for the next check after `left` bytes: up to the next constant, or all. */
 static inline size_t icdgen_stream_next(const icd_stream_form_t *form, size_t left)
 {
     size_t next = form->header_bytes;
@@ -995,14 +995,14 @@ static inline size_t icdgen_stream_next(const icd_stream_form_t *form, size_t le
     return next;
 }
 
-/* What the field of the length says that the data have; negative if that is none. */
+/* Return the data length according to the length field; negative if it is invalid. */
 static inline int64_t icdgen_stream_length(
     const icd_stream_form_t *form, const icd_envelope_field_t *field, const uint8_t *frame, const uint8_t *trailer)
 {
     return ICDGEN_I64(icdgen_envelope_get(field, field->in_trailer ? trailer : frame)) - form->length_plus;
 }
 
-/* Tells of a frame. */
+/* Report a frame. */
 static inline icdgen_verdict_t icdgen_stream_judge(
     icd_stream_decoder_t *decoder, const uint8_t *frame, size_t count, const icdgen_listener_t *listener)
 {
@@ -1057,7 +1057,7 @@ static inline icdgen_verdict_t icdgen_stream_judge(
     return ICDGEN_TAKEN;
 }
 
-/* What the buffer has from `at` on: bytes to go on, 0 while that is not decided. */
+/* Check the buffer from `at` on. Return the number of bytes to advance; 0 if more bytes are needed. */
 static inline size_t icdgen_stream_front(icd_stream_decoder_t *decoder, size_t at, const icdgen_listener_t *listener)
 {
     const icd_stream_form_t *const form = decoder->form;
@@ -1091,7 +1091,7 @@ static inline size_t icdgen_stream_front(icd_stream_decoder_t *decoder, size_t a
     return taken;
 }
 
-/* Bytes where a field of the length delimits messages. There is room: a whole buffer is always decided. */
+/* Process bytes of a stream with a length field. There is always room: a full buffer can always be decided. */
 static inline void icdgen_stream_append(
     icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, const icdgen_listener_t *listener)
 {
@@ -1137,7 +1137,7 @@ static inline void icdgen_stream_put(icd_stream_decoder_t *decoder, uint32_t byt
     }
 }
 
-/* A byte of a frame between delimiters. */
+/* Process a byte of a frame between delimiters. */
 static inline void icdgen_stream_inside(icd_stream_decoder_t *decoder, uint8_t byte)
 {
     const icd_delimiter_t delimiter = decoder->form->delimited_by;
@@ -1170,7 +1170,7 @@ static inline void icdgen_stream_inside(icd_stream_decoder_t *decoder, uint8_t b
     }
 }
 
-/* A delimiter came. */
+/* Process a delimiter. */
 static inline void icdgen_stream_end(icd_stream_decoder_t *decoder, const icdgen_listener_t *listener)
 {
     bool taken = false;
@@ -1182,7 +1182,7 @@ static inline void icdgen_stream_end(icd_stream_decoder_t *decoder, const icdgen
     } else if (decoder->length != 0u) {
         taken = icdgen_stream_judge(decoder, decoder->buffer, decoder->length, listener) == ICDGEN_TAKEN;
     } else {
-        taken = true; /* there was nothing */
+        taken = true; /* empty frame between two delimiters */
     }
     decoder->discarded += taken ? 0u : decoder->pending;
     decoder->pending = 0;
@@ -1201,7 +1201,7 @@ ICDGEN_API void icd_stream_feed(
         } else if (icdgen_stream_judge(decoder, bytes, count, &listener) != ICDGEN_TAKEN) {
             decoder->discarded += count;
         } else {
-            /* it was a message */
+            /* the frame was a message */
         }
         return;
     }
@@ -1219,7 +1219,7 @@ ICDGEN_API void icd_stream_feed(
         } else if (!decoder->faulty) {
             icdgen_stream_inside(decoder, bytes[i]);
         } else {
-            /* until the next delimiter all is dropped */
+            /* all bytes up to the next delimiter are dropped */
         }
     }
 }
@@ -1302,7 +1302,7 @@ static inline uint32_t icdgen_can_part(icd_can_part_t part, uint32_t id)
     return (id >> part.shift) & ((UINT32_C(1) << part.bits) - 1u);
 }
 
-/* Whether the kind of message has data. */
+/* Return whether messages of this kind have data. */
 static inline bool icdgen_can_has_data(icd_can_kind_t kind)
 {
     return kind == ICD_CAN_TELECOMMAND || kind == ICD_CAN_REPLY;
@@ -1432,7 +1432,7 @@ static inline void icdgen_can_tell(
     on_event(context, &event);
 }
 
-/* Data begin one byte after the id. */
+/* The data start after the id byte. */
 static inline void icdgen_can_tell_message(
     const icd_link_t *link,
     uint32_t key,
@@ -1457,7 +1457,7 @@ static inline bool icdgen_can_got(const icd_can_slot_t *slot, uint32_t number)
     return number < slot->count && ((ICDGEN_U32(slot->got[number / 8u]) >> (number % 8u)) & 1u) != 0u;
 }
 
-/* Frees a slot; its memory goes to the end of the row. */
+/* Free a slot and move its memory to the end of the array. */
 static inline void icdgen_can_free(icd_can_joiner_t *joiner, size_t index)
 {
     icd_can_slot_t *const slots = joiner->slots;
@@ -1468,7 +1468,7 @@ static inline void icdgen_can_free(icd_can_joiner_t *joiner, size_t index)
     slots[joiner->used].data = data;
 }
 
-/* Forgets a message. One that is done leaves no event: it was kept to know repeated packets. */
+/* Discard a message. A complete message causes no event: its slot only serves to detect repeated packets. */
 static inline void icdgen_can_give_up(icd_can_joiner_t *joiner, size_t index, icd_event_fn *on_event, void *context)
 {
     const icd_can_slot_t *const slot = &joiner->slots[index];
@@ -1492,7 +1492,7 @@ ICDGEN_API void icd_can_expire(icd_can_joiner_t *joiner, uint32_t now, icd_event
     }
 }
 
-/* Notes that a packet came, be it a repeated one. */
+/* Record a received packet, new or repeated. */
 static inline void icdgen_can_came(icd_can_slot_t *slot, uint32_t number, uint32_t now)
 {
     slot->last = now;
@@ -1501,11 +1501,14 @@ static inline void icdgen_can_came(icd_can_slot_t *slot, uint32_t number, uint32
     } else if (number + 1u != slot->run) {
         slot->run = number == 0u ? 1u : 0u;
     } else {
-        /* the one before came again */
+        /* the previous packet was repeated */
     }
 }
 
-/* A slot for a new message, for which the oldest one that is done makes room; NULL if there is none. */
+/*
+ * Return a slot for a new message. If all are in use, reuse the oldest slot with a complete message; NULL if there is
+ * none.
+ */
 static inline icd_can_slot_t *icdgen_can_slot(icd_can_joiner_t *joiner)
 {
     for (size_t i = 0; joiner->used == joiner->slot_count && i < joiner->used; ++i) {
@@ -1516,7 +1519,7 @@ static inline icd_can_slot_t *icdgen_can_slot(icd_can_joiner_t *joiner)
     return joiner->used < joiner->slot_count ? &joiner->slots[joiner->used++] : NULL;
 }
 
-/* Bytes of the message if the ICD knows it and it needs several packets, else 0. */
+/* Return the length of the message in bytes if the ICD has it and it needs several packets; otherwise 0. */
 static inline uint32_t icdgen_can_length(const icd_link_t *link, icd_can_kind_t kind, uint32_t id)
 {
     const icd_message_t *const message = icd_find_message(
@@ -1524,7 +1527,7 @@ static inline uint32_t icdgen_can_length(const icd_link_t *link, icd_can_kind_t 
     return message != NULL && message->length > link->can->data_bytes ? message->length : 0u;
 }
 
-/* Another message than that of a slot has begun; with the same packets as the old one up to here, they are kept. */
+/* Start a new message in the slot of another. The packets received so far are kept if they are the same in both. */
 static inline void icdgen_can_replace(
     icd_can_joiner_t *joiner,
     size_t index,
@@ -1544,7 +1547,7 @@ static inline void icdgen_can_replace(
     icdgen_can_give_up(joiner, index, on_event, context);
 }
 
-/* A packet of a message of several. */
+/* Process a packet of a message of several packets. */
 static inline void icdgen_can_extended(
     icd_can_joiner_t *joiner,
     uint32_t now,
@@ -1570,7 +1573,7 @@ static inline void icdgen_can_extended(
         count = ICDGEN_U32((length + size - 1u) / size);
     } else if (slot != NULL && !slot->done && left < slot->count) {
         count = slot->count;
-    } else { /* the first packet that comes tells how many there are */
+    } else { /* the first packet received contains the number of packets */
         count = left + 1u;
     }
     if (packet->length != form->left_at + 1u || left >= count || count > joiner->room) {
@@ -1589,7 +1592,7 @@ static inline void icdgen_can_extended(
     }
     (void)memset(&fresh, 0, sizeof fresh);
     if (slot != NULL && (slot->done || slot->count != count || icdgen_can_got(slot, number))) {
-        icdgen_can_replace(joiner, index, number, &fresh, on_event, context); /* the next free slot has its memory */
+        icdgen_can_replace(joiner, index, number, &fresh, on_event, context); /* the next free slot owns its memory */
         slot = NULL;
     }
     if (slot == NULL) {
@@ -1768,7 +1771,7 @@ ICDGEN_API icd_status_t icd_log_write_header(
     return ICD_OK;
 }
 
-/* Frames into their slots; ICD_ERROR_LENGTH if there are more or fewer, or one has another length. */
+/* Write frames into their slots. Return ICD_ERROR_LENGTH if their number or the length of a frame is wrong. */
 static inline icd_status_t icdgen_log_slots_write(
     const icd_link_t *link,
     const uint8_t *mask,
@@ -2063,7 +2066,7 @@ static inline bool icdgen_on_bus(uint8_t buses, icd_bus_t bus)
     return ((ICDGEN_U32(buses) >> ICDGEN_U32(bus)) & 1u) != 0u;
 }
 
-/* What is common to all buses. */
+/* Initialize the part that is the same for all buses. */
 static inline icd_status_t icdgen_client_init(
     icd_client_t *client, const icd_link_t *link, icd_bus_t bus, uint8_t *buffer, size_t size)
 {
@@ -2177,7 +2180,7 @@ static inline void icdgen_client_timeout(icd_client_t *client, uint32_t now, icd
     icdgen_client_end(client, now, &event, on_event, context);
 }
 
-/* Sends the request, for the first time or again. */
+/* Send the request, for the first time or again. */
 static inline void icdgen_client_send(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
 {
     client->attempts++;
@@ -2191,7 +2194,7 @@ static inline void icdgen_client_send(icd_client_t *client, uint32_t now, icd_ev
     }
 }
 
-/* Whether anything that is to be sent has not been taken. */
+/* Return whether there is output that has not been taken. */
 static inline bool icdgen_client_has_output(const icd_client_t *client)
 {
     return client->pending != 0u || client->poll || !client->encoder.ended || client->encoder.pending != 0u ||
@@ -2351,7 +2354,10 @@ ICDGEN_API bool icd_client_transfer(icd_client_t *client, const uint8_t **bytes,
     return true;
 }
 
-/* The node refused it. A wrong checksum is no fault of the request: it is sent again. */
+/*
+ * Process a rejected request. If the node reports a wrong checksum, the request was damaged on the bus and is sent
+ * again.
+ */
 static inline void icdgen_client_refused(
     icd_client_t *client, uint32_t now, int64_t code, int64_t parameter, icd_event_fn *on_event, void *context)
 {
@@ -2371,12 +2377,12 @@ static inline void icdgen_client_refused(
     icdgen_client_end(client, now, &event, on_event, context);
 }
 
-/* There was no reply, or none that can be used: once more, or the end. */
+/* Process a missing or unusable reply: send again or end the request. */
 static inline void icdgen_client_no_reply(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
 {
     if (!client->repeat || client->attempts > client->settings.retries) {
         icdgen_client_timeout(client, now, on_event, context);
-    } else if (client->bus == ICD_BUS_I2C) { /* the bus said so at once: give the node some time */
+    } else if (client->bus == ICD_BUS_I2C) { /* the bus reports the failure immediately: wait before the next attempt */
         client->state = ICD_CLIENT_PAUSE;
         client->until = now + client->settings.poll_interval;
         client->give_up = now + client->settings.poll_timeout;
@@ -2385,7 +2391,7 @@ static inline void icdgen_client_no_reply(icd_client_t *client, uint32_t now, ic
     }
 }
 
-/* Polls once more after a while. */
+/* Poll again after the poll interval. */
 static inline void icdgen_client_again(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
 {
     if (icdgen_reached(now, client->give_up)) {
@@ -2413,7 +2419,7 @@ static inline void icdgen_client_tell(
     on_event(context, &event);
 }
 
-/* A client and who is told of its events, while its decoder or joiner is fed. */
+/* A client and its event callback, as context for the callbacks of its decoder or joiner. */
 typedef struct {
     icd_client_t *client;
     uint32_t now;
@@ -2421,7 +2427,9 @@ typedef struct {
     void *context;
 } icdgen_client_call_t;
 
-/* What came as the frame: with a checksum where there may be one, without where there need not. */
+/*
+ * Check the length and the checksum of a received frame. The checksum is optional or required, as the link describes.
+ */
 static inline void icdgen_client_replied(const icdgen_client_call_t *call, const uint8_t *data, size_t length)
 {
     icd_client_t *const client = call->client;
@@ -2437,7 +2445,7 @@ static inline void icdgen_client_replied(const icdgen_client_call_t *call, const
     } else if (client->checks_telemetry) {
         fault = ICD_EVENT_UNCHECKED;
     } else {
-        /* it need not have one */
+        /* the checksum is optional */
     }
     if (fault == ICD_EVENT_DONE) {
         icdgen_client_done(client, call->now, data, frame, call->on_event, call->context);
@@ -2582,7 +2590,7 @@ ICDGEN_API void icd_client_packet(
     }
 }
 
-/* I2C: what was read of the acknowledge frame. */
+/* I2C: process the acknowledge frame. */
 static inline void icdgen_client_polled(
     icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
 {
@@ -2608,7 +2616,7 @@ static inline void icdgen_client_polled(
     }
 }
 
-/* I2C: whether the last transaction was taken, and is that of the request. */
+/* I2C: return whether the last transaction is taken and belongs to the current request. */
 static inline bool icdgen_client_awaits_transfer(const icd_client_t *client, uint32_t owed)
 {
     return client->owed == owed && (client->state == ICD_CLIENT_WAIT || client->state == ICD_CLIENT_POLL) &&
@@ -2621,7 +2629,7 @@ ICDGEN_API void icd_client_transferred(
     size_t length = 0;
     const bool awaited = icdgen_client_awaits_transfer(client, 1);
     client->owed -= client->owed != 0u ? 1u : 0u;
-    icd_client_tick(client, now, on_event, context); /* may end that request, and begin the next one */
+    icd_client_tick(client, now, on_event, context); /* may end this request and start the next one */
     if (!awaited || !icdgen_client_awaits_transfer(client, 0)) {
         icdgen_client_tell(ICD_EVENT_STRAY, 0, bytes, bytes != NULL ? count : 0u, on_event, context);
     } else if (client->state == ICD_CLIENT_POLL) {
@@ -2649,7 +2657,7 @@ ICDGEN_API void icd_client_transferred(
     }
 }
 
-/* Most bytes of data that a telecommand has. */
+/* Return the largest number of data bytes of a telecommand. */
 static inline size_t icdgen_request_bytes(const icd_stream_form_t *form)
 {
     size_t most = 0;
@@ -2718,7 +2726,7 @@ ICDGEN_API bool icd_stream_client_deadline(const icd_stream_client_t *client, ui
     return waits;
 }
 
-/* Who is told of the events of a client. */
+/* A client and its event callback. */
 typedef struct {
     icd_stream_client_t *client;
     uint32_t now;
@@ -2732,7 +2740,7 @@ static inline void icdgen_stream_ignore(void *context, const icd_stream_event_t 
     (void)event;
 }
 
-/* Tells how a request ended. */
+/* Report the outcome of a request. */
 static inline void icdgen_stream_outcome(
     const icdgen_stream_call_t *call, icd_stream_kind_t kind, const icd_stream_slot_t *slot, icd_stream_event_t event)
 {
@@ -2746,7 +2754,7 @@ static inline void icdgen_stream_outcome(
     call->on_event(call->context, &told);
 }
 
-/* The reply may still come, or come again. */
+/* Remember that the reply may still arrive, or arrive again. */
 static inline void icdgen_stream_remember(const icd_stream_client_t *client, icd_stream_slot_t *slot, uint32_t since)
 {
     if (slot->was_taken && slot->has_reply) {
@@ -2756,7 +2764,7 @@ static inline void icdgen_stream_remember(const icd_stream_client_t *client, icd
     }
 }
 
-/* Sends a request, for the first time or again. */
+/* Send a request, for the first time or again. */
 static inline void icdgen_stream_transmit(const icdgen_stream_call_t *call, icd_stream_slot_t *slot)
 {
     icd_stream_client_t *const client = call->client;
@@ -2775,7 +2783,7 @@ static inline void icdgen_stream_transmit(const icdgen_stream_call_t *call, icd_
     }
 }
 
-/* The telecommand that asks for telemetry: the first one that it answers and that can have no data. */
+/* Return the telecommand that requests telemetry: the first one without data whose reply it is. */
 static inline const icd_stream_row_t *icdgen_stream_asking(const icd_stream_form_t *form, uint32_t id)
 {
     for (size_t i = 0; i < form->row_counts[ICD_TELECOMMAND]; ++i) {
@@ -2787,7 +2795,9 @@ static inline const icd_stream_row_t *icdgen_stream_asking(const icd_stream_form
     return NULL;
 }
 
-/* Room for a request with that reply; NULL if there is none, or another one waits for it. */
+/*
+ * Return a free slot for a request with this reply; NULL if there is none, or another request waits for the same reply.
+ */
 static inline icd_stream_slot_t *icdgen_stream_free(const icd_stream_client_t *client, bool has_reply, uint32_t reply)
 {
     icd_stream_slot_t *found = NULL;
@@ -2798,13 +2808,13 @@ static inline icd_stream_slot_t *icdgen_stream_free(const icd_stream_client_t *c
         } else if (has_reply && slot->reply == reply) {
             return NULL;
         } else {
-            /* it waits for something else */
+            /* it waits for another reply */
         }
     }
     return found;
 }
 
-/* Whether values of the envelope fit. */
+/* Return whether header and trailer values fit into their fields. */
 static inline bool icdgen_stream_fits(const icd_stream_client_t *client, uint32_t id, size_t length)
 {
     const icd_stream_sender_t *const sender = &client->sender;
@@ -2813,7 +2823,7 @@ static inline bool icdgen_stream_fits(const icd_stream_client_t *client, uint32_
     return icdgen_envelope_fill(client->link->stream, ICD_TELECOMMAND, id, length, &sender->values, header, trailer);
 }
 
-/* For how long that telemetry may be a late reply to another request. */
+/* Return how long telemetry may be a late reply to a previous request. */
 static inline uint32_t icdgen_stream_late(const icd_stream_client_t *client, uint32_t now, uint32_t reply)
 {
     uint32_t longest = 0;
@@ -3056,7 +3066,7 @@ static inline void icdgen_wait(icd_procedure_t *procedure, uint32_t until)
     procedure->until = until;
 }
 
-/* Requests a frame. */
+/* Request a frame. */
 static inline void icdgen_ask(icd_procedure_t *procedure, int16_t id, uint8_t state)
 {
     (void)memset(&procedure->request, 0, sizeof procedure->request);
@@ -3068,7 +3078,7 @@ static inline void icdgen_ask(icd_procedure_t *procedure, int16_t id, uint8_t st
     procedure->state = state;
 }
 
-/* A telecommand as a fresh message has it; values are put into `data` then. */
+/* Prepare a telecommand with its initial content. The caller then writes values into `data`. */
 static inline void icdgen_command(icd_procedure_t *procedure, const icd_step_t *step, bool repeat, uint8_t state)
 {
     if (step->fresh != NULL) {
@@ -3086,7 +3096,10 @@ static inline void icdgen_command(icd_procedure_t *procedure, const icd_step_t *
     procedure->state = state;
 }
 
-/* Requests the frame until its flag is as wanted, or its error flag is set; `state` is told of that frame. */
+/*
+ * Poll a frame until its flag has the wanted value or its error flag is set. The procedure then continues in `state`
+ * with this frame.
+ */
 static inline void icdgen_poll(
     icd_procedure_t *procedure,
     const icd_step_t *step,
@@ -3104,7 +3117,7 @@ static inline void icdgen_poll(
     procedure->poll_end = procedure->now + timeout;
 }
 
-/* Whether the frame is about what was asked for. */
+/* Return whether the frame belongs to the requested program. */
 static inline bool icdgen_is_meant(const icd_procedure_t *procedure, const uint8_t *frame)
 {
     const icd_step_t *const step = procedure->polled;
@@ -3112,7 +3125,7 @@ static inline bool icdgen_is_meant(const icd_procedure_t *procedure, const uint8
         icdgen_get(procedure->link, step, frame, ICD_ROLE_PROGRAM) == procedure->program;
 }
 
-/* Whether polling goes on after this outcome. */
+/* Return whether polling continues after this outcome. */
 static inline bool icdgen_polls_on(icd_procedure_t *procedure, const icd_event_t *outcome)
 {
     const icd_step_t *const step = procedure->polled;
@@ -3170,8 +3183,8 @@ ICDGEN_API bool icd_procedure_next(icd_procedure_t *procedure, uint32_t now, icd
 }
 
 /*
- * A refusal with a code that the ICD does not have is a damaged acknowledge, which tells nothing: what may be repeated
- * is asked again, and else it is as if none had come.
+ * A negative acknowledge with a code that the ICD does not have is treated as damaged: a request that may be repeated
+ * is sent again, any other is treated as if no acknowledge was received.
  */
 static inline void icdgen_damaged(icd_procedure_t *procedure, const icd_event_t *event)
 {
@@ -3203,7 +3216,7 @@ ICDGEN_API void icd_procedure_event(icd_procedure_t *procedure, uint32_t now, co
             icdgen_resume(procedure, event);
         }
     } else {
-        /* it is of no concern */
+        /* not related to this procedure */
     }
 }
 
@@ -3277,12 +3290,12 @@ static inline void icdgen_list_frame(icd_list_t *list, const uint8_t *frame, siz
         icdgen_end(procedure, ICD_TIMED_OUT);
         return;
     } else {
-        /* perhaps the node has not gone on yet */
+        /* the node may not have advanced yet */
     }
     (void)memcpy(list->last, frame, length);
     list->has_last = true;
     list->again++;
-    /* Sent once: if only its acknowledge was lost, the next frame tells that it arrived. */
+    /* Sent only once: the next frame shows whether it arrived, even if the acknowledge is lost. */
     icdgen_command(procedure, &procedure->link->list->advance, false, ICDGEN_LIST_ADVANCED);
     procedure->tolerant = true;
 }
@@ -3380,7 +3393,7 @@ static inline void icdgen_download_packet(
     }
 }
 
-/* Bytes to ask for next; 0 at the end of the file. */
+/* Return the number of bytes to request next; 0 at the end of the file. */
 static inline uint32_t icdgen_download_wanted(const icd_download_t *download)
 {
     const uint32_t left = download->size - download->offset;
@@ -3412,14 +3425,14 @@ static inline void icdgen_download_burst(icd_download_t *download)
     const icd_step_t *const step = &link->download->burst;
     download->left = download->count - download->there;
     download->last = procedure->now;
-    /* Sent once: that packets come, or none, tells more than its acknowledge. */
+    /* Sent only once: the received packets show whether the node got it, even if the acknowledge is lost. */
     icdgen_command(procedure, step, false, ICDGEN_DOWNLOAD_BURST);
     procedure->tolerant = true;
     icdgen_put(link, step, procedure->data, ICD_ROLE_LENGTH, link->download->message_length);
     icdgen_put(link, step, procedure->data, ICD_ROLE_IGNORE_HOLE_MAP, download->there == 0u ? 1u : 0u);
 }
 
-/* Sends the next piece of the hole map, or asks for the packets once all are sent. */
+/* Send the next piece of the hole map. After the last piece, request the packets. */
 static inline void icdgen_download_map(icd_download_t *download)
 {
     icd_procedure_t *const procedure = &download->procedure;
@@ -3444,7 +3457,7 @@ static inline void icdgen_download_map(icd_download_t *download)
     download->left++;
 }
 
-/* The block is whole: delivers it, and asks for the next one. */
+/* Deliver the complete block and request the next one. */
 static inline void icdgen_download_block(icd_download_t *download)
 {
     icd_procedure_t *const procedure = &download->procedure;
@@ -3473,7 +3486,7 @@ static inline void icdgen_download_block(icd_download_t *download)
     icdgen_download_load(download);
 }
 
-/* One more round, if packets are missing. */
+/* Start another round if packets are missing. */
 static inline void icdgen_download_round(icd_download_t *download)
 {
     icd_procedure_t *const procedure = &download->procedure;
@@ -3515,7 +3528,7 @@ static inline void icdgen_download_ready(icd_download_t *download, const uint8_t
     icdgen_download_round(download);
 }
 
-/* I2C, CAN: requests the next packet, or ends the round. */
+/* I2C, CAN: request the next packet, or end the round. */
 static inline void icdgen_download_fetch(icd_download_t *download)
 {
     icd_procedure_t *const procedure = &download->procedure;
@@ -3528,7 +3541,7 @@ static inline void icdgen_download_fetch(icd_download_t *download)
     procedure->tolerant = true;
 }
 
-/* UART: waits for packets until all are there, or none has come for a while. */
+/* UART: wait until all packets are received or no packet arrives for the silence time. */
 static inline void icdgen_download_silence(icd_download_t *download)
 {
     icd_procedure_t *const procedure = &download->procedure;
@@ -3637,14 +3650,14 @@ enum {
     ICDGEN_UPLOAD_FINALIZED
 };
 
-/* Bytes of this block. */
+/* Return the number of bytes of the current block. */
 static inline uint32_t icdgen_upload_length(const icd_upload_t *upload)
 {
     const uint32_t left = upload->size - upload->sent;
     return left < upload->block ? left : upload->block;
 }
 
-/* Begins the block, for the first time or again. */
+/* Start the block, for the first time or again. */
 static inline void icdgen_upload_begin(icd_upload_t *upload)
 {
     icd_procedure_t *const procedure = &upload->procedure;
@@ -3664,7 +3677,7 @@ static inline void icdgen_upload_block(icd_upload_t *upload)
     }
 }
 
-/* The filled packet of that position. */
+/* Write the packet at this position, padded to full length. */
 static inline void icdgen_upload_packet(const icd_upload_t *upload, uint32_t position, uint8_t *packet)
 {
     const icd_files_form_t *const files = upload->procedure.link->files;
@@ -3675,7 +3688,7 @@ static inline void icdgen_upload_packet(const icd_upload_t *upload, uint32_t pos
         packet, upload->file + upload->sent + at, ICDGEN_SIZE(left < files->packet_bytes ? left : files->packet_bytes));
 }
 
-/* Sends the next packet that is missing; false if there is none behind those that were sent. */
+/* Send the next missing packet. Return false if none is left in this round. */
 static inline bool icdgen_upload_send(icd_upload_t *upload)
 {
     icd_procedure_t *const procedure = &upload->procedure;
@@ -3695,7 +3708,7 @@ static inline bool icdgen_upload_send(icd_upload_t *upload)
     return true;
 }
 
-/* Begins another round, or reads the checksum if no packet is missing. */
+/* Start another round, or request the checksum if no packet is missing. */
 static inline void icdgen_upload_round(icd_upload_t *upload)
 {
     icd_procedure_t *const procedure = &upload->procedure;
@@ -3716,7 +3729,7 @@ static inline void icdgen_upload_round(icd_upload_t *upload)
     (void)icdgen_upload_send(upload);
 }
 
-/* Reads the next piece of the hole map, and what it tells once all is read. */
+/* Request the next piece of the hole map. Evaluate it after the last piece. */
 static inline void icdgen_upload_map(icd_upload_t *upload)
 {
     const icd_hole_map_form_t *const form = upload->procedure.link->hole_map;
@@ -3727,7 +3740,7 @@ static inline void icdgen_upload_map(icd_upload_t *upload)
     }
 }
 
-/* Sends the next packet that is missing, or reads the hole map. */
+/* Send the next missing packet, or request the hole map. */
 static inline void icdgen_upload_next(icd_upload_t *upload)
 {
     if (!icdgen_upload_send(upload)) {
@@ -3767,7 +3780,7 @@ static inline uint32_t icdgen_upload_checksum(const icd_upload_t *upload)
     return icd_crc_result(&crc);
 }
 
-/* The block is not as it should be: once more, or the end. */
+/* Process a damaged block: start it again, or end the upload. */
 static inline void icdgen_upload_again(icd_upload_t *upload)
 {
     if (upload->rounds == upload->procedure.link->upload->rounds) {
@@ -3931,7 +3944,7 @@ ICDGEN_API icd_status_t icd_format_init(icd_format_t *format, const icd_link_t *
 
 enum { ICDGEN_PROGRAM_START, ICDGEN_PROGRAM_BEGUN, ICDGEN_PROGRAM_ENDED };
 
-/* The node says that it is done, or that it failed. */
+/* Process the frame in which the node reports success or failure. */
 static inline void icdgen_program_ended(icd_program_operation_t *operation, const uint8_t *frame)
 {
     const icd_link_t *const link = operation->procedure.link;

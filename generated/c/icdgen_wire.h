@@ -4,17 +4,21 @@
 
 /**
  * @file
- * How messages travel: UART, I2C, CAN, checksums, a client, file transfer, logs. Nothing here opens a port, sleeps,
- * looks at a clock or allocates: bytes go in, bytes and events come out, memory and time (milliseconds, which may wrap)
- * are the caller's. What differs from node to node is in its link, which NODE_link() of its header gives.
+ * Wire layer: transport of messages over UART, I2C and CAN, checksums, clients, file transfer and logs.
  *
- * ICDGEN_SHARED     define it where the program has several units: this header declares the functions then, and
- *                   icdgen_wire.c and NODE/link.c are compiled once. Else each unit has those that it uses for itself.
- * ICDGEN_NO_TABLES  define it to compute checksums without tables: slower, and smaller by 512 bytes each.
- * ICDGEN_NO_FILES   define it for a program that transfers no files and programs: these are unsupported then.
- * ICDGEN_NO_LOGS    define it for a program that reads no logs, of a node that sends none unasked.
- * NODE_CHOSEN       define it, and NODE_WITH_MESSAGE for each message that a program sends or requests, and the tables
- *                   of NODE/link.c hold no others but for those that the wire layer needs itself.
+ * The functions perform no input or output: the application passes received bytes in, and takes bytes to send and
+ * events out. They do not open ports, sleep, read a clock or allocate memory. The application provides all buffers and
+ * the current time `now` in milliseconds, which may wrap around. NODE_link() returns the description of a protocol.
+ *
+ * Macros that may be defined before this header is included:
+ *
+ * ICDGEN_SHARED     For programs of several source files: declare the functions only. Compile icdgen_wire.c and
+ *                   NODE/link.c once and link them. Otherwise, each source file gets its own static copy.
+ * ICDGEN_NO_TABLES  Compute CRCs without lookup tables: slower, but saves up to 512 bytes per CRC.
+ * ICDGEN_NO_FILES   Leave out the transfer of files and programs. Their functions return ICD_ERROR_UNSUPPORTED.
+ * ICDGEN_NO_LOGS    Leave out logs. Do not define it if the node sends unsolicited logs.
+ * NODE_CHOSEN       Leave out all messages in the tables of NODE/link.c, except those for which NODE_WITH_MESSAGE is
+ *                   defined and those that the wire layer itself needs.
  */
 
 #include "icdgen.h"
@@ -27,7 +31,7 @@
 #define ICDGEN_API extern
 #endif
 
-/* ---- what the ICD says about a node ------------------------------------------------------------------------------ */
+/* ---- description of the protocol of a node ----------------------------------------------------------------------- */
 
 typedef enum { ICD_BUS_UART = 0, ICD_BUS_I2C = 1, ICD_BUS_CAN = 2 } icd_bus_t;
 
@@ -36,9 +40,9 @@ typedef enum { ICD_TELECOMMAND = 0, ICD_TELEMETRY = 1 } icd_direction_t;
 /** Flags of a telecommand. */
 #define ICD_ACKNOWLEDGED 1u  /**< The node acknowledges it. */
 #define ICD_EXPECTS_RESET 2u /**< The node restarts instead. */
-#define ICD_SETTING 4u       /**< It sets what can be got back, so it may be sent again. */
+#define ICD_SETTING 4u       /**< It sets a configuration that can be read back, so it may be sent again. */
 
-/** A message under its id in one direction. */
+/** A message with its id in one direction. */
 typedef struct {
     uint8_t id;
     uint8_t flags;
@@ -87,14 +91,14 @@ typedef struct {
     uint32_t code;
 } icd_error_code_t;
 
-/* A table of checksums, unless there are to be none. */
+/* Lookup table of a CRC; NULL if tables are disabled. */
 #ifdef ICDGEN_NO_TABLES
 #define ICDGEN_TABLE(table) NULL
 #else
 #define ICDGEN_TABLE(table) (table)
 #endif
 
-/* Parts that a program may leave out: for it the ICD does not describe them. */
+/* Optional parts. A part that is left out is treated as if the ICD did not describe it. */
 #ifdef ICDGEN_NO_FILES
 #define ICDGEN_OF_FILES(part) NULL
 #else
@@ -124,8 +128,8 @@ typedef struct {
     bool has_empty;
     /** Checksum of no bytes, if it is not the result of the algorithm. */
     uint32_t empty;
-    const uint8_t *table8;   /**< Of a width of up to 8 bits. */
-    const uint16_t *table16; /**< Of a greater one; both NULL: it is computed without. */
+    const uint8_t *table8;   /**< For a width of up to 8 bits. */
+    const uint16_t *table16; /**< For a greater width. Both NULL: computed without a table. */
 } icd_crc_form_t;
 
 /** The optional checksum of telecommands and frames. */
@@ -181,7 +185,7 @@ typedef struct {
     uint32_t packet_timeout;
 } icd_can_extended_t;
 
-/** CAN. Message types are -1 where the ICD has none; they stand in the order of icd_can_kind_t. */
+/** CAN. The types are indexed by icd_can_kind_t; -1: the ICD has no such type. */
 typedef struct {
     /** Address of the node. */
     uint8_t node_address;
@@ -196,13 +200,13 @@ typedef struct {
     const icd_can_extended_t *extended; /**< NULL if there are no messages of several packets. */
 } icd_can_form_t;
 
-/** A bit of the log mask: the frame that it selects, id -1 for none, and its bytes. */
+/** A bit of the log mask: id and length of the frame that it selects. The id is -1 if it selects none. */
 typedef struct {
     int16_t id;
     uint16_t length;
 } icd_log_bit_t;
 
-/** The mask of a log. Frames stand in slots, in the order of rising bits. */
+/** The mask of a log. Each selected frame has a slot, in ascending order of the bits. */
 typedef struct {
     /** Length of the mask. */
     uint8_t size;
@@ -212,7 +216,7 @@ typedef struct {
     uint16_t slot_bytes;
     /** Value of the bytes after a short frame. */
     uint8_t fill;
-    const icd_log_bit_t *bits; /**< One for every bit of the mask. */
+    const icd_log_bit_t *bits; /**< One entry for each bit of the mask. */
 } icd_log_mask_form_t;
 
 /** A number of several bytes. */
@@ -269,7 +273,7 @@ typedef struct {
     icd_part_t type, counter, checksum, size, time, meta;
 } icd_index_form_t;
 
-/** What a field means for a procedure. */
+/** Role of a field in a procedure. */
 typedef enum {
     ICD_ROLE_TYPE,
     ICD_ROLE_COUNTER,
@@ -295,21 +299,21 @@ typedef enum {
     ICD_ROLE_PROGRAM
 } icd_role_t;
 
-/** Where the field of a role lies, in bits. */
+/** Position of the field with a role, in bits. */
 typedef struct {
     icd_role_t role;
     uint16_t at;
     uint16_t bits;
 } icd_place_t;
 
-/** A message that plays a part in a procedure; an id is -1 where it has none in that direction. */
+/** A message used in a procedure. An id is -1 if the message does not exist in this direction. */
 typedef struct {
     int16_t telecommand;
     int16_t telemetry;
     uint16_t length;
     uint8_t place_count;
     const icd_place_t *places;
-    const uint8_t *fresh; /**< The frame before values are put into it. */
+    const uint8_t *fresh; /**< Initial content of the frame. */
 } icd_step_t;
 
 /** A message that carries a piece of the hole map. */
@@ -320,7 +324,7 @@ typedef struct {
     uint16_t at;
 } icd_hole_map_message_t;
 
-/** A bit for each packet of a block. */
+/** Hole map: one bit for each packet of a block. */
 typedef struct {
     /** Length of the map. */
     uint16_t bytes;
@@ -336,7 +340,7 @@ typedef struct {
     const icd_hole_map_message_t *messages;
 } icd_hole_map_form_t;
 
-/** Files and their blocks. An id is -1 where there are no download packets on that bus. */
+/** Files and their blocks. `packet_ids` are indexed by icd_bus_t; -1: no download packets on this bus. */
 typedef struct {
     /** Bytes of the file in a packet. */
     uint16_t packet_bytes;
@@ -353,7 +357,7 @@ typedef struct {
     int16_t packet_ids[3];
 } icd_files_form_t;
 
-/** Listing files. Times are in milliseconds, here and below. */
+/** Listing files. */
 typedef struct {
     /** Returns to the first file. */
     icd_step_t reset;
@@ -421,9 +425,9 @@ typedef struct {
     uint32_t rounds;
     /** Size of a destination in bytes: no file may be larger; 0 if the ICD does not say. */
     uint32_t destination_bytes;
-    /** The destinations that are supported; NULL: all. */
+    /** Supported destinations; NULL: all. */
     const uint8_t *destinations;
-    /** How many they are. */
+    /** Their number. */
     uint16_t destinations_count;
 } icd_upload_form_t;
 
@@ -439,7 +443,7 @@ typedef struct {
     uint32_t timeout;
 } icd_erase_form_t;
 
-/** What a telecommand starts for a stored program, and a frame tells the end of. */
+/** An operation on a stored program: a telecommand starts it, and a frame reports its end. */
 typedef struct {
     /** Starts it. */
     icd_step_t request;
@@ -449,15 +453,15 @@ typedef struct {
     uint32_t poll_interval;
     /** Longest duration, in milliseconds. */
     uint32_t timeout;
-    /** The programs for which this is supported; NULL: all. */
+    /** Supported programs; NULL: all. */
     const uint8_t *programs;
-    /** How many they are. */
+    /** Their number. */
     uint16_t programs_count;
 } icd_operation_form_t;
 
-/* ---- the envelope of a link, as fields with roles around the data ------------------------------------------------ */
+/* ---- framing of a link: header and trailer fields with roles ----------------------------------------------------- */
 
-/** What tells where a message ends; ICD_DELIMITED_BY_PACKET: whatever carries it. */
+/** How messages are delimited. ICD_DELIMITED_BY_PACKET: by the packets of the transport. */
 typedef enum {
     ICD_DELIMITED_BY_LENGTH = 0,
     ICD_DELIMITED_BY_SLIP = 1,
@@ -466,7 +470,7 @@ typedef enum {
     ICD_DELIMITED_BY_PACKET = 4
 } icd_delimiter_t;
 
-/** What a field of the envelope is. The first ones are those whose values the sender chooses. */
+/** Role of a header or trailer field. The sender chooses the values of the first ICD_ENVELOPE_VALUES roles. */
 typedef enum {
     ICD_ENVELOPE_SEQUENCE = 0,
     ICD_ENVELOPE_SOURCE = 1,
@@ -480,9 +484,12 @@ typedef enum {
     ICD_ENVELOPE_CHECKSUM = 9
 } icd_envelope_role_t;
 
-#define ICD_ENVELOPE_VALUES 6 /**< Roles whose values the sender chooses. */
+#define ICD_ENVELOPE_VALUES 6 /**< Number of roles whose values the sender chooses. */
 
-/** A field: `size` bytes from byte `at` of the header or trailer on are a number, shifted and cut to `bits`. */
+/**
+ * A header or trailer field. The number in the `size` bytes from byte `at` on is shifted right by `shift` and masked to
+ * `bits` bits.
+ */
 typedef struct {
     icd_envelope_role_t role;
     bool in_trailer;
@@ -491,7 +498,7 @@ typedef struct {
     uint8_t shift;
     uint8_t bits;
     bool little;
-    uint32_t values[2]; /**< Of a constant, or unless another is chosen: in telecommands, in telemetry. */
+    uint32_t values[2]; /**< Constant or default value in telecommands and in telemetry. */
 } icd_envelope_field_t;
 
 typedef enum {
@@ -502,41 +509,41 @@ typedef enum {
     ICD_CHECK_XOR = 4
 } icd_check_kind_t;
 
-/** The checksum; kinds other than a CRC use init, xor_out and width of the form. */
+/** The checksum. Kinds other than a CRC use `init`, `xor_out` and `width` of `crc`. */
 typedef struct {
     icd_check_kind_t kind;
     icd_crc_form_t crc;
-    uint8_t covered_from;    /**< The byte of the header from which on it is computed. */
-    uint8_t covered_trailer; /**< Bytes of the trailer that it covers. */
-    bool is_seeded;          /**< Whether the seed of the message is covered, as a byte after all others. */
+    uint8_t covered_from;    /**< First byte of the header that it covers. */
+    uint8_t covered_trailer; /**< Number of bytes of the trailer that it covers. */
+    bool is_seeded;          /**< Whether the seed of the message is appended as the last byte that it covers. */
 } icd_check_form_t;
 
-/** A message: its id, the lengths that its data can have, and its seed. */
+/** A message: id, shortest and longest data length in bytes, and seed. */
 typedef struct {
     uint32_t id;
     uint16_t least;
     uint16_t most;
-    bool cuts_zeros; /**< Whether zeros at the end of the data are not sent, but for one byte. */
+    bool cuts_zeros; /**< Whether trailing zeros of the data are not sent, except for the first byte. */
     uint8_t seed;
-    bool is_answered; /**< Whether it is a telecommand that is answered with telemetry, that of the id `reply`. */
+    bool is_answered; /**< Telecommand: whether telemetry `reply` is its reply. */
     uint32_t reply;
 } icd_stream_row_t;
 
-/** How messages are put into a stream of bytes, or into packets. */
+/** Framing of messages in a stream of bytes or in packets. */
 typedef struct {
     icd_delimiter_t delimited_by;
     uint8_t header_bytes;
     uint8_t trailer_bytes;
-    int32_t length_plus; /**< What the field of the length has more than the data have bytes. */
-    bool per_id;         /**< Whether each id counts its own sequence. */
+    int32_t length_plus; /**< Value of the length field minus the number of data bytes. */
+    bool per_id;         /**< Whether each id has its own sequence counter. */
     const icd_envelope_field_t *fields;
     uint8_t field_count;
     const icd_check_form_t *check;
-    const icd_stream_row_t *rows[2]; /**< Telecommands and telemetry, by rising id. */
+    const icd_stream_row_t *rows[2]; /**< Telecommands and telemetry, in ascending order of the ids. */
     uint16_t row_counts[2];
 } icd_stream_form_t;
 
-/** How a client waits and tries again, in milliseconds. */
+/** Timeouts (in milliseconds) and retries of a client. */
 typedef struct {
     /** Time-out of a reply, in milliseconds. */
     uint32_t reply_timeout;
@@ -548,20 +555,20 @@ typedef struct {
     uint32_t poll_timeout;
 } icd_client_settings_t;
 
-/** Everything about the protocol of a node. What the ICD does not describe is NULL. */
+/** Description of the protocol of a node. Parts that the ICD does not describe are NULL. */
 typedef struct {
-    const char *const *nodes; /**< Whose messages it has: its own, then those of the nodes that it includes. */
+    const char *const *nodes; /**< Names of the node and of the nodes that it includes. */
     uint16_t node_count;
     bool little; /**< Byte order of numbers. */
     bool msb0;   /**< Bit 0 of a byte is the most significant one. */
     uint8_t telemetry_first, telemetry_last;
-    const icd_message_t *telecommands; /**< By rising id. */
-    const icd_message_t *telemetry;    /**< By rising id. */
+    const icd_message_t *telecommands; /**< In ascending order of the ids. */
+    const icd_message_t *telemetry;    /**< In ascending order of the ids. */
     uint16_t telecommand_count, telemetry_count;
-    uint32_t longest_telecommand; /**< Bytes with id and checksum, and so the next two. */
+    uint32_t longest_telecommand; /**< Largest size in bytes, with id and checksum. */
     uint32_t longest_reply;
     uint32_t longest;
-    uint32_t longest_data; /**< Without. */
+    uint32_t longest_data; /**< Largest size in bytes, without id and checksum. */
     int32_t node_type;     /**< -1 if the ICD has none. */
     int32_t interface_version;
     icd_client_settings_t client;
@@ -570,10 +577,10 @@ typedef struct {
     uint32_t no_error;
     const icd_framing_t *framing;
     const icd_acknowledge_t *acknowledge;
-    int16_t i2c_address;      /**< Of 7 bits, -1 if the ICD has none. */
-    bool i2c_repeated_start;  /**< A read may follow its write without a stop; else there must be one. */
-    int32_t boot_ms;          /**< How long the boot program waits, -1 if the ICD does not say. */
-    const icd_step_t *polled; /**< The frame that tells what became of a telecommand. */
+    int16_t i2c_address;      /**< 7-bit address, -1 if the ICD has none. */
+    bool i2c_repeated_start;  /**< Whether a read may follow its write without a stop. */
+    int32_t boot_ms;          /**< Waiting time of the boot program in ms, -1 if unknown. */
+    const icd_step_t *polled; /**< Frame that reports the result of a telecommand. */
     const icd_can_form_t *can;
     const icd_checksum_form_t *checksum;
     const icd_crc_form_t *crc16;
@@ -592,77 +599,77 @@ typedef struct {
     const icd_operation_form_t *program_copy;
     const icd_operation_form_t *program_information;
     const icd_step_t *identification;
-    const icd_stream_form_t *stream; /**< Then ids have up to 32 bits, and nothing else of the link is described. */
+    const icd_stream_form_t *stream; /**< Framing. If present, ids have up to 32 bits and the other parts are NULL. */
 } icd_link_t;
 
-/** Whether the node has the messages of that one, which is so of itself and of those that it includes. */
+/** Return whether `node` is the node of this link or a node that it includes. */
 ICDGEN_API bool icd_has_messages_of(const icd_link_t *link, const char *node);
 
-/** The message of an id; NULL if the node has none. */
+/** Return the message with this id; NULL if the node has none. */
 ICDGEN_API const icd_message_t *icd_find_message(const icd_link_t *link, icd_direction_t direction, unsigned id);
 
-/** Who the node is. */
+/** Identity of a node. */
 typedef struct {
     uint32_t node_type;
     uint32_t interface_version;
-    bool matches; /**< Whether both are those of the ICD, as far as it has them. */
+    bool matches; /**< Whether both equal the values of the ICD, if it has them. */
 } icd_identity_t;
 
-/** What an identification frame tells, to be called before anything else is believed. */
+/** Decode an identification frame. Call this first and check `matches` before you use other messages of the node. */
 ICDGEN_API icd_status_t
 icd_identify(const icd_link_t *link, const uint8_t *frame, size_t length, icd_identity_t *identity);
 
 /* ---- events ------------------------------------------------------------------------------------------------------ */
 
 typedef enum {
-    ICD_EVENT_MESSAGE,          /**< A whole message. */
-    ICD_EVENT_UNEXPECTED_START, /**< UART: a message began within another one, which is dropped. */
-    ICD_EVENT_PROTOCOL_ERROR,   /**< UART: the escape byte before a byte that has no meaning there. */
-    ICD_EVENT_OVERRUN,          /**< UART: a message longer than the buffer. */
-    ICD_EVENT_EMPTY,            /**< UART: a message without an id. */
-    ICD_EVENT_DUPLICATE,        /**< CAN: a packet that was there already. */
-    ICD_EVENT_INCOMPLETE,       /**< CAN: a message was given up for want of packets. */
-    ICD_EVENT_MALFORMED,    /**< A reply of the wrong length; CAN: a packet that cannot be part of such a message. */
-    ICD_EVENT_BUSY,         /**< CAN: more senders at once than there is room for; the packet is dropped. */
-    ICD_EVENT_UNKNOWN_TYPE, /**< CAN: a message type that the ICD does not have. */
-    ICD_EVENT_DONE,         /**< Client: the request succeeded; of telemetry with the frame. */
-    ICD_EVENT_REFUSED,      /**< Client: the node refused it. */
-    ICD_EVENT_TIMEOUT,      /**< Client: no reply, or the telecommand was never processed. */
-    ICD_EVENT_PACKET,       /**< Client: a packet of a download. */
-    ICD_EVENT_LOG,          /**< Client: an unsolicited log, with its id. */
-    ICD_EVENT_STRAY,        /**< Client: what nobody waits for, with its id (I2C: what was read). */
-    ICD_EVENT_CHECKSUM,     /**< Client: the checksum of a frame is wrong; it is waited on. */
-    ICD_EVENT_UNCHECKED     /**< Client: a frame has no checksum, though it must; it is waited on. */
+    ICD_EVENT_MESSAGE,          /**< A complete message. */
+    ICD_EVENT_UNEXPECTED_START, /**< UART: a message started before the previous one ended, which is dropped. */
+    ICD_EVENT_PROTOCOL_ERROR,   /**< UART: invalid byte after the escape byte. */
+    ICD_EVENT_OVERRUN,          /**< UART: a message is longer than the buffer. */
+    ICD_EVENT_EMPTY,            /**< UART: an empty message, without an id. */
+    ICD_EVENT_DUPLICATE,        /**< CAN: a packet was received twice. */
+    ICD_EVENT_INCOMPLETE,       /**< CAN: a message is discarded because packets are missing. */
+    ICD_EVENT_MALFORMED,        /**< A reply of the wrong length; CAN: an invalid packet of this message. */
+    ICD_EVENT_BUSY,             /**< CAN: no free slot for another sender; the packet is dropped. */
+    ICD_EVENT_UNKNOWN_TYPE,     /**< CAN: the ICD has no such message type. */
+    ICD_EVENT_DONE,             /**< Client: the request succeeded; for telemetry, `data` is the frame. */
+    ICD_EVENT_REFUSED,          /**< Client: the node rejected the request (negative acknowledge). */
+    ICD_EVENT_TIMEOUT,          /**< Client: no reply, or the node did not process the telecommand in time. */
+    ICD_EVENT_PACKET,           /**< Client: a packet of a file download. */
+    ICD_EVENT_LOG,              /**< Client: an unsolicited log message; `data` starts with its id. */
+    ICD_EVENT_STRAY, /**< Client: an unexpected message; `data` starts with its id (I2C: the bytes that were read). */
+    ICD_EVENT_CHECKSUM, /**< Client: a frame with a wrong checksum; the request continues. */
+    ICD_EVENT_UNCHECKED /**< Client: a frame without the required checksum; the request continues. */
 } icd_event_kind_t;
 
-/** Kinds of messages on the UART. */
+/** Kinds of messages from the node on the UART. */
 typedef enum { ICD_UART_REPLY, ICD_UART_ACKNOWLEDGE, ICD_UART_PACKET, ICD_UART_LOG, ICD_UART_OTHER } icd_uart_kind_t;
 
-/** What came about. The data last until the function returns that is told of it. */
+/** An event. The event and its data are valid only during the call of the callback. */
 typedef struct {
     icd_event_kind_t kind;
     uint8_t id;
     const uint8_t *data;
     size_t length;
-    const icd_link_t *link;    /**< Of DONE, REFUSED, TIMEOUT: that of the node, else NULL. */
-    icd_direction_t direction; /**< Of DONE, REFUSED, TIMEOUT: that of the request. */
-    uint32_t attempts;         /**< Of DONE, REFUSED, TIMEOUT: how often it was sent. */
-    icd_reason_t reason;       /**< Of REFUSED. */
-    int64_t code;              /**< Of REFUSED: the error code, -1 if the bus tells none. */
-    int64_t parameter;         /**< Of REFUSED: the parameter at fault, -1 if the bus tells none. */
-    uint32_t number;           /**< Of PACKET. */
-    uint32_t missing;          /**< Of INCOMPLETE: packets. */
-    uint8_t source;            /**< On CAN. */
-    uint8_t destination;       /**< Of MESSAGE on CAN. */
-    icd_can_kind_t can_kind;   /**< Of MESSAGE on CAN. */
+    const icd_link_t *link;    /**< DONE, REFUSED, TIMEOUT: link of the node; otherwise NULL. */
+    icd_direction_t direction; /**< DONE, REFUSED, TIMEOUT: direction of the request. */
+    uint32_t attempts;         /**< DONE, REFUSED, TIMEOUT: number of times the request was sent. */
+    icd_reason_t reason;       /**< REFUSED: meaning of the error code. */
+    int64_t code;              /**< REFUSED: error code, -1 if the bus does not report it. */
+    int64_t parameter;         /**< REFUSED: index of the invalid parameter, -1 if the bus does not report it. */
+    uint32_t number;           /**< PACKET: number of the packet. */
+    uint32_t missing;          /**< INCOMPLETE: number of missing packets. */
+    uint8_t source;            /**< CAN: address of the sender. */
+    uint8_t destination;       /**< MESSAGE on CAN. */
+    icd_can_kind_t can_kind;   /**< MESSAGE on CAN. */
 } icd_event_t;
 
-/** Is told of each event, with the context that was given along. */
+/** Callback for events. `context` is the pointer that was passed together with the callback. */
 typedef void icd_event_fn(void *context, const icd_event_t *event);
 
 /* ---- checksums --------------------------------------------------------------------------------------------------- */
 
-/** A CRC that is fed piece by piece. */
+/** State of a CRC that is computed piece by piece. */
 typedef struct {
     const icd_crc_form_t *form;
     uint32_t value;
@@ -673,84 +680,89 @@ ICDGEN_API void icd_crc_init(icd_crc_t *crc, const icd_crc_form_t *form);
 
 ICDGEN_API void icd_crc_feed(icd_crc_t *crc, const uint8_t *bytes, size_t length);
 
-/** The CRC of everything fed so far. */
+/** Return the CRC of all bytes fed so far. */
 ICDGEN_API uint32_t icd_crc_result(const icd_crc_t *crc);
 
 ICDGEN_API uint32_t icd_crc(const icd_crc_form_t *form, const uint8_t *bytes, size_t length);
 
-/** The CRC of telecommands and frames; ICD_ERROR_UNSUPPORTED if the node has none. */
+/** Compute the CRC of telecommands and frames. Return ICD_ERROR_UNSUPPORTED if the ICD has none. */
 ICDGEN_API icd_status_t icd_crc8(const icd_link_t *link, const uint8_t *bytes, size_t length, uint32_t *crc);
 
-/** The CRC of files and their blocks; ICD_ERROR_UNSUPPORTED if the node has none. */
+/** Compute the CRC of files and blocks. Return ICD_ERROR_UNSUPPORTED if the ICD has none. */
 ICDGEN_API icd_status_t icd_crc16(const icd_link_t *link, const uint8_t *bytes, size_t length, uint32_t *crc);
 
 /* ---- UART -------------------------------------------------------------------------------------------------------- */
 
-/** Writes a message to the line piece by piece, so that no buffer must hold the whole. */
+/** Encoder that frames a message piece by piece, so that no buffer for the whole message is needed. */
 typedef struct {
     const icd_framing_t *framing;
     const uint8_t *message;
     size_t length;
     size_t at;
-    uint8_t next[2]; /* what comes next, begun with the start */
+    uint8_t next[2]; /* bytes to be written next, initially the start sequence */
     uint8_t pending;
     bool ended;
 } icd_uart_encoder_t;
 
-/** Begins a message: id and data, which must stay where they are until all is written. */
+/** Start to encode a message (id and data). `message` must stay valid until it is written completely. */
 ICDGEN_API icd_status_t
 icd_uart_encode_begin(icd_uart_encoder_t *encoder, const icd_link_t *link, const uint8_t *message, size_t length);
 
-/** Writes what fits the buffer; the count, 0 at the end of the message. */
+/** Write as many bytes as fit into the buffer. Return their number; 0 at the end of the message. */
 ICDGEN_API size_t icd_uart_encode_some(icd_uart_encoder_t *encoder, uint8_t *buffer, size_t capacity);
 
-/** The most bytes that a message of `length` bytes takes on the line. */
+/** Largest size in bytes of a framed message of `length` bytes. */
 #define ICD_UART_BYTES(length) (2u * (length) + 4u)
 
-/** A message, id and data, on the line; ICD_ERROR_LENGTH if it has no id or does not fit the buffer. */
+/** Frame a message (id and data). Return ICD_ERROR_LENGTH if the message is empty or the buffer is too small. */
 ICDGEN_API icd_status_t icd_uart_encode(
     const icd_link_t *link, const uint8_t *message, size_t length, uint8_t *buffer, size_t capacity, size_t *written);
 
-/** Finds the messages in a stream. */
+/** Decoder that finds the messages in a stream. */
 typedef struct {
     const icd_framing_t *framing;
     uint8_t *buffer;
     size_t capacity;
-    size_t length;      /**< Of the message so far. */
-    size_t pending;     /**< Bytes of the stream about which nothing is decided yet. */
-    uint64_t discarded; /**< Bytes of the stream that became part of no message. */
+    size_t length;      /**< Bytes of the current message received so far. */
+    size_t pending;     /**< Received bytes that may still become part of a message. */
+    uint64_t discarded; /**< Number of received bytes that are not part of a message. */
     bool inside;
     bool escaped;
 } icd_uart_decoder_t;
 
-/** `buffer` holds the longest message that is taken; that of the node is NODE_LONGEST bytes long. */
+/**
+ * Initialize a decoder. `buffer` must be large enough for the longest message to be received (NODE_LONGEST bytes are
+ * enough for all) and must stay valid while the decoder is in use.
+ */
 ICDGEN_API icd_status_t
 icd_uart_decoder_init(icd_uart_decoder_t *decoder, const icd_link_t *link, uint8_t *buffer, size_t capacity);
 
 /**
- * Takes the next bytes of the stream and tells of ICD_EVENT_MESSAGE, whose data begin with the id, UNEXPECTED_START,
- * PROTOCOL_ERROR, OVERRUN and EMPTY. Events do not depend on how the stream was cut.
+ * Pass received bytes to the decoder, in pieces of any size.
+ * Events: ICD_EVENT_MESSAGE (`data` starts with the id), UNEXPECTED_START, PROTOCOL_ERROR, OVERRUN and EMPTY. They do
+ * not depend on how the stream is divided into pieces.
  */
 ICDGEN_API void icd_uart_feed(
     icd_uart_decoder_t *decoder, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context);
 
-/** What a message from the node is, as far as its id and its length tell. `length` is not 0. */
+/** Return the kind of a message from the node, determined from its id and length. `length` must not be 0. */
 ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *message, size_t length);
 
-/* ---- messages in an envelope, in a stream of bytes or in packets ------------------------------------------------- */
+/* ---- messages with header and trailer, in a stream of bytes or in packets ---------------------------------------- */
 
-/** Values of the fields that the sender chooses, by icd_envelope_role_t. */
+/** Values of the header and trailer fields that the sender chooses, indexed by icd_envelope_role_t. */
 typedef struct {
     uint32_t of[ICD_ENVELOPE_VALUES];
 } icd_envelope_values_t;
 
-/** Those of the ICD, and 0. */
+/** Return the values of the ICD for this direction. Fields without a value in the ICD are 0. */
 ICDGEN_API icd_envelope_values_t icd_envelope_values(const icd_link_t *link, icd_direction_t direction);
 
 /**
- * A message as it is sent; `values` NULL: those of the ICD. ICD_ERROR_UNKNOWN_ID if there is none of that id,
- * ICD_ERROR_LENGTH if its data have another length or the buffer is too small (NODE_LINE_BYTES are enough),
- * ICD_ERROR_RANGE if a value does not fit its field.
+ * Encode a message with header, trailer and delimiters. `values`: fields that the sender chooses, or NULL for the
+ * values of the ICD. A buffer of NODE_LINE_BYTES is always enough.
+ * Return ICD_ERROR_UNKNOWN_ID if there is no message with this id, ICD_ERROR_LENGTH if the data have the wrong length
+ * or the buffer is too small, ICD_ERROR_RANGE if a value does not fit into its field.
  */
 ICDGEN_API icd_status_t icd_stream_encode(
     const icd_link_t *link,
@@ -763,18 +775,19 @@ ICDGEN_API icd_status_t icd_stream_encode(
     size_t capacity,
     size_t *written);
 
-/** Sends messages of a direction, and counts them. */
+/** Encoder of the messages of one direction, with sequence numbers. */
 typedef struct {
     const icd_link_t *link;
     icd_direction_t direction;
-    icd_envelope_values_t values; /**< Those of the ICD, until others are set; the sequence is the first one. */
+    icd_envelope_values_t values; /**< Initially those of the ICD. The sequence is the first number. */
     uint32_t *sequences;
     size_t sequence_count;
 } icd_stream_sender_t;
 
 /**
- * `sequences` are NODE_SEQUENCES numbers, the last ones that were sent; with less, some messages are not counted.
- * ICD_ERROR_UNSUPPORTED if the ICD describes no envelope.
+ * Initialize a sender. `sequences` is an array for the last sequence numbers sent, with NODE_SEQUENCES elements; with
+ * fewer elements, some messages are not counted. It must stay valid while the sender is in use.
+ * Return ICD_ERROR_UNSUPPORTED if the ICD describes no framing.
  */
 ICDGEN_API icd_status_t icd_stream_sender_init(
     icd_stream_sender_t *sender,
@@ -783,7 +796,7 @@ ICDGEN_API icd_status_t icd_stream_sender_init(
     uint32_t *sequences,
     size_t sequence_count);
 
-/** A message as it is sent, with the next sequence number, as icd_stream_encode(). */
+/** Encode a message with the next sequence number. For the other parameters and errors see icd_stream_encode(). */
 ICDGEN_API icd_status_t icd_stream_send(
     icd_stream_sender_t *sender,
     uint32_t id,
@@ -795,58 +808,59 @@ ICDGEN_API icd_status_t icd_stream_send(
 
 typedef enum {
     ICD_STREAM_MESSAGE = 0,
-    ICD_STREAM_GAP = 1,        /**< Before this message `missing` others did not come; 0: it came again. */
-    ICD_STREAM_CHECKSUM = 2,   /**< Dropped: the checksum is wrong. */
-    ICD_STREAM_LENGTH = 3,     /**< Dropped: no message, or not that one, has such a length. */
-    ICD_STREAM_UNKNOWN_ID = 4, /**< Dropped: the node has no such message. */
-    ICD_STREAM_OVERRUN = 5,    /**< Dropped: longer than the buffer. */
-    ICD_STREAM_FRAMING = 6,    /**< Dropped: a constant or a delimiter is not what it must be. */
-    ICD_STREAM_DONE = 7,       /**< Client: the request succeeded; with its reply, if it has one. */
+    ICD_STREAM_GAP = 1,        /**< `missing` messages were lost before this one; 0: this message is a repetition. */
+    ICD_STREAM_CHECKSUM = 2,   /**< Dropped: wrong checksum. */
+    ICD_STREAM_LENGTH = 3,     /**< Dropped: wrong length of the message. */
+    ICD_STREAM_UNKNOWN_ID = 4, /**< Dropped: the node has no message with this id. */
+    ICD_STREAM_OVERRUN = 5,    /**< Dropped: the message is longer than the buffer. */
+    ICD_STREAM_FRAMING = 6,    /**< Dropped: wrong constant or delimiter. */
+    ICD_STREAM_DONE = 7,       /**< Client: the request succeeded; `data` is its reply, if it has one. */
     ICD_STREAM_TIMEOUT = 8     /**< Client: no reply. */
 } icd_stream_kind_t;
 
-/** What a decoder or a client found, valid during the call that tells of it. */
+/** An event of a decoder or a client. The event and its data are valid only during the call of the callback. */
 typedef struct {
     icd_stream_kind_t kind;
-    bool has_id; /**< Whether so much of it could be read. */
+    bool has_id; /**< Whether the id could be read. */
     uint32_t id;
     const uint8_t *data;
     size_t length;
     icd_envelope_values_t values;
     uint32_t missing;
-    const icd_link_t *link;    /**< Of a client: that of the node, else NULL. */
-    icd_direction_t direction; /**< Of DONE and TIMEOUT: that of the request, and so the id. */
-    uint32_t attempts;         /**< Of DONE and TIMEOUT: how often it was sent. */
-    bool has_reply;            /**< Of DONE: whether telemetry answered it, ... */
-    uint32_t reply;            /**< ... its id. */
+    const icd_link_t *link;    /**< Client: link of the node; otherwise NULL. */
+    icd_direction_t direction; /**< DONE, TIMEOUT: direction of the request; `id` is its id. */
+    uint32_t attempts;         /**< DONE, TIMEOUT: number of times the request was sent. */
+    bool has_reply;            /**< DONE: whether the reply is telemetry. */
+    uint32_t reply;            /**< DONE: id of this telemetry. */
 } icd_stream_event_t;
 
 typedef void icd_stream_event_fn(void *context, const icd_stream_event_t *event);
 
-/** Finds the messages of a direction in a stream. */
+/** Decoder that finds the messages of one direction in a stream. */
 typedef struct {
     const icd_link_t *link;
     const icd_stream_form_t *form;
     icd_direction_t direction;
     uint8_t *buffer;
     size_t capacity;
-    size_t length; /**< Bytes in the buffer. */
-    size_t needed; /* bytes in the buffer with which the next thing is decided, where a field tells the length */
+    size_t length; /**< Number of bytes in the buffer. */
+    size_t needed; /* with a length field: number of bytes in the buffer that the next step needs */
     uint32_t *sequences;
     size_t sequence_count;
-    size_t pending;     /**< Bytes of the stream about which nothing is decided yet. */
-    uint64_t discarded; /**< Bytes of the stream that became part of no message. */
+    size_t pending;     /**< Received bytes that may still become part of a message. */
+    uint64_t discarded; /**< Number of received bytes that are not part of a message. */
     bool escaped;
-    bool zero;    /* whether a zero follows the block of COBS */
-    uint8_t left; /* bytes that the block of COBS still has */
+    bool zero;    /* COBS: whether a zero follows the block */
+    uint8_t left; /* COBS: remaining bytes of the block */
     bool faulty;
     icd_stream_kind_t fault;
 } icd_stream_decoder_t;
 
 /**
- * `buffer` holds the longest message that is taken; that of the node is NODE_LONGEST bytes long. `sequences` are
- * NODE_SEQUENCES numbers, by which gaps are noticed; with less, gaps of some messages are not. ICD_ERROR_LENGTH if
- * header and trailer do not fit the buffer.
+ * Initialize a decoder. `buffer` must be large enough for the longest message to be received; NODE_LONGEST bytes are
+ * enough for all. `sequences` has NODE_SEQUENCES elements and serves to detect gaps; with fewer elements, some gaps are
+ * not detected. Both must stay valid while the decoder is in use.
+ * Return ICD_ERROR_LENGTH if header and trailer do not fit into the buffer.
  */
 ICDGEN_API icd_status_t icd_stream_decoder_init(
     icd_stream_decoder_t *decoder,
@@ -857,16 +871,19 @@ ICDGEN_API icd_status_t icd_stream_decoder_init(
     uint32_t *sequences,
     size_t sequence_count);
 
-/** Takes the next bytes of the stream, or a packet. Events do not depend on how a stream was cut. */
+/**
+ * Pass received bytes to the decoder: a piece of the stream of any size, or one packet. Events do not depend on how a
+ * stream is divided into pieces.
+ */
 ICDGEN_API void icd_stream_feed(
     icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, icd_stream_event_fn *on_event, void *context);
 
 /* ---- I2C --------------------------------------------------------------------------------------------------------- */
 
-/** The checksum of a message's data. The node has checksums. */
+/** Compute the checksum of the data of a message. The link must describe checksums. */
 ICDGEN_API uint32_t icd_checksum(const icd_link_t *link, uint8_t id, const uint8_t *data, size_t length);
 
-/** Id, data and, if asked for, the checksum of a telecommand: what is written on I2C, and framed on the UART. */
+/** Encode a telecommand: id, data and, if `checked`, the checksum. I2C writes these bytes; the UART frames them. */
 ICDGEN_API icd_status_t icd_i2c_write(
     const icd_link_t *link,
     uint8_t id,
@@ -877,39 +894,43 @@ ICDGEN_API icd_status_t icd_i2c_write(
     size_t capacity,
     size_t *written);
 
-/** Bytes to read for a frame. */
+/** Get the number of bytes to read for a frame. */
 ICDGEN_API icd_status_t icd_i2c_read_length(const icd_link_t *link, uint8_t id, bool checked, size_t *length);
 
-/** The bytes of the frame in what was read; ICD_ERROR_LENGTH or ICD_ERROR_CHECKSUM if it is not as it must be. */
+/**
+ * Check the bytes that were read and get the length of the frame at their beginning. Return ICD_ERROR_LENGTH or
+ * ICD_ERROR_CHECKSUM if the reply is not valid.
+ */
 ICDGEN_API icd_status_t icd_i2c_reply(
     const icd_link_t *link, uint8_t id, const uint8_t *bytes, size_t length, bool checked, size_t *frame_length);
 
 /* ---- CAN --------------------------------------------------------------------------------------------------------- */
 
-/** A CAN frame: identifier of 29 bits, and data. */
+/** A CAN frame with a 29-bit identifier. */
 typedef struct {
     uint32_t id;
     uint8_t length;
     uint8_t data[8];
 } icd_can_packet_t;
 
-/** The most data that a message of the kind can have. The node is on CAN. */
+/** Return the largest number of data bytes of a message of this kind. The link must describe CAN. */
 ICDGEN_API size_t icd_can_most(const icd_link_t *link, icd_can_kind_t kind);
 
-/** Gives the packets of a message one by one. */
+/** Splits a message into CAN packets, one per call of icd_can_next(). */
 typedef struct {
     const icd_can_form_t *can;
     const uint8_t *data;
     size_t length;
     uint32_t id;
-    uint32_t count; /* packets in all */
+    uint32_t count; /* number of packets */
     uint32_t next;
     bool extended;
 } icd_can_splitter_t;
 
 /**
- * Begins a message, whose data must stay where they are. ICD_ERROR_LENGTH if they are too long, ICD_ERROR_RANGE if an
- * id or address does not fit the identifier.
+ * Start splitting a message of `length` bytes. `data` must stay valid until the last packet is taken.
+ * Return ICD_ERROR_LENGTH if the data are too long, ICD_ERROR_RANGE if an id or address does not fit into the
+ * identifier.
  */
 ICDGEN_API icd_status_t icd_can_split(
     icd_can_splitter_t *splitter,
@@ -921,43 +942,46 @@ ICDGEN_API icd_status_t icd_can_split(
     const uint8_t *data,
     size_t length);
 
-/** The next packet; false after the last. */
+/** Write the next packet to `packet`. Return false after the last packet. */
 ICDGEN_API bool icd_can_next(icd_can_splitter_t *splitter, icd_can_packet_t *packet);
 
-/** A message of several packets on its way. */
+/** A partly received message of several packets. */
 typedef struct {
-    uint8_t *data; /* of all its packets; the byte before it is the id of the message */
-    uint32_t key;  /* the identifier */
+    uint8_t *data; /* data of all packets; the byte before them is the id of the message */
+    uint32_t key;  /* CAN identifier */
     icd_can_kind_t kind;
-    uint32_t count;  /* of all its packets */
-    uint32_t length; /* of the message; 0: that of all its packets */
-    uint32_t there;  /* packets that have come */
-    uint32_t last;   /* when the last one came */
-    uint32_t run;    /* packets 0 to run - 1 came last, one after the other */
+    uint32_t count;  /* number of packets of the message */
+    uint32_t length; /* bytes of the message; 0: all bytes of its packets */
+    uint32_t there;  /* number of packets received */
+    uint32_t last;   /* time of the last packet in ms */
+    uint32_t run;    /* packets 0 to run - 1 were received last, in this order */
     uint32_t completed_by;
     bool done;
     uint8_t got[32];
 } icd_can_slot_t;
 
-/** Puts messages together, from so many senders at once as there are slots. */
+/** Assembles messages from CAN packets. Needs one slot for each message that is received at the same time. */
 typedef struct {
     const icd_link_t *link;
-    icd_can_slot_t *slots; /* in the order in which their messages began */
+    icd_can_slot_t *slots; /* ordered by the start of their messages */
     size_t slot_count;
     size_t used;
-    uint32_t room; /* packets */
+    uint32_t room; /* largest number of packets of a message */
     int16_t address;
 } icd_can_joiner_t;
 
-/** Whose messages are taken: everybody's. */
+/** Value of `address`: accept messages for any destination. */
 #define ICD_CAN_EVERYBODY (-1)
 
-/** Bytes that each slot takes of the buffer: NODE_CAN_SLOT_BYTES is the constant for a node. The node is on CAN. */
+/**
+ * Return the buffer size per slot in bytes. NODE_CAN_SLOT_BYTES is the constant of a node. The link must describe CAN.
+ */
 ICDGEN_API size_t icd_can_slot_bytes(const icd_link_t *link);
 
 /**
- * `address`: whose messages are taken, or ICD_CAN_EVERYBODY. ICD_ERROR_LENGTH if the buffer is too small for the
- * slots.
+ * Initialize a joiner with `count` slots and a buffer of `size` bytes. Both must stay valid while it is in use.
+ * `address`: accept only messages for this destination, or ICD_CAN_EVERYBODY.
+ * Return ICD_ERROR_LENGTH if the buffer is too small for the slots.
  */
 ICDGEN_API icd_status_t icd_can_joiner_init(
     icd_can_joiner_t *joiner,
@@ -968,25 +992,25 @@ ICDGEN_API icd_status_t icd_can_joiner_init(
     uint8_t *buffer,
     size_t size);
 
-/** Gives up what has waited too long for its next packet: ICD_EVENT_INCOMPLETE. */
+/** Discard messages whose next packet is overdue and report each as ICD_EVENT_INCOMPLETE. `now` is in milliseconds. */
 ICDGEN_API void icd_can_expire(icd_can_joiner_t *joiner, uint32_t now, icd_event_fn *on_event, void *context);
 
 /**
- * Takes one packet; `now` in milliseconds. Tells of ICD_EVENT_MESSAGE, whose data have no id, and of INCOMPLETE,
- * MALFORMED, DUPLICATE, BUSY and UNKNOWN_TYPE.
+ * Pass one received packet to the joiner. `now` is in milliseconds.
+ * Events: ICD_EVENT_MESSAGE (`data` without the id), INCOMPLETE, MALFORMED, DUPLICATE, BUSY and UNKNOWN_TYPE.
  */
 ICDGEN_API void icd_can_feed(
     icd_can_joiner_t *joiner, uint32_t now, const icd_can_packet_t *packet, icd_event_fn *on_event, void *context);
 
 /* ---- telemetry logs ---------------------------------------------------------------------------------------------- */
 
-/** Bytes with a length. */
+/** A pointer to bytes and their number. */
 typedef struct {
     const uint8_t *data;
     size_t length;
 } icd_bytes_t;
 
-/** A frame of a log. `id` is -1, and the data the whole slot, where the ICD assigns no frame to the bit. */
+/** A frame of a log. If the ICD assigns no frame to the bit, `id` is -1 and the data are the whole slot. */
 typedef struct {
     uint16_t bit;
     int16_t id;
@@ -994,7 +1018,7 @@ typedef struct {
     size_t length;
 } icd_log_frame_t;
 
-/** Goes through the frames of an entry, in the order of the mask bits. */
+/** Iterator over the frames of an entry, in the order of the mask bits. */
 typedef struct {
     const icd_log_mask_form_t *form;
     const uint8_t *mask;
@@ -1002,17 +1026,17 @@ typedef struct {
     uint16_t bit;
 } icd_log_frames_t;
 
-/** Frames of an entry: as many as the mask selects. The node has logs. */
+/** Return the number of frames that the mask selects. The link must describe logs. */
 ICDGEN_API size_t icd_log_count(const icd_link_t *link, const uint8_t *mask);
 
-/** `slots`: where they begin, such as `slots` of icd_log_entry_t. */
+/** Start the iteration. `mask` and `slots` are those of icd_log_entry_t or icd_log_message_t. */
 ICDGEN_API void icd_log_frames(
     icd_log_frames_t *frames, const icd_link_t *link, const uint8_t *mask, const uint8_t *slots);
 
-/** The next frame; false after the last. */
+/** Write the next frame to `frame`. Return false after the last frame. */
 ICDGEN_API bool icd_log_next(icd_log_frames_t *frames, icd_log_frame_t *frame);
 
-/** An entry of a log file: Unix time, and the slots of its frames, for icd_log_frames(). */
+/** An entry of a log file: Unix time, mask and slots. Pass mask and slots to icd_log_frames(). */
 typedef struct {
     uint32_t seconds;
     uint32_t milliseconds;
@@ -1020,33 +1044,41 @@ typedef struct {
     const uint8_t *slots;
 } icd_log_entry_t;
 
-/** Is told of each entry, which lasts until it returns. */
+/** Callback for each entry. The entry is valid during the call. */
 typedef void icd_log_entry_fn(void *context, const icd_log_entry_t *entry);
 
-/** Reads a log file in pieces of any size. */
+/** Reader of a log file in pieces of any size. */
 typedef struct {
     const icd_link_t *link;
-    uint8_t *buffer; /* the mask, once it is known, then what there is of an entry */
-    size_t length;   /**< At the end of the file: bytes that belong to no whole entry. */
+    uint8_t *buffer; /* the mask, followed by the bytes of an incomplete entry */
+    size_t length;   /**< At the end of the file: bytes of an incomplete entry. */
     size_t entry_bytes;
-    bool has_mask; /**< Whether the header is complete; the mask is at the beginning of the buffer. */
+    bool has_mask; /**< Whether the header is complete. The mask is then at the beginning of the buffer. */
 } icd_log_reader_t;
 
-/** Bytes that a reader needs at most: NODE_LOG_BYTES is the constant for a node. The node has log files. */
+/**
+ * Return the buffer size of a reader in bytes. NODE_LOG_BYTES is the constant of a node. The link must describe log
+ * files.
+ */
 ICDGEN_API size_t icd_log_bytes(const icd_link_t *link);
 
 ICDGEN_API icd_status_t
 icd_log_reader_init(icd_log_reader_t *reader, const icd_link_t *link, uint8_t *buffer, size_t capacity);
 
-/** Takes the next bytes of the file. */
+/** Pass the next bytes of the file to the reader. Calls `on_entry` for each complete entry. */
 ICDGEN_API void icd_log_feed(
     icd_log_reader_t *reader, const uint8_t *bytes, size_t count, icd_log_entry_fn *on_entry, void *context);
 
-/** Writes the header of a log file; ICD_ERROR_LENGTH if the mask has another length, or the buffer is too small. */
+/**
+ * Write the header of a log file. Return ICD_ERROR_LENGTH if the mask has the wrong length or the buffer is too small.
+ */
 ICDGEN_API icd_status_t icd_log_write_header(
     const icd_link_t *link, const uint8_t *mask, size_t mask_length, uint8_t *buffer, size_t capacity, size_t *written);
 
-/** Writes an entry of a log file with one frame for each bit of the mask. ICD_ERROR_RANGE if a time does not fit. */
+/**
+ * Write an entry of a log file, with one frame for each selected bit of the mask. Return ICD_ERROR_RANGE if the time
+ * does not fit, ICD_ERROR_LENGTH if the number or the length of the frames is wrong or the buffer is too small.
+ */
 ICDGEN_API icd_status_t icd_log_write_entry(
     const icd_link_t *link,
     const uint8_t *mask,
@@ -1058,23 +1090,23 @@ ICDGEN_API icd_status_t icd_log_write_entry(
     size_t capacity,
     size_t *written);
 
-/** An unsolicited log: mask and slots lie within the message. */
+/** An unsolicited log message. `mask` and `slots` point into the message. */
 typedef struct {
     const uint8_t *mask;
     const uint8_t *slots;
 } icd_log_message_t;
 
-/** Bytes of an unsolicited log message with its id, as far as that is known. The node has such messages. */
+/**
+ * Return the length in bytes of an unsolicited log message with its id, as far as it follows from the first `length`
+ * bytes. The link must describe such messages.
+ */
 ICDGEN_API size_t icd_log_message_length(const icd_link_t *link, const uint8_t *message, size_t length);
 
-/**
- * Reads an unsolicited log message, which begins with its id; ICD_ERROR_LENGTH if it is longer or shorter than it must
- * be.
- */
+/** Decode an unsolicited log message, which starts with its id. Return ICD_ERROR_LENGTH if it has the wrong length. */
 ICDGEN_API icd_status_t
 icd_log_message_decode(const icd_link_t *link, const uint8_t *message, size_t length, icd_log_message_t *log);
 
-/** Writes an unsolicited log message with its id. */
+/** Encode an unsolicited log message with its id. */
 ICDGEN_API icd_status_t icd_log_message_encode(
     const icd_link_t *link,
     const uint8_t *mask,
@@ -1097,34 +1129,37 @@ typedef struct {
     uint16_t second;
 } icd_dos_time_t;
 
-/** The name of the first part that the calendar or the clock does not have; NULL if all is well. */
+/** Return the name of the first invalid part, such as "month"; NULL if the date and time are valid. */
 ICDGEN_API const char *icd_dos_time_wrong(const icd_dos_time_t *time);
 
-/** Unpacks a time, whatever it is; icd_dos_time_wrong() tells whether it exists. */
+/** Unpack a time without checking it. Use icd_dos_time_wrong() to check it. */
 ICDGEN_API icd_status_t icd_dos_time_unpack(const icd_link_t *link, uint32_t value, icd_dos_time_t *time);
 
 /**
- * Packs a time; what is finer than its resolution is cut off. ICD_ERROR_RANGE, with the name of the first part that
- * does not exist or does not fit in `wrong`.
+ * Pack a time, rounded down to the resolution of the format. Return ICD_ERROR_RANGE, and set `wrong` to the name of the
+ * first part that is invalid or does not fit.
  */
 ICDGEN_API icd_status_t
 icd_dos_time_pack(const icd_link_t *link, const icd_dos_time_t *time, uint32_t *value, const char **wrong);
 
 /* ---- hole maps and the index file -------------------------------------------------------------------------------- */
 
-/** Makes the map of a block of so many packets, none of which was received. ICD_ERROR_RANGE if there are too many. */
+/**
+ * Initialize the map of a block of `packets` packets, all of them missing. Return ICD_ERROR_RANGE if a block cannot
+ * have so many packets.
+ */
 ICDGEN_API icd_status_t icd_hole_map_init(const icd_link_t *link, uint8_t *map, uint32_t packets);
 
-/** Marks a packet as received. ICD_ERROR_RANGE if the block has no packet of that number. */
+/** Mark packet `number` as received. Return ICD_ERROR_RANGE if the block has no such packet. */
 ICDGEN_API icd_status_t icd_hole_map_set(const icd_link_t *link, uint8_t *map, uint32_t packets, uint32_t number);
 
-/** Whether the map says that the packet was received. The block has a packet of that number. */
+/** Return whether packet `number` is marked as received. The block must have such a packet. */
 ICDGEN_API bool icd_hole_map_get(const icd_link_t *link, const uint8_t *map, uint32_t number);
 
-/** Packets of a block that were not received. */
+/** Return the number of missing packets of a block. */
 ICDGEN_API uint32_t icd_hole_map_count(const icd_link_t *link, const uint8_t *map, uint32_t packets);
 
-/** An entry of the index file; `time` is packed. */
+/** An entry of the index file. `time` is packed; see icd_dos_time_unpack(). */
 typedef struct {
     uint32_t type;
     uint32_t counter;
@@ -1135,11 +1170,14 @@ typedef struct {
     size_t meta_length;
 } icd_index_entry_t;
 
-/** Reads an entry, whose meta-data stay where they are. */
+/** Decode an entry. `entry->meta` points into `bytes`. */
 ICDGEN_API icd_status_t
 icd_index_entry_decode(const icd_link_t *link, const uint8_t *bytes, size_t length, icd_index_entry_t *entry);
 
-/** Writes an entry. ICD_ERROR_RANGE if a number does not fit, ICD_ERROR_LENGTH if the meta-data have another length. */
+/**
+ * Encode an entry. Return ICD_ERROR_RANGE if a number does not fit into its field, ICD_ERROR_LENGTH if the meta-data
+ * have the wrong length or the buffer is too small.
+ */
 ICDGEN_API icd_status_t
 icd_index_entry_encode(const icd_link_t *link, const icd_index_entry_t *entry, uint8_t *bytes, size_t capacity);
 
@@ -1147,15 +1185,15 @@ icd_index_entry_encode(const icd_link_t *link, const icd_index_entry_t *entry, u
 
 typedef enum {
     ICD_CLIENT_IDLE,
-    ICD_CLIENT_HOLD,  /* a late reply to the request before may still come */
-    ICD_CLIENT_WAIT,  /* for the reply */
-    ICD_CLIENT_PAUSE, /* I2C: before polling or sending again */
-    ICD_CLIENT_POLL   /* I2C: for the acknowledge frame */
+    ICD_CLIENT_HOLD,  /* waits because a late reply to the previous request may still arrive */
+    ICD_CLIENT_WAIT,  /* waits for the reply */
+    ICD_CLIENT_PAUSE, /* I2C: waits before the next poll or the next attempt */
+    ICD_CLIENT_POLL   /* I2C: waits for the acknowledge frame */
 } icd_client_state_t;
 
 /**
- * A request. `repeat`: whether it may be sent again although it may have arrived; of telemetry and settings it always
- * may.
+ * A request. `repeat`: whether the client may send it again if the node may already have received it. Telemetry and
+ * settings are always repeated.
  */
 typedef struct {
     icd_direction_t direction;
@@ -1167,34 +1205,38 @@ typedef struct {
 
 typedef struct icd_client icd_client_t;
 
-/** One request at a time, from sending to its outcome. */
+/** A client: sends one request at a time and reports its outcome. Members without a description are internal. */
 struct icd_client {
     const icd_link_t *link;
-    icd_client_settings_t settings; /**< May be changed while no request is going on. */
+    icd_client_settings_t settings; /**< Timeouts and retries. May be changed while no request is in progress. */
     icd_bus_t bus;
-    bool ready;                               /* it was begun without an error */
-    bool (*fits)(const icd_client_t *client); /* CAN: whether the request fits its packets */
-    void (*expire)(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context); /* CAN: old packets */
+    bool ready;                               /* initialized without an error */
+    bool (*fits)(const icd_client_t *client); /* CAN: whether the request fits into packets */
+    void (*expire)(
+        icd_client_t *client,
+        uint32_t now,
+        icd_event_fn *on_event,
+        void *context); /* CAN: discards incomplete messages */
     icd_client_state_t state;
     bool checks_telecommands;
     bool checks_telemetry;
-    bool sent_whole; /* I2C: the telecommand is sent, its acknowledge is polled */
+    bool sent_whole; /* I2C: the telecommand is sent; its acknowledge is polled */
     bool repeat;
     icd_direction_t direction;
-    const icd_message_t *message; /* that is requested */
-    uint8_t *whole;               /* the request with its id and checksum */
+    const icd_message_t *message; /* message of the request */
+    uint8_t *whole;               /* request with id and checksum */
     size_t whole_length;
     uint32_t attempts;
-    uint32_t until;   /* when the state ends by itself */
-    uint32_t give_up; /* when polling ends */
-    bool echo;        /* a second reply to echo_id may come until echo_end */
+    uint32_t until;   /* time at which the state ends */
+    uint32_t give_up; /* time at which polling ends */
+    bool echo;        /* a second reply to echo_id may arrive until echo_end */
     uint8_t echo_id;
     uint32_t echo_end;
     uint8_t address;
     uint8_t poll_id;
-    bool poll;        /* to be sent: the request for the acknowledge frame ... */
-    uint32_t pending; /* ... and the request, so many times */
-    uint32_t owed;    /* I2C: transactions taken of which icd_client_transferred() was not told */
+    bool poll;        /* to be sent: the request for the acknowledge frame */
+    uint32_t pending; /* to be sent: the request, this many times */
+    uint32_t owed;    /* I2C: transactions taken whose result is not yet reported */
     icd_uart_encoder_t encoder;
     icd_can_splitter_t splitter;
     uint8_t chunk[32];
@@ -1203,49 +1245,62 @@ struct icd_client {
     icd_can_slot_t slot;
 };
 
-/** Bytes of buffer that a client needs: NODE_CLIENT_BYTES is the constant for a node. */
+/** Return the buffer size of a client in bytes. NODE_CLIENT_BYTES is the constant of a node. */
 ICDGEN_API size_t icd_client_bytes(const icd_link_t *link);
 
 /**
- * Begins a client on the UART, with the times of the ICD. ICD_ERROR_UNSUPPORTED if the node is not on that bus,
- * ICD_ERROR_LENGTH if the buffer is smaller than icd_client_bytes(); it refuses every request then. The client must
- * stay where it is. NODE_client_uart() begins one that takes the messages of the node only, and so the next two.
+ * Initialize a client on the UART with the timeouts of the ICD. The buffer must stay valid and the client must not be
+ * moved or copied while it is in use. NODE_client_uart(), NODE_client_i2c() and NODE_client_can() initialize a client
+ * that accepts only the messages of the node at compile time.
+ * Return ICD_ERROR_UNSUPPORTED if the node is not on this bus, ICD_ERROR_LENGTH if `size` is less than
+ * icd_client_bytes(). After an error the client rejects all requests.
  */
 ICDGEN_API icd_status_t icd_client_uart(icd_client_t *client, const icd_link_t *link, uint8_t *buffer, size_t size);
 
-/** On I2C, as icd_client_uart(). */
+/** Initialize a client on I2C. See icd_client_uart(). */
 ICDGEN_API icd_status_t icd_client_i2c(icd_client_t *client, const icd_link_t *link, uint8_t *buffer, size_t size);
 
-/** On CAN, as icd_client_uart(); `address` is ours, to which the node replies. */
+/**
+ * Initialize a client on CAN. `address` is the CAN address of the client, to which the node replies. See
+ * icd_client_uart().
+ */
 ICDGEN_API icd_status_t
 icd_client_can(icd_client_t *client, const icd_link_t *link, uint8_t address, uint8_t *buffer, size_t size);
 
-/** Uses checksums where the ICD leaves the choice for the bus. Where it demands them, they are used in any case. */
+/** Enable optional checksums. Checksums that the ICD requires on the bus are always used. */
 ICDGEN_API void icd_client_use_checksums(icd_client_t *client);
 
-/** When icd_client_tick() wants to be called at the latest; false: not at all. */
+/**
+ * Get the time in milliseconds at which icd_client_tick() must be called at the latest. Return false if no request is
+ * in progress; `*deadline` has no meaning then.
+ */
 ICDGEN_API bool icd_client_deadline(const icd_client_t *client, uint32_t *deadline);
 
 /**
- * Begins a request; its data are copied. ICD_ERROR_UNKNOWN_ID, ICD_ERROR_BUSY while another one is going on or has not
- * been taken by the output functions, ICD_ERROR_LENGTH, ICD_ERROR_UNSUPPORTED if the client could not be begun; nothing
- * has happened then. `on_event` NULL: that a telecommand needs no acknowledge, and is done at once, is told to nobody.
+ * Start a request. The data are copied. `now` is in milliseconds. A telecommand without acknowledge is reported at once
+ * as ICD_EVENT_DONE; `on_event` may be NULL to ignore this.
+ * Return ICD_ERROR_UNKNOWN_ID if the node has no such message, ICD_ERROR_BUSY if another request is in progress or its
+ * output has not been taken completely, ICD_ERROR_LENGTH if the data have the wrong length, or ICD_ERROR_UNSUPPORTED if
+ * the client is not initialized. After an error the client is unchanged.
  */
 ICDGEN_API icd_status_t icd_client_start(
     icd_client_t *client, uint32_t now, const icd_request_t *request, icd_event_fn *on_event, void *context);
 
 /**
- * Gives up the request, without an event, and what of it has not been taken: the next one may begin. A late reply to
- * this one is ICD_EVENT_STRAY.
+ * Cancel the request without an event, and drop its remaining output. The next request may then be started. A late
+ * reply to the cancelled request is reported as ICD_EVENT_STRAY.
  */
 ICDGEN_API void icd_client_cancel(icd_client_t *client);
 
-/** Requests telemetry. NODE_request_MESSAGE() does so by name. */
+/**
+ * Request telemetry by id. `now` is in milliseconds. NODE_request_MESSAGE() is the typed version. Errors: see
+ * icd_client_start().
+ */
 ICDGEN_API icd_status_t icd_client_request(icd_client_t *client, uint32_t now, uint8_t id);
 
 /**
- * Sends a telecommand, whose data are copied. One that is not acknowledged is ICD_EVENT_DONE at once.
- * NODE_send_MESSAGE() does so by name.
+ * Send a telecommand by id. NODE_send_MESSAGE() is the typed version. For parameters, events and errors see
+ * icd_client_start() and icd_request_t.
  */
 ICDGEN_API icd_status_t icd_client_send(
     icd_client_t *client,
@@ -1257,93 +1312,114 @@ ICDGEN_API icd_status_t icd_client_send(
     icd_event_fn *on_event,
     void *context);
 
-/** Whether the event is the reply to a request for that telemetry of that node, or of one that includes it. */
+/**
+ * Return whether the event is the reply to a request for telemetry `id` of `node`, or of a node that includes `node`.
+ */
 ICDGEN_API bool icd_is_reply(const icd_event_t *event, const char *node, uint8_t id);
 
-/** The next bytes for the UART; false when there are none. They last until the next call. */
+/**
+ * UART: get the next bytes to send. `*bytes` is valid until the next call. Return false if there is nothing to send.
+ */
 ICDGEN_API bool icd_client_output(icd_client_t *client, const uint8_t **bytes, size_t *count);
 
-/** The next packet for CAN; false when there is none. */
+/** CAN: get the next packet to send. Return false if there is nothing to send. */
 ICDGEN_API bool icd_client_next_packet(icd_client_t *client, icd_can_packet_t *packet);
 
 /**
- * The next transaction on I2C: bytes to write, and how many to read then; false when there is none.
- * icd_client_transferred() is told of each that was taken, once and in this order.
+ * I2C: get the next transaction: write `*count` bytes from `*bytes`, then read `*read` bytes (0: write only). Return
+ * false if there is none. Call icd_client_transferred() exactly once for each transaction, in the same order.
  */
 ICDGEN_API bool icd_client_transfer(icd_client_t *client, const uint8_t **bytes, size_t *count, size_t *read);
 
-/** Lets time pass. */
+/**
+ * Process timeouts: send again or end the request whose time is up. Call at the time of the deadline function at the
+ * latest; calling more often is harmless. `now` is the current time in milliseconds.
+ */
 ICDGEN_API void icd_client_tick(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context);
 
-/** UART: takes the next bytes of the stream. */
+/**
+ * UART: pass received bytes to the client, in pieces of any size. Reports the resulting events to `on_event` before it
+ * returns.
+ */
 ICDGEN_API void icd_client_received(
     icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context);
 
-/** CAN: takes a packet. */
+/** CAN: pass a received packet to the client. Reports the resulting events to `on_event` before it returns. */
 ICDGEN_API void icd_client_packet(
     icd_client_t *client, uint32_t now, const icd_can_packet_t *packet, icd_event_fn *on_event, void *context);
 
 /**
- * I2C: takes what was read in the oldest transaction that was taken and not told of; `bytes` NULL: it failed. Of a
- * write without reading, anything but NULL. What a request owed that is over is ICD_EVENT_STRAY.
+ * I2C: pass the result of the oldest unfinished transaction to the client: the `count` bytes that were read, or NULL if
+ * the transaction failed. After a successful write without read, pass any pointer except NULL. If the request has
+ * already ended, the result is reported as ICD_EVENT_STRAY.
  */
 ICDGEN_API void icd_client_transferred(
     icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context);
 
-/* ---- client over envelopes --------------------------------------------------------------------------------------- */
+/* ---- client for messages with header and trailer ----------------------------------------------------------------- */
 
-/** A request. `repeat`: whether it may be sent again although it may have arrived; of telemetry it always may. */
+/**
+ * A request. `repeat`: whether the client may send it again if the node may already have received it. Telemetry
+ * requests are always repeated.
+ */
 typedef struct {
     icd_direction_t direction;
     uint32_t id;
     bool repeat;
-    bool has_reply; /**< Whether `reply` is the id of the telemetry that answers a telecommand; else as the ICD says. */
+    bool has_reply; /**< Whether `reply` is the id of the reply to a telecommand. If not, the ICD decides. */
     uint32_t reply;
     const uint8_t *data;
     size_t length;
 } icd_stream_request_t;
 
-/** Room for a request, and the memory of the one before that may still be answered. */
+/** Memory for a request, and for the previous request if its reply may still arrive. */
 typedef struct {
     icd_client_state_t state;
     icd_direction_t direction;
     uint32_t id;
     uint32_t sent; /* id of the telecommand */
-    uint8_t *data; /* of the telecommand */
+    uint8_t *data; /* data of the telecommand */
     size_t length;
     bool repeat;
     bool has_reply;
     uint32_t reply;
     uint32_t attempts;
-    uint32_t until;  /* when the state ends by itself */
-    bool untaken;    /* to be sent, ... */
-    uint32_t ticket; /* ... in this order */
+    uint32_t until;  /* time at which the state ends */
+    bool untaken;    /* the request is still to be sent */
+    uint32_t ticket; /* order of sending */
     bool was_taken;  /* sent at least once */
-    bool late;       /* telemetry of late_id may come until late_end */
+    bool late;       /* telemetry with late_id may arrive until late_end */
     uint32_t late_id;
     uint32_t late_end;
 } icd_stream_slot_t;
 
-/** Requests that different telemetry answers, each from sending to its outcome, and what comes unasked. */
+/**
+ * A client for messages with framing. Several requests may be in progress if their replies differ. Also reports
+ * unsolicited telemetry.
+ */
 typedef struct {
     const icd_link_t *link;
-    icd_client_settings_t settings; /**< May be changed while no request is going on, and so `sender.values`. */
+    icd_client_settings_t
+        settings; /**< Timeouts and retries. They and `sender.values` may be changed while no request is in progress. */
     icd_stream_sender_t sender;
     icd_stream_decoder_t decoder;
     icd_stream_slot_t *slots;
     size_t slot_count;
     uint32_t tickets;
-    bool ready; /* it was begun without an error */
+    bool ready; /* initialized without an error */
 } icd_stream_client_t;
 
-/** Bytes of buffer for so many requests: NODE_LONGEST, and NODE_REQUEST_BYTES for each. */
+/**
+ * Return the buffer size in bytes for this number of requests: NODE_LONGEST, plus NODE_REQUEST_BYTES for each request.
+ */
 ICDGEN_API size_t icd_stream_client_bytes(const icd_link_t *link, size_t requests);
 
 /**
- * Begins a client that has as many requests under way as there are `slots`, with the times and the values of the ICD.
- * `sequences` are twice NODE_SEQUENCES numbers; with less, some messages are not counted. ICD_ERROR_UNSUPPORTED if the
- * ICD describes no envelope, ICD_ERROR_LENGTH if the buffer is smaller than icd_stream_client_bytes(); it refuses every
- * request then.
+ * Initialize a client with the timeouts and values of the ICD. `slot_count` is the number of requests that can be in
+ * progress at the same time. `sequences` has twice NODE_SEQUENCES elements; with fewer elements, some messages are not
+ * counted. All three arrays must stay valid while the client is in use.
+ * Return ICD_ERROR_UNSUPPORTED if the ICD describes no framing, ICD_ERROR_LENGTH if `size` is less than
+ * icd_stream_client_bytes(). After an error the client rejects all requests.
  */
 ICDGEN_API icd_status_t icd_stream_client_init(
     icd_stream_client_t *client,
@@ -1355,15 +1431,19 @@ ICDGEN_API icd_status_t icd_stream_client_init(
     uint32_t *sequences,
     size_t sequence_count);
 
-/** When icd_stream_client_tick() wants to be called at the latest; false: not at all. */
+/**
+ * Get the time in milliseconds at which icd_stream_client_tick() must be called at the latest. Return false if no
+ * request is in progress.
+ */
 ICDGEN_API bool icd_stream_client_deadline(const icd_stream_client_t *client, uint32_t *deadline);
 
 /**
- * Begins a request; its data are copied. One that nothing answers is ICD_STREAM_DONE at once, which nobody is told of
- * if `on_event` is NULL. ICD_ERROR_UNKNOWN_ID; ICD_ERROR_BUSY while another one waits for the same reply, or no slot is
- * free; ICD_ERROR_LENGTH; ICD_ERROR_RANGE if a value of the envelope does not fit; ICD_ERROR_UNSUPPORTED for telemetry
- * that no telecommand without parameters is answered with, and if the client could not be begun. Nothing has happened
- * then.
+ * Start a request. The data are copied. `now` is in milliseconds. A request without a reply is reported at once as
+ * ICD_STREAM_DONE; `on_event` may be NULL to ignore this.
+ * Return ICD_ERROR_UNKNOWN_ID if the node has no such message, ICD_ERROR_BUSY if another request waits for the same
+ * reply or no slot is free, ICD_ERROR_LENGTH if the data have the wrong length, ICD_ERROR_RANGE if a header or trailer
+ * value does not fit into its field, or ICD_ERROR_UNSUPPORTED if no telecommand without parameters requests this
+ * telemetry or the client is not initialized. After an error the client is unchanged.
  */
 ICDGEN_API icd_status_t icd_stream_client_start(
     icd_stream_client_t *client,
@@ -1372,10 +1452,10 @@ ICDGEN_API icd_status_t icd_stream_client_start(
     icd_stream_event_fn *on_event,
     void *context);
 
-/** Asks for telemetry by the telecommand that it answers. */
+/** Request telemetry by sending the telecommand that it replies to. Errors: see icd_stream_client_start(). */
 ICDGEN_API icd_status_t icd_stream_client_request(icd_stream_client_t *client, uint32_t now, uint32_t id);
 
-/** Sends a telecommand, which is answered as the ICD says. */
+/** Send a telecommand. The ICD decides which reply it has. Errors: see icd_stream_client_start(). */
 ICDGEN_API icd_status_t icd_stream_client_send(
     icd_stream_client_t *client,
     uint32_t now,
@@ -1386,15 +1466,21 @@ ICDGEN_API icd_status_t icd_stream_client_send(
     icd_stream_event_fn *on_event,
     void *context);
 
-/** Sends a telecommand that telemetry `reply` answers, whatever the ICD says. */
+/** Send a telecommand and wait for telemetry `reply`, regardless of the ICD. Errors: see icd_stream_client_start(). */
 ICDGEN_API icd_status_t icd_stream_client_ask(
     icd_stream_client_t *client, uint32_t now, uint32_t id, const uint8_t *data, size_t length, uint32_t reply);
 
-/** Writes the next message to be sent; false if there is none, or it does not fit: NODE_LINE_BYTES always do. */
+/**
+ * Write the next message to send into the buffer. Return false if there is none or the buffer is too small;
+ * NODE_LINE_BYTES are always enough.
+ */
 ICDGEN_API bool icd_stream_client_output(
     icd_stream_client_t *client, uint8_t *buffer, size_t capacity, size_t *written);
 
-/** Takes the next bytes of the stream, or a packet. Telemetry that nobody waits for is ICD_STREAM_MESSAGE. */
+/**
+ * Pass received bytes to the client: a piece of the stream of any size, or one packet. Unsolicited telemetry is
+ * reported as ICD_STREAM_MESSAGE. `now` is in milliseconds.
+ */
 ICDGEN_API void icd_stream_client_received(
     icd_stream_client_t *client,
     uint32_t now,
@@ -1403,86 +1489,101 @@ ICDGEN_API void icd_stream_client_received(
     icd_stream_event_fn *on_event,
     void *context);
 
-/** Lets time pass. */
+/**
+ * Process timeouts: send again or end the request whose time is up. Call at the time of the deadline function at the
+ * latest; calling more often is harmless. `now` is the current time in milliseconds.
+ */
 ICDGEN_API void icd_stream_client_tick(
     icd_stream_client_t *client, uint32_t now, icd_stream_event_fn *on_event, void *context);
 
-/** Gives up all requests, without events, and what of them has not been taken. A late reply is ICD_STREAM_MESSAGE. */
+/**
+ * Cancel all requests without events, and drop their remaining output. A late reply is reported as ICD_STREAM_MESSAGE.
+ */
 ICDGEN_API void icd_stream_client_cancel(icd_stream_client_t *client);
 
-/** Gives up the requests of that message only. */
+/** Cancel only the requests of this message. */
 ICDGEN_API void icd_stream_client_cancel_request(icd_stream_client_t *client, icd_direction_t direction, uint32_t id);
 
-/** Whether the event brings that telemetry of that node, or of one that includes it: unasked, or as a reply. */
+/**
+ * Return whether the event contains telemetry `id` of `node`, or of a node that includes `node`, unsolicited or as a
+ * reply.
+ */
 ICDGEN_API bool icd_is_telemetry(const icd_stream_event_t *event, const char *node, uint32_t id);
 
-/** Bytes of the longest message that takes part in a procedure, of any node. */
+/** Size in bytes of the longest message in a procedure of any node. */
 #define ICD_STEP_BYTES 22u
 
 /* ---- procedures -------------------------------------------------------------------------------------------------- */
 
-/** How a procedure ended. */
+/** State and result of a procedure. */
 typedef enum {
     ICD_RUNNING,
     ICD_DONE,
-    ICD_REFUSED,   /**< The node refused a request without which it cannot go on. */
-    ICD_TIMED_OUT, /**< No reply to such a request, or a flag never became what was waited for. */
-    ICD_PARAMETER, /**< The node cannot load this block. */
-    ICD_LENGTH,    /**< The block, or a frame, has another length than was asked for. */
-    ICD_ROUNDS,    /**< Packets were still missing after so many rounds. */
-    ICD_CHECKSUM,  /**< After so many rounds the checksum was still wrong. */
-    ICD_FAILED     /**< The node tells that what it was asked for failed. */
+    ICD_REFUSED,   /**< The node rejected a necessary request. */
+    ICD_TIMED_OUT, /**< No reply to a necessary request, or a flag did not change in time. */
+    ICD_PARAMETER, /**< The node cannot load the block. */
+    ICD_LENGTH,    /**< A block or frame has a different length than requested. */
+    ICD_ROUNDS,    /**< Packets are still missing after the maximum number of rounds. */
+    ICD_CHECKSUM,  /**< The checksum is still wrong after the maximum number of rounds. */
+    ICD_FAILED     /**< The node reports that the operation failed. */
 } icd_result_t;
 
 typedef enum { ICDGEN_WANT_NOTHING, ICDGEN_WANT_REQUEST, ICDGEN_WANT_TIME } icdgen_want_t;
 
 typedef struct icd_procedure icd_procedure_t;
 
-/** What all procedures share. It says which request comes next and is told what became of it. */
+/**
+ * Common state of all procedures. A procedure returns the next request and processes its outcome. All members except
+ * `result` are internal.
+ */
 struct icd_procedure {
     const icd_link_t *link;
     icd_result_t result;
     uint32_t now;
-    uint32_t until;        /* when a wait ends */
-    icd_request_t request; /* that comes next, or whose outcome is waited for */
+    uint32_t until;        /* time at which a wait ends */
+    icd_request_t request; /* the next request, or the request in progress */
     icdgen_want_t want;
     bool started;
-    bool asked;               /* the request was given out */
-    bool tolerant;            /* it may end in any way */
-    uint32_t damaged;         /* acknowledges of it that were */
-    const icd_step_t *polled; /* the frame that is polled until a flag is as wanted */
+    bool asked;               /* the request was returned to the caller */
+    bool tolerant;            /* the procedure continues after any outcome of the request */
+    uint32_t damaged;         /* number of damaged acknowledges of the request */
+    const icd_step_t *polled; /* frame that is polled until its flag has the value `wanted` */
     icd_role_t flag;
     bool wanted;
-    uint8_t program; /* of which the frame must be, if it says of which one it is */
+    uint8_t program; /* expected program, if the frame contains its number */
     uint32_t interval;
     uint32_t poll_end;
     uint8_t state;
-    uint8_t data[ICD_STEP_BYTES]; /* of the request */
+    uint8_t data[ICD_STEP_BYTES]; /* data of the request */
     void (*resume)(
-        icd_procedure_t *procedure, const icd_event_t *outcome); /* outcome NULL: at the start, after a wait */
+        icd_procedure_t *procedure, const icd_event_t *outcome); /* outcome is NULL at the start and after a wait */
     void (*packet)(icd_procedure_t *procedure, uint32_t number, const uint8_t *data, size_t length);
 };
 
-/** The next request, once; false while there is nothing to send. It lasts until the next call. */
+/**
+ * Get the next request. Each request is returned once and is valid until the next call. `now` is in milliseconds.
+ * Return false if there is nothing to send.
+ */
 ICDGEN_API bool icd_procedure_next(icd_procedure_t *procedure, uint32_t now, icd_request_t *request);
 
-/** Takes an event of the client; those that are of no concern are ignored. */
+/** Pass an event of the client to the procedure. Unrelated events are ignored. */
 ICDGEN_API void icd_procedure_event(icd_procedure_t *procedure, uint32_t now, const icd_event_t *event);
 
 /**
- * When icd_procedure_next() wants to be called again. False while a request is ready, which is before the first call
- * and after an outcome: it may be called at once; false also while an outcome is awaited, and at the end.
+ * Get the time in milliseconds at which icd_procedure_next() must be called again. Return false if the procedure is not
+ * waiting for a time: before the first call and after an outcome (call icd_procedure_next() at once), while a request
+ * is in progress, and at the end.
  */
 ICDGEN_API bool icd_procedure_deadline(const icd_procedure_t *procedure, uint32_t *deadline);
 
 /**
- * Gives the client the next request as soon as there is one and the client is free. `on_event` is that of the client,
- * and hands each event to icd_procedure_event().
+ * Start the next request of the procedure if there is one and the client is idle. `on_event` is the callback that is
+ * also passed to the client; it must pass each event to icd_procedure_event().
  */
 ICDGEN_API icd_status_t icd_procedure_step(
     icd_procedure_t *procedure, icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context);
 
-/** A file of the node; `time` is packed. */
+/** A file of the node. `size` is in bytes; `time` is packed, see icd_dos_time_unpack(). */
 typedef struct {
     uint32_t type;
     uint32_t counter;
@@ -1491,58 +1592,59 @@ typedef struct {
     uint32_t checksum;
 } icd_file_t;
 
-/** Is told of each file. */
+/** Callback for each file. `file` is valid during the call. */
 typedef void icd_file_fn(void *context, const icd_file_t *file);
 
-/** Lists the files. `procedure` goes to the functions of icd_procedure_t. */
+/** Listing of the files. Pass `&list.procedure` to the icd_procedure_...() functions. */
 typedef struct {
     icd_procedure_t procedure;
     icd_file_fn *on_file;
     void *context;
-    uint32_t again; /* how often the same frame came in a row */
+    uint32_t again; /* number of identical frames in a row */
     bool has_last;
     uint8_t last[ICD_STEP_BYTES];
 } icd_list_t;
 
 ICDGEN_API icd_status_t icd_list_init(icd_list_t *list, const icd_link_t *link, icd_file_fn *on_file, void *context);
 
-/** Is told of each block of a file. */
+/** Callback for each block of a file. `data` is valid during the call; `offset` and `length` are in bytes. */
 typedef void icd_block_fn(void *context, uint32_t offset, const uint8_t *data, size_t length);
 
-/** The size of a file of which nothing but its end will tell, such as the index file. */
+/** Value of `size` for a file whose size is unknown before its end is reached, such as the index file. */
 #define ICD_SIZE_UNKNOWN UINT32_C(0xFFFFFFFF)
 
-/** Downloads a file block by block. `procedure` goes to the functions of icd_procedure_t. */
+/** Download of a file block by block. Pass `&download.procedure` to the icd_procedure_...() functions. */
 typedef struct {
     icd_procedure_t procedure;
     icd_bus_t bus;
     uint8_t type;
     uint8_t counter;
     uint32_t size;
-    uint32_t block; /* bytes asked for at once */
+    uint32_t block; /* bytes requested at once */
     uint8_t *buffer;
-    uint8_t *got; /* a bit for each packet of the block */
+    uint8_t *got; /* one bit for each packet of the block */
     icd_block_fn *on_block;
     void *context;
-    uint32_t offset;   /**< Progress: bytes delivered. */
-    uint32_t length;   /* of this block */
-    uint32_t checksum; /* of this block */
-    uint32_t count;    /* packets of this block */
-    uint32_t there;    /* of them */
+    uint32_t offset;   /**< Progress: bytes passed to `on_block`. */
+    uint32_t length;   /* of the current block */
+    uint32_t checksum; /* of the current block */
+    uint32_t count;    /* packets of the current block */
+    uint32_t there;    /* packets received */
     uint32_t rounds;
-    uint32_t left; /* I2C, CAN: packets still to be requested; messages of the hole map sent */
-    uint32_t last; /* when the last packet came */
+    uint32_t left; /* I2C, CAN: packets still to be requested; or messages of the hole map sent */
+    uint32_t last; /* time of the last packet */
 } icd_download_t;
 
-/** Bytes of the buffer and of the bitmap for blocks of at most `block` bytes. */
+/** Return the size in bytes of the buffer (and below, of the bitmap) for blocks of at most `block` bytes. */
 ICDGEN_API size_t icd_block_buffer(const icd_link_t *link, uint32_t block);
 
 ICDGEN_API size_t icd_block_bitmap(const icd_link_t *link, uint32_t block);
 
 /**
- * `size`: bytes of the file, or ICD_SIZE_UNKNOWN. `block`: bytes asked for at once, 0 for those of the ICD. `buffer`
- * holds icd_block_buffer() bytes, `bitmap` icd_block_bitmap(): NODE_BLOCK_BYTES and NODE_BLOCK_BITMAP_BYTES do for any.
- * ICD_ERROR_LENGTH if either is smaller, ICD_ERROR_UNSUPPORTED if the node has no downloads on that bus.
+ * Initialize a download. `size`: file size in bytes, or ICD_SIZE_UNKNOWN. `block`: bytes per block, or 0 for the block
+ * size of the ICD. `buffer` needs icd_block_buffer() bytes and `bitmap` icd_block_bitmap() bytes; NODE_BLOCK_BYTES and
+ * NODE_BLOCK_BITMAP_BYTES are always enough. Both must stay valid during the download.
+ * Return ICD_ERROR_LENGTH if a buffer is too small, ICD_ERROR_UNSUPPORTED if the node has no downloads on this bus.
  */
 ICDGEN_API icd_status_t icd_download_init(
     icd_download_t *download,
@@ -1559,24 +1661,25 @@ ICDGEN_API icd_status_t icd_download_init(
     icd_block_fn *on_block,
     void *context);
 
-/** Uploads a file block by block. `procedure` goes to the functions of icd_procedure_t. */
+/** Upload of a file block by block. Pass `&upload.procedure` to the icd_procedure_...() functions. */
 typedef struct {
     icd_procedure_t procedure;
     uint8_t destination;
     const uint8_t *file;
     uint32_t size;
     uint32_t block;
-    uint8_t *missing; /* a bit for each packet of the block */
+    uint8_t *missing; /* one bit for each packet of the block */
     uint32_t sent;    /**< Progress: bytes committed. */
-    uint32_t count;   /* packets of this block */
-    uint32_t next;    /* the packet, or the message of the hole map, that comes next */
+    uint32_t count;   /* packets of the current block */
+    uint32_t next;    /* next packet, or next message of the hole map */
     uint32_t rounds;
 } icd_upload_t;
 
 /**
- * The file must stay where it is. `block`: bytes a block, 0 for those of the ICD. `bitmap` holds icd_block_bitmap()
- * bytes. ICD_ERROR_UNSUPPORTED if the node takes no uploads, ICD_ERROR_RANGE if the destination is not supported,
- * ICD_ERROR_LENGTH if it holds less than the file, or the bitmap is smaller.
+ * Initialize an upload of `size` bytes from `file`. `block`: bytes per block, or 0 for the block size of the ICD.
+ * `bitmap` needs icd_block_bitmap() bytes. `file` and `bitmap` must stay valid during the upload.
+ * Return ICD_ERROR_UNSUPPORTED if the node has no uploads, ICD_ERROR_RANGE if the destination is not supported,
+ * ICD_ERROR_LENGTH if the file is larger than the destination or the bitmap is too small.
  */
 ICDGEN_API icd_status_t icd_upload_init(
     icd_upload_t *upload,
@@ -1588,7 +1691,10 @@ ICDGEN_API icd_status_t icd_upload_init(
     uint8_t *bitmap,
     size_t bitmap_size);
 
-/** Deletes a file or all of them, or formats the medium. `procedure` goes to the functions of icd_procedure_t. */
+/**
+ * Deletion of one file or all files, or formatting of the medium. Pass `&erase.procedure` to the icd_procedure_...()
+ * functions.
+ */
 typedef struct {
     icd_procedure_t procedure;
     const icd_erase_form_t *form;
@@ -1599,31 +1705,34 @@ typedef struct {
 
 typedef icd_erase_t icd_format_t;
 
-/** Deletes a file, or all of them: then it is done when the node is no longer busy. */
+/**
+ * Initialize the deletion of one file, or of all files if `all` is true. Deleting all files ends when the node is no
+ * longer busy.
+ */
 ICDGEN_API icd_status_t
 icd_erase_init(icd_erase_t *erase, const icd_link_t *link, uint8_t type, uint8_t counter, bool all);
 
-/** Formats the medium: done when the node is no longer busy. */
+/** Initialize the formatting of the medium. It ends when the node is no longer busy. */
 ICDGEN_API icd_status_t icd_format_init(icd_format_t *format, const icd_link_t *link);
 
-/** What a node does with a stored program. `procedure` goes to the functions of icd_procedure_t. */
+/** Operation on a stored program. Pass `&operation.procedure` to the icd_procedure_...() functions. */
 typedef struct {
     icd_procedure_t procedure;
     const icd_operation_form_t *form;
-    uint32_t size;     /**< Of the program in bytes, once the information is ICD_DONE. */
-    uint32_t checksum; /**< Likewise. */
+    uint32_t size;     /**< Size of the program in bytes. Valid if icd_program_information_t ended with ICD_DONE. */
+    uint32_t checksum; /**< Checksum of the program. Valid as `size`. */
 } icd_program_operation_t;
 
 typedef icd_program_operation_t icd_program_copy_t;
 typedef icd_program_operation_t icd_program_information_t;
 
 /**
- * Copies a stored program to where it can run. ICD_ERROR_RANGE if it may not be asked for, ICD_ERROR_UNSUPPORTED if the
- * node has no such operation.
+ * Initialize copying of a stored program to the memory from which it runs. Return ICD_ERROR_RANGE if the program is not
+ * supported, ICD_ERROR_UNSUPPORTED if the node has no such operation.
  */
 ICDGEN_API icd_status_t icd_program_copy_init(icd_program_copy_t *copy, const icd_link_t *link, uint8_t program);
 
-/** Reads `size` and `checksum` of a stored program; refuses as icd_program_copy_init() does. */
+/** Initialize reading of `size` and `checksum` of a stored program. Errors: see icd_program_copy_init(). */
 ICDGEN_API icd_status_t
 icd_program_information_init(icd_program_information_t *information, const icd_link_t *link, uint8_t program);
 

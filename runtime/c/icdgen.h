@@ -3,11 +3,14 @@
 
 /**
  * @file
- * What all generated messages share. Users need only icd_status_t; everything else is for the generated code.
+ * Common part of all generated messages. Applications need only icd_status_t; everything else is used by the
+ * generated code.
  *
- * ICDGEN_NO_DOUBLE  define it to leave out everything that needs floating-point arithmetic. Floating-point fields are
- *                   still there, moved as bits.
- * ICDGEN_PORTABLE   define it to use nothing but C: no byte order, word access or built-in of the compiler is assumed.
+ * Macros that may be defined before this header is included:
+ *
+ * ICDGEN_NO_DOUBLE  Leave out everything that needs floating-point arithmetic. Floating-point fields remain and are
+ *                   copied as bits.
+ * ICDGEN_PORTABLE   Use standard C only. Nothing is assumed about byte order, unaligned access or compiler built-ins.
  */
 
 #include "support/base.h"

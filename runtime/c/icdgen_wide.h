@@ -3,8 +3,7 @@
 
 /**
  * @file
- * Physical values whose formula has numbers of more digits than icdgen.h computes with. Everything here is for the
- * generated code.
+ * Physical values whose scale has more digits than icdgen.h supports. Everything here is used by the generated code.
  */
 
 #include "icdgen.h"

@@ -2,8 +2,8 @@
 #define ICDGEN_WIRE_C
 
 /*
- * The functions of icdgen_wire.h: compiled once for a program whose units define ICDGEN_SHARED, else part of that
- * header.
+ * Functions of icdgen_wire.h. Compile this file once if the program defines ICDGEN_SHARED. Otherwise, icdgen_wire.h
+ * includes it.
  */
 
 #if !defined(ICDGEN_WIRE_H) && !defined(ICDGEN_SHARED)

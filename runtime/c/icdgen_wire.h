@@ -3,17 +3,21 @@
 
 /**
  * @file
- * How messages travel: UART, I2C, CAN, checksums, a client, file transfer, logs. Nothing here opens a port, sleeps,
- * looks at a clock or allocates: bytes go in, bytes and events come out, memory and time (milliseconds, which may wrap)
- * are the caller's. What differs from node to node is in its link, which NODE_link() of its header gives.
+ * Wire layer: transport of messages over UART, I2C and CAN, checksums, clients, file transfer and logs.
  *
- * ICDGEN_SHARED     define it where the program has several units: this header declares the functions then, and
- *                   icdgen_wire.c and NODE/link.c are compiled once. Else each unit has those that it uses for itself.
- * ICDGEN_NO_TABLES  define it to compute checksums without tables: slower, and smaller by 512 bytes each.
- * ICDGEN_NO_FILES   define it for a program that transfers no files and programs: these are unsupported then.
- * ICDGEN_NO_LOGS    define it for a program that reads no logs, of a node that sends none unasked.
- * NODE_CHOSEN       define it, and NODE_WITH_MESSAGE for each message that a program sends or requests, and the tables
- *                   of NODE/link.c hold no others but for those that the wire layer needs itself.
+ * The functions perform no input or output: the application passes received bytes in, and takes bytes to send and
+ * events out. They do not open ports, sleep, read a clock or allocate memory. The application provides all buffers and
+ * the current time `now` in milliseconds, which may wrap around. NODE_link() returns the description of a protocol.
+ *
+ * Macros that may be defined before this header is included:
+ *
+ * ICDGEN_SHARED     For programs of several source files: declare the functions only. Compile icdgen_wire.c and
+ *                   NODE/link.c once and link them. Otherwise, each source file gets its own static copy.
+ * ICDGEN_NO_TABLES  Compute CRCs without lookup tables: slower, but saves up to 512 bytes per CRC.
+ * ICDGEN_NO_FILES   Leave out the transfer of files and programs. Their functions return ICD_ERROR_UNSUPPORTED.
+ * ICDGEN_NO_LOGS    Leave out logs. Do not define it if the node sends unsolicited logs.
+ * NODE_CHOSEN       Leave out all messages in the tables of NODE/link.c, except those for which NODE_WITH_MESSAGE is
+ *                   defined and those that the wire layer itself needs.
  */
 
 #include "icdgen.h"

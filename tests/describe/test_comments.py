@@ -81,6 +81,6 @@ def test_an_enumeration_says_which_fields_hold_it(tmp_path):
     )  # fmt: skip
     mode, other = describe(load([tmp_path / "demo.yaml"]).icd).node("demo").enums
     assert mode.comment.details == (
-        "Held by F0 in M1, M2, M3, M4, M5 and 3 others; F1 in Last; F2 in Last; F3 in Last.",
+        "Used by F0 in M1, M2, M3, M4, M5 and 3 others; F1 in Last; F2 in Last; F3 in Last.",
     )
     assert other.comment.paragraphs == ("Other: an enumeration.",)

@@ -80,19 +80,19 @@ def message_comment(message: Message, log_bit: int | None = None, sharing: str =
     """
     ids = str(message.id)
     if message.kind == CONFIGURATION:
-        ids = f"set by telecommand {message.set_id}, got by telemetry {message.get_id}"
+        ids = f"set by telecommand {message.set_id}, read by telemetry {message.get_id}"
     kind = f"{message.kind}{',' if message.kind == CONFIGURATION else ''}"
     facts = [f"Dangerous: {sentence(message.hazard)}"] if message.hazard else []
     if message.expects_reset:
-        facts.append("The node restarts instead of acknowledging it.")
+        facts.append("The node restarts instead of sending an acknowledge.")
     elif not message.acknowledge:
-        facts.append("The node does not acknowledge it.")
+        facts.append("The node does not send an acknowledge.")
     if log_bit is not None:
         facts.append(f"Bit {log_bit} of the log mask.")
     facts += [sharing] if sharing else []
     facts += (f"Repeats {words(part.message)} from {_from(part.at)}." for part in message.contains)
     if message.may_end_early:
-        facts.append("Zeros that a frame ends with may be left out.")
+        facts.append("Trailing zeros of a frame may be omitted.")
     if message.reserved:
         facts.append(f"The last {'byte is' if message.reserved == 1 else f'{message.reserved} bytes are'} reserved.")
     head = f"{words(message.name)}: {kind} {ids}, {length_text(message)}.{_table(message.table)}"
@@ -118,7 +118,7 @@ def _value_of(field: LayoutNode | None, value: int) -> str:
 
 def presence_comment(field: NodePlace, message: Message) -> str:
     """Return the comment of the function that returns whether an optional field is present."""
-    return f"Whether {words(field.name)} is there: if {_conditions(field, message)}."
+    return f"Return whether {words(field.name)} is present: if {_conditions(field, message)}."
 
 
 def _conditions(field: NodePlace, message: Message) -> str:
@@ -154,11 +154,11 @@ def enum_comment(enum: Enum, users: Mapping[str, Sequence[str]]) -> Comment:
 
 
 def _used(users: Mapping[str, Sequence[str]]) -> str:
-    """Return ``Held by Mode in Status and Set Mode; Boot Mode in Status.``"""
+    """Return ``Used by Mode in Status and Set Mode; Boot Mode in Status.``"""
     fields = [f"{words(field)} in {_listed(list(map(words, owners)))}" for field, owners in users.items()]
     if len(fields) > _LISTED:
         fields[_LISTED - 1 :] = [f"{len(fields) - _LISTED + 1} other fields"]
-    return f"Held by {'; '.join(fields)}." if fields else ""
+    return f"Used by {'; '.join(fields)}." if fields else ""
 
 
 def _listed(names: Sequence[str]) -> str:
@@ -188,11 +188,11 @@ def field_comment(field: NodePlace, elsewhere: Mapping[str, str], message: Messa
         what = f"how much of {words(last.name)} the frame has, up to {last.most}; identified by its length"
         return Comment(f"{words(field.name)}: {what}.")
     if field.derived is not None:
-        head = f"{words(field.name)}{_unit(field)}: derived by `{words(field.formula)}`, in doubles, and never set."
+        head = f"{words(field.name)}{_unit(field)}: derived as `{words(field.formula)}`, computed in doubles; it has no setter."
         return _comment(head, (sentence(field.summary),), field.errata, elsewhere)
-    facts = ["A view: it reads bits of other fields, and is not set."] if field.view else []
+    facts = ["Overlay field: reads bits of other fields and has no setter."] if field.view else []
     if field.when:
-        facts.append(f"Only there if {_conditions(field, message)}.")
+        facts.append(f"Present only if {_conditions(field, message)}.")
     if field.const is not None:
         facts.append(f"Always {value_text(field.const)}.")
     if field.limits is not None:
@@ -305,7 +305,7 @@ def _unit(field: NodePlace, before: str = " in ") -> str:
 
 def text_comment(field: NodePlace) -> str:
     """Return the comment of the accessors of a text."""
-    return f"{words(field.name)} as text: what stands before the first NUL, up to {field.bits // 8} ASCII characters."
+    return f"{words(field.name)} as text: up to {field.bits // 8} ASCII characters, ending at the first NUL."
 
 
 def physical_comment(field: NodePlace) -> str:

@@ -5,7 +5,7 @@
 
 /**
  * @file
- * Bootloader: a client that takes its messages only.
+ * Bootloader: client with one function per message.
  */
 
 #include "link.h"
@@ -19,24 +19,27 @@
 #include "set_boot_index.h"
 #include "state.h"
 
-/** A client that sends and requests messages of Bootloader only; `client` is for the functions of icd_client_t. */
+/**
+ * A client that accepts only messages of Bootloader at compile time.
+ * Pass `&client->client` to the icd_client_...() functions.
+ */
 typedef struct {
     icd_client_t client;
 } bootloader_client_t;
 
-/** Begins a client: see icd_client_uart(). BOOTLOADER_CLIENT_BYTES are enough. */
+/** Initialize a client with a buffer of BOOTLOADER_CLIENT_BYTES bytes. See icd_client_uart(). */
 static inline icd_status_t bootloader_client_uart(bootloader_client_t *client, uint8_t *buffer, size_t size)
 {
     return icd_client_uart(&client->client, bootloader_link(), buffer, size);
 }
 
-/** Begins a client: see icd_client_i2c(). BOOTLOADER_CLIENT_BYTES are enough. */
+/** Initialize a client with a buffer of BOOTLOADER_CLIENT_BYTES bytes. See icd_client_i2c(). */
 static inline icd_status_t bootloader_client_i2c(bootloader_client_t *client, uint8_t *buffer, size_t size)
 {
     return icd_client_i2c(&client->client, bootloader_link(), buffer, size);
 }
 
-/** Begins a client: see icd_client_can(). BOOTLOADER_CLIENT_BYTES are enough. */
+/** Initialize a client with a buffer of BOOTLOADER_CLIENT_BYTES bytes. See icd_client_can(). */
 static inline icd_status_t bootloader_client_can(
     bootloader_client_t *client,
     uint8_t address,
@@ -48,7 +51,7 @@ static inline icd_status_t bootloader_client_can(
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_RESET)
 /**
- * Sends Reset, as icd_client_send().
+ * Send Reset. See icd_client_send().
  * Dangerous: The program that runs is stopped, and what it has not saved is lost.
  */
 static inline icd_status_t bootloader_send_reset(
@@ -68,7 +71,7 @@ static inline icd_status_t bootloader_send_reset(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_RESET_LOG_POINTER)
-/** Sends Reset Log Pointer, as icd_client_send(). */
+/** Send Reset Log Pointer. See icd_client_send(). */
 static inline icd_status_t bootloader_send_reset_log_pointer(
     bootloader_client_t *client,
     uint32_t now,
@@ -88,7 +91,7 @@ static inline icd_status_t bootloader_send_reset_log_pointer(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_ADVANCE_LOG_POINTER)
-/** Sends Advance Log Pointer, as icd_client_send(). */
+/** Send Advance Log Pointer. See icd_client_send(). */
 static inline icd_status_t bootloader_send_advance_log_pointer(
     bootloader_client_t *client,
     uint32_t now,
@@ -108,7 +111,7 @@ static inline icd_status_t bootloader_send_advance_log_pointer(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_RESET_BOOT_REGISTERS)
-/** Sends Reset Boot Registers, as icd_client_send(). */
+/** Send Reset Boot Registers. See icd_client_send(). */
 static inline icd_status_t bootloader_send_reset_boot_registers(
     bootloader_client_t *client,
     uint32_t now,
@@ -129,7 +132,7 @@ static inline icd_status_t bootloader_send_reset_boot_registers(
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_FORMAT_SD_CARD)
 /**
- * Sends Format SD card, as icd_client_send().
+ * Send Format SD card. See icd_client_send().
  * Dangerous: All files on the SD card are lost.
  */
 static inline icd_status_t bootloader_send_format_sd_card(
@@ -158,7 +161,7 @@ static inline icd_status_t bootloader_send_format_sd_card(
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_ERASE_FILE)
 /**
- * Sends Erase File, as icd_client_send().
+ * Send Erase File. See icd_client_send().
  * Dangerous: The file is lost; all files are with Erase All.
  */
 static inline icd_status_t bootloader_send_erase_file(
@@ -186,7 +189,7 @@ static inline icd_status_t bootloader_send_erase_file(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_LOAD_FILE_DOWNLOAD_BLOCK)
-/** Sends Load File Download Block, as icd_client_send(). */
+/** Send Load File Download Block. See icd_client_send(). */
 static inline icd_status_t bootloader_send_load_file_download_block(
     bootloader_client_t *client,
     uint32_t now,
@@ -212,7 +215,7 @@ static inline icd_status_t bootloader_send_load_file_download_block(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_ADVANCE_FILE_LIST_READ_POINTER)
-/** Sends Advance File List Read Pointer, as icd_client_send(). */
+/** Send Advance File List Read Pointer. See icd_client_send(). */
 static inline icd_status_t bootloader_send_advance_file_list_read_pointer(
     bootloader_client_t *client,
     uint32_t now,
@@ -233,7 +236,7 @@ static inline icd_status_t bootloader_send_advance_file_list_read_pointer(
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_INITIATE_FILE_UPLOAD)
 /**
- * Sends Initiate File Upload, as icd_client_send().
+ * Send Initiate File Upload. See icd_client_send().
  * Dangerous: The program in the destination is lost.
  */
 static inline icd_status_t bootloader_send_initiate_file_upload(
@@ -261,7 +264,7 @@ static inline icd_status_t bootloader_send_initiate_file_upload(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_FILE_UPLOAD_PACKET)
-/** Sends File Upload Packet, as icd_client_send(). */
+/** Send File Upload Packet. See icd_client_send(). */
 static inline icd_status_t bootloader_send_file_upload_packet(
     bootloader_client_t *client,
     uint32_t now,
@@ -287,7 +290,7 @@ static inline icd_status_t bootloader_send_file_upload_packet(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_FINALIZE_UPLOAD_BLOCK)
-/** Sends Finalize Upload Block, as icd_client_send(). */
+/** Send Finalize Upload Block. See icd_client_send(). */
 static inline icd_status_t bootloader_send_finalize_upload_block(
     bootloader_client_t *client,
     uint32_t now,
@@ -313,7 +316,7 @@ static inline icd_status_t bootloader_send_finalize_upload_block(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_RESET_UPLOAD_BLOCK)
-/** Sends Reset Upload Block, as icd_client_send(). */
+/** Send Reset Upload Block. See icd_client_send(). */
 static inline icd_status_t bootloader_send_reset_upload_block(
     bootloader_client_t *client,
     uint32_t now,
@@ -333,7 +336,7 @@ static inline icd_status_t bootloader_send_reset_upload_block(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_RESET_FILE_LIST_READ_POINTER)
-/** Sends Reset File List Read Pointer, as icd_client_send(). */
+/** Send Reset File List Read Pointer. See icd_client_send(). */
 static inline icd_status_t bootloader_send_reset_file_list_read_pointer(
     bootloader_client_t *client,
     uint32_t now,
@@ -353,7 +356,7 @@ static inline icd_status_t bootloader_send_reset_file_list_read_pointer(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_INITIATE_DOWNLOAD_BURST)
-/** Sends Initiate Download Burst, as icd_client_send(). */
+/** Send Initiate Download Burst. See icd_client_send(). */
 static inline icd_status_t bootloader_send_initiate_download_burst(
     bootloader_client_t *client,
     uint32_t now,
@@ -379,7 +382,7 @@ static inline icd_status_t bootloader_send_initiate_download_burst(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_CACHE_ENABLED_STATE)
-/** Sends Cache enabled state, as icd_client_send(). */
+/** Send Cache enabled state. See icd_client_send(). */
 static inline icd_status_t bootloader_send_cache_enabled_state(
     bootloader_client_t *client,
     uint32_t now,
@@ -405,7 +408,7 @@ static inline icd_status_t bootloader_send_cache_enabled_state(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_SRAM_SCRUB_PARAMETERS)
-/** Sends SRAM Scrub Parameters, as icd_client_send(). */
+/** Send SRAM Scrub Parameters. See icd_client_send(). */
 static inline icd_status_t bootloader_send_sram_scrub_parameters(
     bootloader_client_t *client,
     uint32_t now,
@@ -431,7 +434,7 @@ static inline icd_status_t bootloader_send_sram_scrub_parameters(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_CURRENT_UNIX_TIME)
-/** Sends Current Unix Time, as icd_client_send(). */
+/** Send Current Unix Time. See icd_client_send(). */
 static inline icd_status_t bootloader_send_current_unix_time(
     bootloader_client_t *client,
     uint32_t now,
@@ -457,7 +460,7 @@ static inline icd_status_t bootloader_send_current_unix_time(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_UNIX_TIME_SAVE_TO_FLASH)
-/** Sends Unix Time Save to Flash, as icd_client_send(). */
+/** Send Unix Time Save to Flash. See icd_client_send(). */
 static inline icd_status_t bootloader_send_unix_time_save_to_flash(
     bootloader_client_t *client,
     uint32_t now,
@@ -483,7 +486,7 @@ static inline icd_status_t bootloader_send_unix_time_save_to_flash(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_1)
-/** Sends Hole Map 1, as icd_client_send(). */
+/** Send Hole Map 1. See icd_client_send(). */
 static inline icd_status_t bootloader_send_hole_map_1(
     bootloader_client_t *client,
     uint32_t now,
@@ -509,7 +512,7 @@ static inline icd_status_t bootloader_send_hole_map_1(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_2)
-/** Sends Hole Map 2, as icd_client_send(). */
+/** Send Hole Map 2. See icd_client_send(). */
 static inline icd_status_t bootloader_send_hole_map_2(
     bootloader_client_t *client,
     uint32_t now,
@@ -535,7 +538,7 @@ static inline icd_status_t bootloader_send_hole_map_2(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_3)
-/** Sends Hole Map 3, as icd_client_send(). */
+/** Send Hole Map 3. See icd_client_send(). */
 static inline icd_status_t bootloader_send_hole_map_3(
     bootloader_client_t *client,
     uint32_t now,
@@ -561,7 +564,7 @@ static inline icd_status_t bootloader_send_hole_map_3(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_4)
-/** Sends Hole Map 4, as icd_client_send(). */
+/** Send Hole Map 4. See icd_client_send(). */
 static inline icd_status_t bootloader_send_hole_map_4(
     bootloader_client_t *client,
     uint32_t now,
@@ -587,7 +590,7 @@ static inline icd_status_t bootloader_send_hole_map_4(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_5)
-/** Sends Hole Map 5, as icd_client_send(). */
+/** Send Hole Map 5. See icd_client_send(). */
 static inline icd_status_t bootloader_send_hole_map_5(
     bootloader_client_t *client,
     uint32_t now,
@@ -613,7 +616,7 @@ static inline icd_status_t bootloader_send_hole_map_5(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_6)
-/** Sends Hole Map 6, as icd_client_send(). */
+/** Send Hole Map 6. See icd_client_send(). */
 static inline icd_status_t bootloader_send_hole_map_6(
     bootloader_client_t *client,
     uint32_t now,
@@ -639,7 +642,7 @@ static inline icd_status_t bootloader_send_hole_map_6(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_7)
-/** Sends Hole Map 7, as icd_client_send(). */
+/** Send Hole Map 7. See icd_client_send(). */
 static inline icd_status_t bootloader_send_hole_map_7(
     bootloader_client_t *client,
     uint32_t now,
@@ -665,7 +668,7 @@ static inline icd_status_t bootloader_send_hole_map_7(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_8)
-/** Sends Hole Map 8, as icd_client_send(). */
+/** Send Hole Map 8. See icd_client_send(). */
 static inline icd_status_t bootloader_send_hole_map_8(
     bootloader_client_t *client,
     uint32_t now,
@@ -691,7 +694,7 @@ static inline icd_status_t bootloader_send_hole_map_8(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_CLEAR_ERROR_FLAGS)
-/** Sends Clear Error Flags, as icd_client_send(). */
+/** Send Clear Error Flags. See icd_client_send(). */
 static inline icd_status_t bootloader_send_clear_error_flags(
     bootloader_client_t *client,
     uint32_t now,
@@ -711,7 +714,7 @@ static inline icd_status_t bootloader_send_clear_error_flags(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_SET_BOOT_INDEX)
-/** Sends Set Boot Index, as icd_client_send(). */
+/** Send Set Boot Index. See icd_client_send(). */
 static inline icd_status_t bootloader_send_set_boot_index(
     bootloader_client_t *client,
     uint32_t now,
@@ -737,7 +740,7 @@ static inline icd_status_t bootloader_send_set_boot_index(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_RUN_SELECTED_PROGRAM)
-/** Sends Run Selected Program, as icd_client_send(). */
+/** Send Run Selected Program. See icd_client_send(). */
 static inline icd_status_t bootloader_send_run_selected_program(
     bootloader_client_t *client,
     uint32_t now,
@@ -757,7 +760,7 @@ static inline icd_status_t bootloader_send_run_selected_program(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_READ_PROGRAM_INFORMATION)
-/** Sends Read Program Information, as icd_client_send(). */
+/** Send Read Program Information. See icd_client_send(). */
 static inline icd_status_t bootloader_send_read_program_information(
     bootloader_client_t *client,
     uint32_t now,
@@ -784,7 +787,7 @@ static inline icd_status_t bootloader_send_read_program_information(
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_COPY_TO_INTERNAL_FLASH)
 /**
- * Sends Copy Program to Internal Flash, as icd_client_send().
+ * Send Copy Program to Internal Flash. See icd_client_send().
  * Dangerous: The program in internal flash is replaced, and with the overwrite flag the bootloader itself.
  */
 static inline icd_status_t bootloader_send_copy_to_internal_flash(
@@ -812,13 +815,13 @@ static inline icd_status_t bootloader_send_copy_to_internal_flash(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_IDENTIFICATION)
-/** Requests Identification, as icd_client_request(). */
+/** Request Identification. See icd_client_request(). */
 static inline icd_status_t bootloader_request_identification(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_IDENTIFICATION_ID);
 }
 
-/** Reads Identification from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Identification from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_identification(common_identification_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_IDENTIFICATION_ID)) {
@@ -829,13 +832,13 @@ static inline icd_status_t bootloader_receive_identification(common_identificati
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_BOOT_AND_RUNNING_PROGRAM_STATUS)
-/** Requests Boot And Running Program Status, as icd_client_request(). */
+/** Request Boot And Running Program Status. See icd_client_request(). */
 static inline icd_status_t bootloader_request_boot_and_running_program_status(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_ID);
 }
 
-/** Reads Boot And Running Program Status from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Boot And Running Program Status from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_boot_and_running_program_status(
     common_boot_and_running_program_status_t *message,
     const icd_event_t *event)
@@ -848,13 +851,13 @@ static inline icd_status_t bootloader_receive_boot_and_running_program_status(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_BOOT_INDEX_AND_STATUS)
-/** Requests Boot Index and Status, as icd_client_request(). */
+/** Request Boot Index and Status. See icd_client_request(). */
 static inline icd_status_t bootloader_request_boot_index_and_status(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BOOT_INDEX_AND_STATUS_ID);
 }
 
-/** Reads Boot Index and Status from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Boot Index and Status from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_boot_index_and_status(
     common_boot_index_and_status_t *message,
     const icd_event_t *event)
@@ -867,13 +870,13 @@ static inline icd_status_t bootloader_receive_boot_index_and_status(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_LAST_LOGGED_EVENT)
-/** Requests Last Logged Event, as icd_client_request(). */
+/** Request Last Logged Event. See icd_client_request(). */
 static inline icd_status_t bootloader_request_last_logged_event(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_LAST_LOGGED_EVENT_ID);
 }
 
-/** Reads Last Logged Event from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Last Logged Event from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_last_logged_event(
     common_last_logged_event_t *message,
     const icd_event_t *event)
@@ -886,13 +889,13 @@ static inline icd_status_t bootloader_receive_last_logged_event(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_SRAM_LATCHUP_COUNTERS)
-/** Requests SRAM Latchup counters, as icd_client_request(). */
+/** Request SRAM Latchup counters. See icd_client_request(). */
 static inline icd_status_t bootloader_request_sram_latchup_counters(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SRAM_LATCHUP_COUNTERS_ID);
 }
 
-/** Reads SRAM Latchup counters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode SRAM Latchup counters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_sram_latchup_counters(
     common_sram_latchup_counters_t *message,
     const icd_event_t *event)
@@ -905,13 +908,13 @@ static inline icd_status_t bootloader_receive_sram_latchup_counters(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_EDAC_ERROR_COUNTERS)
-/** Requests EDAC Error Counters, as icd_client_request(). */
+/** Request EDAC Error Counters. See icd_client_request(). */
 static inline icd_status_t bootloader_request_edac_error_counters(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_EDAC_ERROR_COUNTERS_ID);
 }
 
-/** Reads EDAC Error Counters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode EDAC Error Counters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_edac_error_counters(
     common_edac_error_counters_t *message,
     const icd_event_t *event)
@@ -924,13 +927,13 @@ static inline icd_status_t bootloader_receive_edac_error_counters(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_COMMUNICATION_STATUS)
-/** Requests Communication Status, as icd_client_request(). */
+/** Request Communication Status. See icd_client_request(). */
 static inline icd_status_t bootloader_request_communication_status(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_COMMUNICATION_STATUS_ID);
 }
 
-/** Reads Communication Status from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Communication Status from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_communication_status(
     common_communication_status_t *message,
     const icd_event_t *event)
@@ -943,13 +946,13 @@ static inline icd_status_t bootloader_receive_communication_status(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_SD_CARD_FORMAT_ERASE_PROGRESS)
-/** Requests SD card format/erase progress, as icd_client_request(). */
+/** Request SD card format/erase progress. See icd_client_request(). */
 static inline icd_status_t bootloader_request_sd_card_format_erase_progress(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_ID);
 }
 
-/** Reads SD card format/erase progress from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode SD card format/erase progress from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_sd_card_format_erase_progress(
     common_sd_card_format_erase_progress_t *message,
     const icd_event_t *event)
@@ -962,13 +965,13 @@ static inline icd_status_t bootloader_receive_sd_card_format_erase_progress(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_TELECOMMAND_ACKNOWLEDGE)
-/** Requests Telecommand Acknowledge, as icd_client_request(). */
+/** Request Telecommand Acknowledge. See icd_client_request(). */
 static inline icd_status_t bootloader_request_telecommand_acknowledge(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_TELECOMMAND_ACKNOWLEDGE_ID);
 }
 
-/** Reads Telecommand Acknowledge from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Telecommand Acknowledge from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_telecommand_acknowledge(
     common_telecommand_acknowledge_t *message,
     const icd_event_t *event)
@@ -981,7 +984,7 @@ static inline icd_status_t bootloader_receive_telecommand_acknowledge(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS)
-/** Requests File Download Buffer with File Contents, as icd_client_request(). */
+/** Request File Download Buffer with File Contents. See icd_client_request(). */
 static inline icd_status_t bootloader_request_file_download_buffer_with_file_contents(
     bootloader_client_t *client,
     uint32_t now)
@@ -989,7 +992,7 @@ static inline icd_status_t bootloader_request_file_download_buffer_with_file_con
     return icd_client_request(&client->client, now, COMMON_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS_ID);
 }
 
-/** Reads File Download Buffer with File Contents from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode File Download Buffer with File Contents from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_file_download_buffer_with_file_contents(
     common_file_download_buffer_with_file_contents_t *message,
     const icd_event_t *event)
@@ -1002,13 +1005,13 @@ static inline icd_status_t bootloader_receive_file_download_buffer_with_file_con
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_DOWNLOAD_BLOCK_READY)
-/** Requests Download Block Ready, as icd_client_request(). */
+/** Request Download Block Ready. See icd_client_request(). */
 static inline icd_status_t bootloader_request_download_block_ready(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_DOWNLOAD_BLOCK_READY_ID);
 }
 
-/** Reads Download Block Ready from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Download Block Ready from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_download_block_ready(
     common_download_block_ready_t *message,
     const icd_event_t *event)
@@ -1021,13 +1024,13 @@ static inline icd_status_t bootloader_receive_download_block_ready(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_FILE_INFORMATION)
-/** Requests File Information, as icd_client_request(). */
+/** Request File Information. See icd_client_request(). */
 static inline icd_status_t bootloader_request_file_information(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_FILE_INFORMATION_ID);
 }
 
-/** Reads File Information from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode File Information from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_file_information(
     common_file_information_t *message,
     const icd_event_t *event)
@@ -1040,13 +1043,13 @@ static inline icd_status_t bootloader_receive_file_information(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_INITIALIZE_UPLOAD_COMPLETE)
-/** Requests Initialize Upload Complete, as icd_client_request(). */
+/** Request Initialize Upload Complete. See icd_client_request(). */
 static inline icd_status_t bootloader_request_initialize_upload_complete(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_INITIALIZE_UPLOAD_COMPLETE_ID);
 }
 
-/** Reads Initialize Upload Complete from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Initialize Upload Complete from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_initialize_upload_complete(
     common_initialize_upload_complete_t *message,
     const icd_event_t *event)
@@ -1059,13 +1062,13 @@ static inline icd_status_t bootloader_receive_initialize_upload_complete(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_UPLOAD_BLOCK_COMPLETE)
-/** Requests Upload Block Complete, as icd_client_request(). */
+/** Request Upload Block Complete. See icd_client_request(). */
 static inline icd_status_t bootloader_request_upload_block_complete(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_UPLOAD_BLOCK_COMPLETE_ID);
 }
 
-/** Reads Upload Block Complete from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Upload Block Complete from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_upload_block_complete(
     common_upload_block_complete_t *message,
     const icd_event_t *event)
@@ -1078,13 +1081,13 @@ static inline icd_status_t bootloader_receive_upload_block_complete(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_BLOCK_CHECKSUM)
-/** Requests Block Checksum, as icd_client_request(). */
+/** Request Block Checksum. See icd_client_request(). */
 static inline icd_status_t bootloader_request_block_checksum(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BLOCK_CHECKSUM_ID);
 }
 
-/** Reads Block Checksum from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Block Checksum from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_block_checksum(common_block_checksum_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_BLOCK_CHECKSUM_ID)) {
@@ -1095,13 +1098,13 @@ static inline icd_status_t bootloader_receive_block_checksum(common_block_checks
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_CACHE_ENABLED_STATE)
-/** Requests Cache enabled state, as icd_client_request(). */
+/** Request Cache enabled state. See icd_client_request(). */
 static inline icd_status_t bootloader_request_cache_enabled_state(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_CACHE_ENABLED_STATE_GET_ID);
 }
 
-/** Reads Cache enabled state from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Cache enabled state from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_cache_enabled_state(
     common_cache_enabled_state_t *message,
     const icd_event_t *event)
@@ -1114,13 +1117,13 @@ static inline icd_status_t bootloader_receive_cache_enabled_state(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_SRAM_SCRUB_PARAMETERS)
-/** Requests SRAM Scrub Parameters, as icd_client_request(). */
+/** Request SRAM Scrub Parameters. See icd_client_request(). */
 static inline icd_status_t bootloader_request_sram_scrub_parameters(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SRAM_SCRUB_PARAMETERS_GET_ID);
 }
 
-/** Reads SRAM Scrub Parameters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode SRAM Scrub Parameters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_sram_scrub_parameters(
     common_sram_scrub_parameters_t *message,
     const icd_event_t *event)
@@ -1133,13 +1136,13 @@ static inline icd_status_t bootloader_receive_sram_scrub_parameters(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_CURRENT_UNIX_TIME)
-/** Requests Current Unix Time, as icd_client_request(). */
+/** Request Current Unix Time. See icd_client_request(). */
 static inline icd_status_t bootloader_request_current_unix_time(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_CURRENT_UNIX_TIME_GET_ID);
 }
 
-/** Reads Current Unix Time from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Current Unix Time from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_current_unix_time(
     common_current_unix_time_t *message,
     const icd_event_t *event)
@@ -1152,13 +1155,13 @@ static inline icd_status_t bootloader_receive_current_unix_time(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_UNIX_TIME_SAVE_TO_FLASH)
-/** Requests Unix Time Save to Flash, as icd_client_request(). */
+/** Request Unix Time Save to Flash. See icd_client_request(). */
 static inline icd_status_t bootloader_request_unix_time_save_to_flash(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_UNIX_TIME_SAVE_TO_FLASH_GET_ID);
 }
 
-/** Reads Unix Time Save to Flash from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Unix Time Save to Flash from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_unix_time_save_to_flash(
     common_unix_time_save_to_flash_t *message,
     const icd_event_t *event)
@@ -1171,13 +1174,13 @@ static inline icd_status_t bootloader_receive_unix_time_save_to_flash(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_1)
-/** Requests Hole Map 1, as icd_client_request(). */
+/** Request Hole Map 1. See icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_1(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_1_GET_ID);
 }
 
-/** Reads Hole Map 1 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Hole Map 1 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_hole_map_1(common_hole_map_1_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_1_GET_ID)) {
@@ -1188,13 +1191,13 @@ static inline icd_status_t bootloader_receive_hole_map_1(common_hole_map_1_t *me
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_2)
-/** Requests Hole Map 2, as icd_client_request(). */
+/** Request Hole Map 2. See icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_2(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_2_GET_ID);
 }
 
-/** Reads Hole Map 2 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Hole Map 2 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_hole_map_2(common_hole_map_2_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_2_GET_ID)) {
@@ -1205,13 +1208,13 @@ static inline icd_status_t bootloader_receive_hole_map_2(common_hole_map_2_t *me
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_3)
-/** Requests Hole Map 3, as icd_client_request(). */
+/** Request Hole Map 3. See icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_3(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_3_GET_ID);
 }
 
-/** Reads Hole Map 3 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Hole Map 3 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_hole_map_3(common_hole_map_3_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_3_GET_ID)) {
@@ -1222,13 +1225,13 @@ static inline icd_status_t bootloader_receive_hole_map_3(common_hole_map_3_t *me
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_4)
-/** Requests Hole Map 4, as icd_client_request(). */
+/** Request Hole Map 4. See icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_4(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_4_GET_ID);
 }
 
-/** Reads Hole Map 4 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Hole Map 4 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_hole_map_4(common_hole_map_4_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_4_GET_ID)) {
@@ -1239,13 +1242,13 @@ static inline icd_status_t bootloader_receive_hole_map_4(common_hole_map_4_t *me
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_5)
-/** Requests Hole Map 5, as icd_client_request(). */
+/** Request Hole Map 5. See icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_5(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_5_GET_ID);
 }
 
-/** Reads Hole Map 5 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Hole Map 5 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_hole_map_5(common_hole_map_5_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_5_GET_ID)) {
@@ -1256,13 +1259,13 @@ static inline icd_status_t bootloader_receive_hole_map_5(common_hole_map_5_t *me
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_6)
-/** Requests Hole Map 6, as icd_client_request(). */
+/** Request Hole Map 6. See icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_6(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_6_GET_ID);
 }
 
-/** Reads Hole Map 6 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Hole Map 6 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_hole_map_6(common_hole_map_6_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_6_GET_ID)) {
@@ -1273,13 +1276,13 @@ static inline icd_status_t bootloader_receive_hole_map_6(common_hole_map_6_t *me
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_7)
-/** Requests Hole Map 7, as icd_client_request(). */
+/** Request Hole Map 7. See icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_7(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_7_GET_ID);
 }
 
-/** Reads Hole Map 7 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Hole Map 7 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_hole_map_7(common_hole_map_7_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_7_GET_ID)) {
@@ -1290,13 +1293,13 @@ static inline icd_status_t bootloader_receive_hole_map_7(common_hole_map_7_t *me
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_8)
-/** Requests Hole Map 8, as icd_client_request(). */
+/** Request Hole Map 8. See icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_8(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_8_GET_ID);
 }
 
-/** Reads Hole Map 8 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Hole Map 8 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_hole_map_8(common_hole_map_8_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, BOOTLOADER_NODE, COMMON_HOLE_MAP_8_GET_ID)) {
@@ -1307,13 +1310,13 @@ static inline icd_status_t bootloader_receive_hole_map_8(common_hole_map_8_t *me
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_STATE)
-/** Requests Bootloader State, as icd_client_request(). */
+/** Request Bootloader State. See icd_client_request(). */
 static inline icd_status_t bootloader_request_state(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, BOOTLOADER_STATE_ID);
 }
 
-/** Reads Bootloader State from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Bootloader State from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_state(bootloader_state_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, BOOTLOADER_NODE, BOOTLOADER_STATE_ID)) {
@@ -1324,13 +1327,13 @@ static inline icd_status_t bootloader_receive_state(bootloader_state_t *message,
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_PROGRAM_INFORMATION)
-/** Requests Program Information, as icd_client_request(). */
+/** Request Program Information. See icd_client_request(). */
 static inline icd_status_t bootloader_request_program_information(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, BOOTLOADER_PROGRAM_INFORMATION_ID);
 }
 
-/** Reads Program Information from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Program Information from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_program_information(
     bootloader_program_information_t *message,
     const icd_event_t *event)
@@ -1343,13 +1346,13 @@ static inline icd_status_t bootloader_receive_program_information(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_COPY_TO_INTERNAL_FLASH_PROGRESS)
-/** Requests Copy To Internal Flash Progress, as icd_client_request(). */
+/** Request Copy To Internal Flash Progress. See icd_client_request(). */
 static inline icd_status_t bootloader_request_copy_to_internal_flash_progress(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, BOOTLOADER_COPY_TO_INTERNAL_FLASH_PROGRESS_ID);
 }
 
-/** Reads Copy To Internal Flash Progress from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Copy To Internal Flash Progress from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t bootloader_receive_copy_to_internal_flash_progress(
     bootloader_copy_to_internal_flash_progress_t *message,
     const icd_event_t *event)

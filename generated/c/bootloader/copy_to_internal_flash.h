@@ -15,7 +15,7 @@
 
 /** Id of the telecommand. */
 #define BOOTLOADER_COPY_TO_INTERNAL_FLASH_ID 103u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define BOOTLOADER_COPY_TO_INTERNAL_FLASH_LENGTH 2u
 /** Bootloader overwrite flag: overwrite the boot segment. */
 #define BOOTLOADER_COPY_TO_INTERNAL_FLASH_OVERWRITE_OVERWRITE_THE_BOOT_SEGMENT 0x5Au
@@ -38,13 +38,13 @@ typedef struct {
     uint8_t overwrite;
 } bootloader_copy_to_internal_flash_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void bootloader_copy_to_internal_flash_init(bootloader_copy_to_internal_flash_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 2 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 2 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t bootloader_copy_to_internal_flash_decode(
     bootloader_copy_to_internal_flash_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -58,7 +58,7 @@ static inline icd_status_t bootloader_copy_to_internal_flash_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 2 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 2 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t bootloader_copy_to_internal_flash_encode(
     const bootloader_copy_to_internal_flash_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -72,7 +72,7 @@ static inline icd_status_t bootloader_copy_to_internal_flash_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *bootloader_copy_to_internal_flash_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -17,7 +17,7 @@
 
 /** Id of the telemetry. */
 #define BOOTLOADER_COPY_TO_INTERNAL_FLASH_PROGRESS_ID 233u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define BOOTLOADER_COPY_TO_INTERNAL_FLASH_PROGRESS_LENGTH 1u
 
 /** Raw values. */
@@ -28,14 +28,14 @@ typedef struct {
     bool error;
 } bootloader_copy_to_internal_flash_progress_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void bootloader_copy_to_internal_flash_progress_init(
     bootloader_copy_to_internal_flash_progress_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 1 byte; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 1 byte. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t bootloader_copy_to_internal_flash_progress_decode(
     bootloader_copy_to_internal_flash_progress_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -49,7 +49,7 @@ static inline icd_status_t bootloader_copy_to_internal_flash_progress_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 1 byte, reserved bits 0; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 1 byte, reserved bits 0. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t bootloader_copy_to_internal_flash_progress_encode(
     const bootloader_copy_to_internal_flash_progress_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -62,7 +62,7 @@ static inline icd_status_t bootloader_copy_to_internal_flash_progress_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *bootloader_copy_to_internal_flash_progress_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

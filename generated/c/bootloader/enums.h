@@ -5,14 +5,15 @@
 
 /**
  * @file
- * Enumerations of Bootloader. A variable of such a type may hold any value: what a node sends is kept as it is.
+ * Enumerations of Bootloader.
+ * A variable of these types can store any value: unknown values from a node are kept unchanged.
  */
 
 #include <stddef.h>
 #include <stdint.h>
 
 /**
- * BootSetProgramsList: an enumeration. Table 63. Held by Program Index in Set Boot Index.
+ * BootSetProgramsList: an enumeration. Table 63. Used by Program Index in Set Boot Index.
  * @note BOOT-009 (certain): Three enumerations of program places. BootSetProgramsList, ProgramsList and
  * BootProgramsList overlap. The internal program is 1 in all, the bootloader 0 in one and 2 in another, where 2 is
  * EEPROM in the first.
@@ -24,7 +25,7 @@ enum {
     BOOTLOADER_BOOT_SET_PROGRAMS_LIST_INTERNAL_FLASH_PROGRAM = 1
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *bootloader_boot_set_programs_list_name(bootloader_boot_set_programs_list_t value)
 {
     switch (value) {
@@ -36,7 +37,7 @@ static inline const char *bootloader_boot_set_programs_list_name(bootloader_boot
 }
 
 /**
- * ProgramsList: an enumeration. Table 66. Held by Program Index in Read Program Information and Program Information;
+ * ProgramsList: an enumeration. Table 66. Used by Program Index in Read Program Information and Program Information;
  * Source Program Index in Copy Program to Internal Flash.
  */
 typedef uint8_t bootloader_programs_list_t;
@@ -115,7 +116,7 @@ enum {
     BOOTLOADER_PROGRAMS_LIST_SD_USER_FILE_8 = 17
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *bootloader_programs_list_name(bootloader_programs_list_t value)
 {
     switch (value) {

@@ -3,7 +3,7 @@
 #ifndef BOOTLOADER_LINK_C
 #define BOOTLOADER_LINK_C
 
-/* The tables of link.h: compiled once for a program whose units define ICDGEN_SHARED, else part of that header. */
+/* Tables of link.h. Compile this file once if the program defines ICDGEN_SHARED. Otherwise, link.h includes it. */
 
 #if !defined(BOOTLOADER_LINK_H) && !defined(ICDGEN_SHARED)
 #define ICDGEN_SHARED

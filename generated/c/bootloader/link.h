@@ -5,25 +5,25 @@
 
 /**
  * @file
- * Bootloader: how its messages travel.
+ * Bootloader: description of its protocol and sizes of buffers.
  */
 
 #include "../icdgen_wire.h"
 
-/** The node whose messages these are. */
+/** Name of the node. */
 #define BOOTLOADER_NODE "bootloader"
-/** Bytes of the longest message of either direction, with id and checksum. */
+/** Size in bytes of the longest message in either direction, with id and checksum. */
 #define BOOTLOADER_LONGEST 23u
-/** Bytes that joining CAN packets takes for each sender at once. */
+/** Buffer size in bytes of a CAN joiner, per slot. */
 #define BOOTLOADER_CAN_SLOT_BYTES 29u
-/** Bytes of a client's buffer. */
+/** Buffer size of a client in bytes. */
 #define BOOTLOADER_CLIENT_BYTES 52u
-/** Bytes of the largest block of a file. */
+/** Size in bytes of the largest block of a file. */
 #define BOOTLOADER_BLOCK_BYTES 20480u
-/** Bytes of a bit for each packet of such a block. */
+/** Size in bytes of a bitmap for the packets of this block. */
 #define BOOTLOADER_BLOCK_BITMAP_BYTES 128u
 
-/** Facts of the link of Bootloader. */
+/** Return the description of the protocol of Bootloader. */
 ICDGEN_API const icd_link_t *bootloader_link(void);
 
 #ifndef ICDGEN_SHARED

@@ -17,7 +17,7 @@
 
 /** Id of the telemetry. */
 #define BOOTLOADER_PROGRAM_INFORMATION_ID 232u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define BOOTLOADER_PROGRAM_INFORMATION_LENGTH 8u
 
 /** Raw values. */
@@ -46,13 +46,13 @@ typedef struct {
     uint16_t checksum;
 } bootloader_program_information_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void bootloader_program_information_init(bootloader_program_information_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 8 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 8 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t bootloader_program_information_decode(
     bootloader_program_information_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -68,7 +68,7 @@ static inline icd_status_t bootloader_program_information_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 8 bytes, reserved bits 0; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 8 bytes, reserved bits 0. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t bootloader_program_information_encode(
     const bootloader_program_information_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -84,7 +84,7 @@ static inline icd_status_t bootloader_program_information_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *bootloader_program_information_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

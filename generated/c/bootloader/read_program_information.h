@@ -14,7 +14,7 @@
 
 /** Id of the telecommand. */
 #define BOOTLOADER_READ_PROGRAM_INFORMATION_ID 102u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define BOOTLOADER_READ_PROGRAM_INFORMATION_LENGTH 1u
 
 /** Raw values. */
@@ -23,13 +23,13 @@ typedef struct {
     bootloader_programs_list_t program_index;
 } bootloader_read_program_information_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void bootloader_read_program_information_init(bootloader_read_program_information_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 1 byte; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 1 byte. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t bootloader_read_program_information_decode(
     bootloader_read_program_information_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -42,7 +42,7 @@ static inline icd_status_t bootloader_read_program_information_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 1 byte; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 1 byte. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t bootloader_read_program_information_encode(
     const bootloader_read_program_information_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -55,7 +55,7 @@ static inline icd_status_t bootloader_read_program_information_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *bootloader_read_program_information_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -7,7 +7,7 @@
  * @file
  * Run Selected Program: telecommand 101, 0 bytes. Table 64.
  * Starts the program in internal flash at once.
- * The node restarts instead of acknowledging it.
+ * The node restarts instead of sending an acknowledge.
  * @note BOOT-008 (open): Run Selected Program does not run what was selected elsewhere. Its name refers to a selection,
  * the text to the internal flash program. What it does to the boot status, and whether it is acknowledged before the
  * program starts, is not said.
@@ -17,22 +17,22 @@
 
 /** Id of the telecommand. */
 #define BOOTLOADER_RUN_SELECTED_PROGRAM_ID 101u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define BOOTLOADER_RUN_SELECTED_PROGRAM_LENGTH 0u
 
 /** Raw values. */
 typedef struct {
-    /** There are no fields; C has no empty structs. */
+    /** Unused. The message has no fields, but C has no empty structs. */
     uint8_t empty;
 } bootloader_run_selected_program_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void bootloader_run_selected_program_init(bootloader_run_selected_program_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 0 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 0 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t bootloader_run_selected_program_decode(
     bootloader_run_selected_program_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -46,7 +46,7 @@ static inline icd_status_t bootloader_run_selected_program_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 0 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 0 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t bootloader_run_selected_program_encode(
     const bootloader_run_selected_program_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -58,7 +58,7 @@ static inline icd_status_t bootloader_run_selected_program_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *bootloader_run_selected_program_fields(size_t *count)
 {
     *count = 0u;

@@ -18,7 +18,7 @@
 
 /** Id of the telemetry. */
 #define BOOTLOADER_STATE_ID 132u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define BOOTLOADER_STATE_LENGTH 6u
 
 /** Raw values. */
@@ -67,13 +67,13 @@ typedef struct {
     bool communications_error_with_radio;
 } bootloader_state_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void bootloader_state_init(bootloader_state_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t bootloader_state_decode(
     bootloader_state_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -106,7 +106,7 @@ static inline icd_status_t bootloader_state_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes, reserved bits 0; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes, reserved bits 0. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t bootloader_state_encode(
     const bootloader_state_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -139,7 +139,7 @@ static inline icd_status_t bootloader_state_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *bootloader_state_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

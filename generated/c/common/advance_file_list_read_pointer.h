@@ -15,22 +15,22 @@
 
 /** Id of the telecommand. */
 #define COMMON_ADVANCE_FILE_LIST_READ_POINTER_ID 113u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define COMMON_ADVANCE_FILE_LIST_READ_POINTER_LENGTH 0u
 
 /** Raw values. */
 typedef struct {
-    /** There are no fields; C has no empty structs. */
+    /** Unused. The message has no fields, but C has no empty structs. */
     uint8_t empty;
 } common_advance_file_list_read_pointer_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void common_advance_file_list_read_pointer_init(common_advance_file_list_read_pointer_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 0 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 0 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t common_advance_file_list_read_pointer_decode(
     common_advance_file_list_read_pointer_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -44,7 +44,7 @@ static inline icd_status_t common_advance_file_list_read_pointer_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 0 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 0 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t common_advance_file_list_read_pointer_encode(
     const common_advance_file_list_read_pointer_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -56,7 +56,7 @@ static inline icd_status_t common_advance_file_list_read_pointer_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *common_advance_file_list_read_pointer_fields(size_t *count)
 {
     *count = 0u;

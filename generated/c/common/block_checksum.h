@@ -16,7 +16,7 @@
 
 /** Id of the telemetry. */
 #define COMMON_BLOCK_CHECKSUM_ID 246u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define COMMON_BLOCK_CHECKSUM_LENGTH 2u
 
 /** Raw values. */
@@ -30,13 +30,13 @@ typedef struct {
     uint16_t checksum;
 } common_block_checksum_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void common_block_checksum_init(common_block_checksum_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 2 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 2 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t common_block_checksum_decode(
     common_block_checksum_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -49,7 +49,7 @@ static inline icd_status_t common_block_checksum_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 2 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 2 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t common_block_checksum_encode(
     const common_block_checksum_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -62,7 +62,7 @@ static inline icd_status_t common_block_checksum_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *common_block_checksum_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -16,7 +16,7 @@
 
 /** Id of the telemetry. */
 #define COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_ID 129u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_LENGTH 6u
 
 /** Raw values. */
@@ -55,13 +55,13 @@ typedef struct {
     uint8_t firmware_version_minor;
 } common_boot_and_running_program_status_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void common_boot_and_running_program_status_init(common_boot_and_running_program_status_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t common_boot_and_running_program_status_decode(
     common_boot_and_running_program_status_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -79,7 +79,7 @@ static inline icd_status_t common_boot_and_running_program_status_decode(
     return ICD_OK;
 }
 
-/** Name of the first field whose raw value has more bits than the field; NULL if all fit. */
+/** Return the name of the first field whose raw value has more bits than the field; NULL if all fit. */
 static inline const char *common_boot_and_running_program_status_misfit(
     const common_boot_and_running_program_status_t *message)
 {
@@ -93,8 +93,8 @@ static inline const char *common_boot_and_running_program_status_misfit(
 }
 
 /**
- * Writes a frame of 6 bytes. ICD_ERROR_LENGTH if the buffer is smaller, ICD_ERROR_RANGE if a raw
- * value does not fit its field; nothing is written then.
+ * Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small, and ICD_ERROR_RANGE
+ * if a raw value does not fit into its field. Nothing is written in case of an error.
  */
 static inline icd_status_t common_boot_and_running_program_status_encode(
     const common_boot_and_running_program_status_t *ICDGEN_RESTRICT message,
@@ -118,7 +118,7 @@ static inline icd_status_t common_boot_and_running_program_status_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *common_boot_and_running_program_status_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -14,7 +14,7 @@
 
 /** Id of the telemetry. */
 #define COMMON_BOOT_INDEX_AND_STATUS_ID 130u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define COMMON_BOOT_INDEX_AND_STATUS_LENGTH 2u
 
 /** Raw values. */
@@ -29,13 +29,13 @@ typedef struct {
     common_boot_status_t boot_status;
 } common_boot_index_and_status_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void common_boot_index_and_status_init(common_boot_index_and_status_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 2 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 2 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t common_boot_index_and_status_decode(
     common_boot_index_and_status_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -49,7 +49,7 @@ static inline icd_status_t common_boot_index_and_status_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 2 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 2 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t common_boot_index_and_status_encode(
     const common_boot_index_and_status_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -63,7 +63,7 @@ static inline icd_status_t common_boot_index_and_status_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *common_boot_index_and_status_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -5,7 +5,7 @@
 
 /**
  * @file
- * Cache enabled state: configuration, set by telecommand 3, got by telemetry 131, 1 byte. Table 48.
+ * Cache enabled state: configuration, set by telecommand 3, read by telemetry 131, 1 byte. Table 48.
  */
 
 #include "../icdgen.h"
@@ -14,7 +14,7 @@
 #define COMMON_CACHE_ENABLED_STATE_SET_ID 3u
 /** Id of the telemetry that gets it. */
 #define COMMON_CACHE_ENABLED_STATE_GET_ID 131u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define COMMON_CACHE_ENABLED_STATE_LENGTH 1u
 
 /** Raw values. */
@@ -27,13 +27,13 @@ typedef struct {
     bool enabled_state;
 } common_cache_enabled_state_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void common_cache_enabled_state_init(common_cache_enabled_state_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 1 byte; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 1 byte. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t common_cache_enabled_state_decode(
     common_cache_enabled_state_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -46,7 +46,7 @@ static inline icd_status_t common_cache_enabled_state_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 1 byte, reserved bits 0; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 1 byte, reserved bits 0. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t common_cache_enabled_state_encode(
     const common_cache_enabled_state_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -59,7 +59,7 @@ static inline icd_status_t common_cache_enabled_state_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *common_cache_enabled_state_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -5,7 +5,7 @@
 
 /**
  * @file
- * Common messages: a client that takes its messages only.
+ * Common messages: client with one function per message.
  */
 
 #include "link.h"
@@ -51,24 +51,27 @@
 #include "unix_time_save_to_flash.h"
 #include "upload_block_complete.h"
 
-/** A client that sends and requests messages of Common messages only; `client` is for the functions of icd_client_t. */
+/**
+ * A client that accepts only messages of Common messages at compile time.
+ * Pass `&client->client` to the icd_client_...() functions.
+ */
 typedef struct {
     icd_client_t client;
 } common_client_t;
 
-/** Begins a client: see icd_client_uart(). COMMON_CLIENT_BYTES are enough. */
+/** Initialize a client with a buffer of COMMON_CLIENT_BYTES bytes. See icd_client_uart(). */
 static inline icd_status_t common_client_uart(common_client_t *client, uint8_t *buffer, size_t size)
 {
     return icd_client_uart(&client->client, common_link(), buffer, size);
 }
 
-/** Begins a client: see icd_client_i2c(). COMMON_CLIENT_BYTES are enough. */
+/** Initialize a client with a buffer of COMMON_CLIENT_BYTES bytes. See icd_client_i2c(). */
 static inline icd_status_t common_client_i2c(common_client_t *client, uint8_t *buffer, size_t size)
 {
     return icd_client_i2c(&client->client, common_link(), buffer, size);
 }
 
-/** Begins a client: see icd_client_can(). COMMON_CLIENT_BYTES are enough. */
+/** Initialize a client with a buffer of COMMON_CLIENT_BYTES bytes. See icd_client_can(). */
 static inline icd_status_t common_client_can(common_client_t *client, uint8_t address, uint8_t *buffer, size_t size)
 {
     return icd_client_can(&client->client, common_link(), address, buffer, size);
@@ -76,7 +79,7 @@ static inline icd_status_t common_client_can(common_client_t *client, uint8_t ad
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_RESET)
 /**
- * Sends Reset, as icd_client_send().
+ * Send Reset. See icd_client_send().
  * Dangerous: The program that runs is stopped, and what it has not saved is lost.
  */
 static inline icd_status_t common_send_reset(
@@ -96,7 +99,7 @@ static inline icd_status_t common_send_reset(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_RESET_LOG_POINTER)
-/** Sends Reset Log Pointer, as icd_client_send(). */
+/** Send Reset Log Pointer. See icd_client_send(). */
 static inline icd_status_t common_send_reset_log_pointer(
     common_client_t *client,
     uint32_t now,
@@ -116,7 +119,7 @@ static inline icd_status_t common_send_reset_log_pointer(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_ADVANCE_LOG_POINTER)
-/** Sends Advance Log Pointer, as icd_client_send(). */
+/** Send Advance Log Pointer. See icd_client_send(). */
 static inline icd_status_t common_send_advance_log_pointer(
     common_client_t *client,
     uint32_t now,
@@ -136,7 +139,7 @@ static inline icd_status_t common_send_advance_log_pointer(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_RESET_BOOT_REGISTERS)
-/** Sends Reset Boot Registers, as icd_client_send(). */
+/** Send Reset Boot Registers. See icd_client_send(). */
 static inline icd_status_t common_send_reset_boot_registers(
     common_client_t *client,
     uint32_t now,
@@ -157,7 +160,7 @@ static inline icd_status_t common_send_reset_boot_registers(
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_FORMAT_SD_CARD)
 /**
- * Sends Format SD card, as icd_client_send().
+ * Send Format SD card. See icd_client_send().
  * Dangerous: All files on the SD card are lost.
  */
 static inline icd_status_t common_send_format_sd_card(
@@ -186,7 +189,7 @@ static inline icd_status_t common_send_format_sd_card(
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_ERASE_FILE)
 /**
- * Sends Erase File, as icd_client_send().
+ * Send Erase File. See icd_client_send().
  * Dangerous: The file is lost; all files are with Erase All.
  */
 static inline icd_status_t common_send_erase_file(
@@ -214,7 +217,7 @@ static inline icd_status_t common_send_erase_file(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_LOAD_FILE_DOWNLOAD_BLOCK)
-/** Sends Load File Download Block, as icd_client_send(). */
+/** Send Load File Download Block. See icd_client_send(). */
 static inline icd_status_t common_send_load_file_download_block(
     common_client_t *client,
     uint32_t now,
@@ -240,7 +243,7 @@ static inline icd_status_t common_send_load_file_download_block(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_ADVANCE_FILE_LIST_READ_POINTER)
-/** Sends Advance File List Read Pointer, as icd_client_send(). */
+/** Send Advance File List Read Pointer. See icd_client_send(). */
 static inline icd_status_t common_send_advance_file_list_read_pointer(
     common_client_t *client,
     uint32_t now,
@@ -261,7 +264,7 @@ static inline icd_status_t common_send_advance_file_list_read_pointer(
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_INITIATE_FILE_UPLOAD)
 /**
- * Sends Initiate File Upload, as icd_client_send().
+ * Send Initiate File Upload. See icd_client_send().
  * Dangerous: The program in the destination is lost.
  */
 static inline icd_status_t common_send_initiate_file_upload(
@@ -289,7 +292,7 @@ static inline icd_status_t common_send_initiate_file_upload(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_FILE_UPLOAD_PACKET)
-/** Sends File Upload Packet, as icd_client_send(). */
+/** Send File Upload Packet. See icd_client_send(). */
 static inline icd_status_t common_send_file_upload_packet(
     common_client_t *client,
     uint32_t now,
@@ -315,7 +318,7 @@ static inline icd_status_t common_send_file_upload_packet(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_FINALIZE_UPLOAD_BLOCK)
-/** Sends Finalize Upload Block, as icd_client_send(). */
+/** Send Finalize Upload Block. See icd_client_send(). */
 static inline icd_status_t common_send_finalize_upload_block(
     common_client_t *client,
     uint32_t now,
@@ -341,7 +344,7 @@ static inline icd_status_t common_send_finalize_upload_block(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_RESET_UPLOAD_BLOCK)
-/** Sends Reset Upload Block, as icd_client_send(). */
+/** Send Reset Upload Block. See icd_client_send(). */
 static inline icd_status_t common_send_reset_upload_block(
     common_client_t *client,
     uint32_t now,
@@ -361,7 +364,7 @@ static inline icd_status_t common_send_reset_upload_block(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_RESET_FILE_LIST_READ_POINTER)
-/** Sends Reset File List Read Pointer, as icd_client_send(). */
+/** Send Reset File List Read Pointer. See icd_client_send(). */
 static inline icd_status_t common_send_reset_file_list_read_pointer(
     common_client_t *client,
     uint32_t now,
@@ -381,7 +384,7 @@ static inline icd_status_t common_send_reset_file_list_read_pointer(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_INITIATE_DOWNLOAD_BURST)
-/** Sends Initiate Download Burst, as icd_client_send(). */
+/** Send Initiate Download Burst. See icd_client_send(). */
 static inline icd_status_t common_send_initiate_download_burst(
     common_client_t *client,
     uint32_t now,
@@ -407,7 +410,7 @@ static inline icd_status_t common_send_initiate_download_burst(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_CACHE_ENABLED_STATE)
-/** Sends Cache enabled state, as icd_client_send(). */
+/** Send Cache enabled state. See icd_client_send(). */
 static inline icd_status_t common_send_cache_enabled_state(
     common_client_t *client,
     uint32_t now,
@@ -433,7 +436,7 @@ static inline icd_status_t common_send_cache_enabled_state(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_SRAM_SCRUB_PARAMETERS)
-/** Sends SRAM Scrub Parameters, as icd_client_send(). */
+/** Send SRAM Scrub Parameters. See icd_client_send(). */
 static inline icd_status_t common_send_sram_scrub_parameters(
     common_client_t *client,
     uint32_t now,
@@ -459,7 +462,7 @@ static inline icd_status_t common_send_sram_scrub_parameters(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_CURRENT_UNIX_TIME)
-/** Sends Current Unix Time, as icd_client_send(). */
+/** Send Current Unix Time. See icd_client_send(). */
 static inline icd_status_t common_send_current_unix_time(
     common_client_t *client,
     uint32_t now,
@@ -485,7 +488,7 @@ static inline icd_status_t common_send_current_unix_time(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_UNIX_TIME_SAVE_TO_FLASH)
-/** Sends Unix Time Save to Flash, as icd_client_send(). */
+/** Send Unix Time Save to Flash. See icd_client_send(). */
 static inline icd_status_t common_send_unix_time_save_to_flash(
     common_client_t *client,
     uint32_t now,
@@ -511,7 +514,7 @@ static inline icd_status_t common_send_unix_time_save_to_flash(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_1)
-/** Sends Hole Map 1, as icd_client_send(). */
+/** Send Hole Map 1. See icd_client_send(). */
 static inline icd_status_t common_send_hole_map_1(
     common_client_t *client,
     uint32_t now,
@@ -537,7 +540,7 @@ static inline icd_status_t common_send_hole_map_1(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_2)
-/** Sends Hole Map 2, as icd_client_send(). */
+/** Send Hole Map 2. See icd_client_send(). */
 static inline icd_status_t common_send_hole_map_2(
     common_client_t *client,
     uint32_t now,
@@ -563,7 +566,7 @@ static inline icd_status_t common_send_hole_map_2(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_3)
-/** Sends Hole Map 3, as icd_client_send(). */
+/** Send Hole Map 3. See icd_client_send(). */
 static inline icd_status_t common_send_hole_map_3(
     common_client_t *client,
     uint32_t now,
@@ -589,7 +592,7 @@ static inline icd_status_t common_send_hole_map_3(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_4)
-/** Sends Hole Map 4, as icd_client_send(). */
+/** Send Hole Map 4. See icd_client_send(). */
 static inline icd_status_t common_send_hole_map_4(
     common_client_t *client,
     uint32_t now,
@@ -615,7 +618,7 @@ static inline icd_status_t common_send_hole_map_4(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_5)
-/** Sends Hole Map 5, as icd_client_send(). */
+/** Send Hole Map 5. See icd_client_send(). */
 static inline icd_status_t common_send_hole_map_5(
     common_client_t *client,
     uint32_t now,
@@ -641,7 +644,7 @@ static inline icd_status_t common_send_hole_map_5(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_6)
-/** Sends Hole Map 6, as icd_client_send(). */
+/** Send Hole Map 6. See icd_client_send(). */
 static inline icd_status_t common_send_hole_map_6(
     common_client_t *client,
     uint32_t now,
@@ -667,7 +670,7 @@ static inline icd_status_t common_send_hole_map_6(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_7)
-/** Sends Hole Map 7, as icd_client_send(). */
+/** Send Hole Map 7. See icd_client_send(). */
 static inline icd_status_t common_send_hole_map_7(
     common_client_t *client,
     uint32_t now,
@@ -693,7 +696,7 @@ static inline icd_status_t common_send_hole_map_7(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_8)
-/** Sends Hole Map 8, as icd_client_send(). */
+/** Send Hole Map 8. See icd_client_send(). */
 static inline icd_status_t common_send_hole_map_8(
     common_client_t *client,
     uint32_t now,
@@ -719,13 +722,13 @@ static inline icd_status_t common_send_hole_map_8(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_IDENTIFICATION)
-/** Requests Identification, as icd_client_request(). */
+/** Request Identification. See icd_client_request(). */
 static inline icd_status_t common_request_identification(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_IDENTIFICATION_ID);
 }
 
-/** Reads Identification from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Identification from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_identification(common_identification_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, COMMON_NODE, COMMON_IDENTIFICATION_ID)) {
@@ -736,13 +739,13 @@ static inline icd_status_t common_receive_identification(common_identification_t
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_BOOT_AND_RUNNING_PROGRAM_STATUS)
-/** Requests Boot And Running Program Status, as icd_client_request(). */
+/** Request Boot And Running Program Status. See icd_client_request(). */
 static inline icd_status_t common_request_boot_and_running_program_status(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_ID);
 }
 
-/** Reads Boot And Running Program Status from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Boot And Running Program Status from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_boot_and_running_program_status(
     common_boot_and_running_program_status_t *message,
     const icd_event_t *event)
@@ -755,13 +758,13 @@ static inline icd_status_t common_receive_boot_and_running_program_status(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_BOOT_INDEX_AND_STATUS)
-/** Requests Boot Index and Status, as icd_client_request(). */
+/** Request Boot Index and Status. See icd_client_request(). */
 static inline icd_status_t common_request_boot_index_and_status(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BOOT_INDEX_AND_STATUS_ID);
 }
 
-/** Reads Boot Index and Status from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Boot Index and Status from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_boot_index_and_status(
     common_boot_index_and_status_t *message,
     const icd_event_t *event)
@@ -774,13 +777,13 @@ static inline icd_status_t common_receive_boot_index_and_status(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_LAST_LOGGED_EVENT)
-/** Requests Last Logged Event, as icd_client_request(). */
+/** Request Last Logged Event. See icd_client_request(). */
 static inline icd_status_t common_request_last_logged_event(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_LAST_LOGGED_EVENT_ID);
 }
 
-/** Reads Last Logged Event from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Last Logged Event from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_last_logged_event(
     common_last_logged_event_t *message,
     const icd_event_t *event)
@@ -793,13 +796,13 @@ static inline icd_status_t common_receive_last_logged_event(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_SRAM_LATCHUP_COUNTERS)
-/** Requests SRAM Latchup counters, as icd_client_request(). */
+/** Request SRAM Latchup counters. See icd_client_request(). */
 static inline icd_status_t common_request_sram_latchup_counters(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SRAM_LATCHUP_COUNTERS_ID);
 }
 
-/** Reads SRAM Latchup counters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode SRAM Latchup counters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_sram_latchup_counters(
     common_sram_latchup_counters_t *message,
     const icd_event_t *event)
@@ -812,13 +815,13 @@ static inline icd_status_t common_receive_sram_latchup_counters(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_EDAC_ERROR_COUNTERS)
-/** Requests EDAC Error Counters, as icd_client_request(). */
+/** Request EDAC Error Counters. See icd_client_request(). */
 static inline icd_status_t common_request_edac_error_counters(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_EDAC_ERROR_COUNTERS_ID);
 }
 
-/** Reads EDAC Error Counters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode EDAC Error Counters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_edac_error_counters(
     common_edac_error_counters_t *message,
     const icd_event_t *event)
@@ -831,13 +834,13 @@ static inline icd_status_t common_receive_edac_error_counters(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_COMMUNICATION_STATUS)
-/** Requests Communication Status, as icd_client_request(). */
+/** Request Communication Status. See icd_client_request(). */
 static inline icd_status_t common_request_communication_status(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_COMMUNICATION_STATUS_ID);
 }
 
-/** Reads Communication Status from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Communication Status from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_communication_status(
     common_communication_status_t *message,
     const icd_event_t *event)
@@ -850,13 +853,13 @@ static inline icd_status_t common_receive_communication_status(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_SD_CARD_FORMAT_ERASE_PROGRESS)
-/** Requests SD card format/erase progress, as icd_client_request(). */
+/** Request SD card format/erase progress. See icd_client_request(). */
 static inline icd_status_t common_request_sd_card_format_erase_progress(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_ID);
 }
 
-/** Reads SD card format/erase progress from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode SD card format/erase progress from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_sd_card_format_erase_progress(
     common_sd_card_format_erase_progress_t *message,
     const icd_event_t *event)
@@ -869,13 +872,13 @@ static inline icd_status_t common_receive_sd_card_format_erase_progress(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_TELECOMMAND_ACKNOWLEDGE)
-/** Requests Telecommand Acknowledge, as icd_client_request(). */
+/** Request Telecommand Acknowledge. See icd_client_request(). */
 static inline icd_status_t common_request_telecommand_acknowledge(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_TELECOMMAND_ACKNOWLEDGE_ID);
 }
 
-/** Reads Telecommand Acknowledge from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Telecommand Acknowledge from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_telecommand_acknowledge(
     common_telecommand_acknowledge_t *message,
     const icd_event_t *event)
@@ -888,13 +891,13 @@ static inline icd_status_t common_receive_telecommand_acknowledge(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS)
-/** Requests File Download Buffer with File Contents, as icd_client_request(). */
+/** Request File Download Buffer with File Contents. See icd_client_request(). */
 static inline icd_status_t common_request_file_download_buffer_with_file_contents(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS_ID);
 }
 
-/** Reads File Download Buffer with File Contents from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode File Download Buffer with File Contents from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_file_download_buffer_with_file_contents(
     common_file_download_buffer_with_file_contents_t *message,
     const icd_event_t *event)
@@ -907,13 +910,13 @@ static inline icd_status_t common_receive_file_download_buffer_with_file_content
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_DOWNLOAD_BLOCK_READY)
-/** Requests Download Block Ready, as icd_client_request(). */
+/** Request Download Block Ready. See icd_client_request(). */
 static inline icd_status_t common_request_download_block_ready(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_DOWNLOAD_BLOCK_READY_ID);
 }
 
-/** Reads Download Block Ready from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Download Block Ready from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_download_block_ready(
     common_download_block_ready_t *message,
     const icd_event_t *event)
@@ -926,13 +929,13 @@ static inline icd_status_t common_receive_download_block_ready(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_FILE_INFORMATION)
-/** Requests File Information, as icd_client_request(). */
+/** Request File Information. See icd_client_request(). */
 static inline icd_status_t common_request_file_information(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_FILE_INFORMATION_ID);
 }
 
-/** Reads File Information from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode File Information from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_file_information(common_file_information_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, COMMON_NODE, COMMON_FILE_INFORMATION_ID)) {
@@ -943,13 +946,13 @@ static inline icd_status_t common_receive_file_information(common_file_informati
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_INITIALIZE_UPLOAD_COMPLETE)
-/** Requests Initialize Upload Complete, as icd_client_request(). */
+/** Request Initialize Upload Complete. See icd_client_request(). */
 static inline icd_status_t common_request_initialize_upload_complete(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_INITIALIZE_UPLOAD_COMPLETE_ID);
 }
 
-/** Reads Initialize Upload Complete from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Initialize Upload Complete from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_initialize_upload_complete(
     common_initialize_upload_complete_t *message,
     const icd_event_t *event)
@@ -962,13 +965,13 @@ static inline icd_status_t common_receive_initialize_upload_complete(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_UPLOAD_BLOCK_COMPLETE)
-/** Requests Upload Block Complete, as icd_client_request(). */
+/** Request Upload Block Complete. See icd_client_request(). */
 static inline icd_status_t common_request_upload_block_complete(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_UPLOAD_BLOCK_COMPLETE_ID);
 }
 
-/** Reads Upload Block Complete from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Upload Block Complete from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_upload_block_complete(
     common_upload_block_complete_t *message,
     const icd_event_t *event)
@@ -981,13 +984,13 @@ static inline icd_status_t common_receive_upload_block_complete(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_BLOCK_CHECKSUM)
-/** Requests Block Checksum, as icd_client_request(). */
+/** Request Block Checksum. See icd_client_request(). */
 static inline icd_status_t common_request_block_checksum(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BLOCK_CHECKSUM_ID);
 }
 
-/** Reads Block Checksum from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Block Checksum from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_block_checksum(common_block_checksum_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, COMMON_NODE, COMMON_BLOCK_CHECKSUM_ID)) {
@@ -998,13 +1001,13 @@ static inline icd_status_t common_receive_block_checksum(common_block_checksum_t
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_CACHE_ENABLED_STATE)
-/** Requests Cache enabled state, as icd_client_request(). */
+/** Request Cache enabled state. See icd_client_request(). */
 static inline icd_status_t common_request_cache_enabled_state(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_CACHE_ENABLED_STATE_GET_ID);
 }
 
-/** Reads Cache enabled state from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Cache enabled state from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_cache_enabled_state(
     common_cache_enabled_state_t *message,
     const icd_event_t *event)
@@ -1017,13 +1020,13 @@ static inline icd_status_t common_receive_cache_enabled_state(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_SRAM_SCRUB_PARAMETERS)
-/** Requests SRAM Scrub Parameters, as icd_client_request(). */
+/** Request SRAM Scrub Parameters. See icd_client_request(). */
 static inline icd_status_t common_request_sram_scrub_parameters(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SRAM_SCRUB_PARAMETERS_GET_ID);
 }
 
-/** Reads SRAM Scrub Parameters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode SRAM Scrub Parameters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_sram_scrub_parameters(
     common_sram_scrub_parameters_t *message,
     const icd_event_t *event)
@@ -1036,13 +1039,13 @@ static inline icd_status_t common_receive_sram_scrub_parameters(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_CURRENT_UNIX_TIME)
-/** Requests Current Unix Time, as icd_client_request(). */
+/** Request Current Unix Time. See icd_client_request(). */
 static inline icd_status_t common_request_current_unix_time(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_CURRENT_UNIX_TIME_GET_ID);
 }
 
-/** Reads Current Unix Time from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Current Unix Time from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_current_unix_time(
     common_current_unix_time_t *message,
     const icd_event_t *event)
@@ -1055,13 +1058,13 @@ static inline icd_status_t common_receive_current_unix_time(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_UNIX_TIME_SAVE_TO_FLASH)
-/** Requests Unix Time Save to Flash, as icd_client_request(). */
+/** Request Unix Time Save to Flash. See icd_client_request(). */
 static inline icd_status_t common_request_unix_time_save_to_flash(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_UNIX_TIME_SAVE_TO_FLASH_GET_ID);
 }
 
-/** Reads Unix Time Save to Flash from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Unix Time Save to Flash from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_unix_time_save_to_flash(
     common_unix_time_save_to_flash_t *message,
     const icd_event_t *event)
@@ -1074,13 +1077,13 @@ static inline icd_status_t common_receive_unix_time_save_to_flash(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_1)
-/** Requests Hole Map 1, as icd_client_request(). */
+/** Request Hole Map 1. See icd_client_request(). */
 static inline icd_status_t common_request_hole_map_1(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_1_GET_ID);
 }
 
-/** Reads Hole Map 1 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Hole Map 1 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_hole_map_1(common_hole_map_1_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, COMMON_NODE, COMMON_HOLE_MAP_1_GET_ID)) {
@@ -1091,13 +1094,13 @@ static inline icd_status_t common_receive_hole_map_1(common_hole_map_1_t *messag
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_2)
-/** Requests Hole Map 2, as icd_client_request(). */
+/** Request Hole Map 2. See icd_client_request(). */
 static inline icd_status_t common_request_hole_map_2(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_2_GET_ID);
 }
 
-/** Reads Hole Map 2 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Hole Map 2 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_hole_map_2(common_hole_map_2_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, COMMON_NODE, COMMON_HOLE_MAP_2_GET_ID)) {
@@ -1108,13 +1111,13 @@ static inline icd_status_t common_receive_hole_map_2(common_hole_map_2_t *messag
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_3)
-/** Requests Hole Map 3, as icd_client_request(). */
+/** Request Hole Map 3. See icd_client_request(). */
 static inline icd_status_t common_request_hole_map_3(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_3_GET_ID);
 }
 
-/** Reads Hole Map 3 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Hole Map 3 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_hole_map_3(common_hole_map_3_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, COMMON_NODE, COMMON_HOLE_MAP_3_GET_ID)) {
@@ -1125,13 +1128,13 @@ static inline icd_status_t common_receive_hole_map_3(common_hole_map_3_t *messag
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_4)
-/** Requests Hole Map 4, as icd_client_request(). */
+/** Request Hole Map 4. See icd_client_request(). */
 static inline icd_status_t common_request_hole_map_4(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_4_GET_ID);
 }
 
-/** Reads Hole Map 4 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Hole Map 4 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_hole_map_4(common_hole_map_4_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, COMMON_NODE, COMMON_HOLE_MAP_4_GET_ID)) {
@@ -1142,13 +1145,13 @@ static inline icd_status_t common_receive_hole_map_4(common_hole_map_4_t *messag
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_5)
-/** Requests Hole Map 5, as icd_client_request(). */
+/** Request Hole Map 5. See icd_client_request(). */
 static inline icd_status_t common_request_hole_map_5(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_5_GET_ID);
 }
 
-/** Reads Hole Map 5 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Hole Map 5 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_hole_map_5(common_hole_map_5_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, COMMON_NODE, COMMON_HOLE_MAP_5_GET_ID)) {
@@ -1159,13 +1162,13 @@ static inline icd_status_t common_receive_hole_map_5(common_hole_map_5_t *messag
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_6)
-/** Requests Hole Map 6, as icd_client_request(). */
+/** Request Hole Map 6. See icd_client_request(). */
 static inline icd_status_t common_request_hole_map_6(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_6_GET_ID);
 }
 
-/** Reads Hole Map 6 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Hole Map 6 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_hole_map_6(common_hole_map_6_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, COMMON_NODE, COMMON_HOLE_MAP_6_GET_ID)) {
@@ -1176,13 +1179,13 @@ static inline icd_status_t common_receive_hole_map_6(common_hole_map_6_t *messag
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_7)
-/** Requests Hole Map 7, as icd_client_request(). */
+/** Request Hole Map 7. See icd_client_request(). */
 static inline icd_status_t common_request_hole_map_7(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_7_GET_ID);
 }
 
-/** Reads Hole Map 7 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Hole Map 7 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_hole_map_7(common_hole_map_7_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, COMMON_NODE, COMMON_HOLE_MAP_7_GET_ID)) {
@@ -1193,13 +1196,13 @@ static inline icd_status_t common_receive_hole_map_7(common_hole_map_7_t *messag
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_8)
-/** Requests Hole Map 8, as icd_client_request(). */
+/** Request Hole Map 8. See icd_client_request(). */
 static inline icd_status_t common_request_hole_map_8(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_8_GET_ID);
 }
 
-/** Reads Hole Map 8 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Hole Map 8 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t common_receive_hole_map_8(common_hole_map_8_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, COMMON_NODE, COMMON_HOLE_MAP_8_GET_ID)) {

@@ -16,7 +16,7 @@
 
 /** Id of the telemetry. */
 #define COMMON_COMMUNICATION_STATUS_ID 144u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define COMMON_COMMUNICATION_STATUS_LENGTH 6u
 
 /** Raw values. */
@@ -79,13 +79,13 @@ typedef struct {
     bool can_telecommand_buffer_error;
 } common_communication_status_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void common_communication_status_init(common_communication_status_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t common_communication_status_decode(
     common_communication_status_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -109,7 +109,7 @@ static inline icd_status_t common_communication_status_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes, reserved bits 0; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes, reserved bits 0. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t common_communication_status_encode(
     const common_communication_status_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -135,7 +135,7 @@ static inline icd_status_t common_communication_status_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *common_communication_status_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

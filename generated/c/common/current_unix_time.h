@@ -5,7 +5,7 @@
 
 /**
  * @file
- * Current Unix Time: configuration, set by telecommand 2, got by telemetry 140, 6 bytes. Table 50.
+ * Current Unix Time: configuration, set by telecommand 2, read by telemetry 140, 6 bytes. Table 50.
  */
 
 #include "../icdgen.h"
@@ -14,7 +14,7 @@
 #define COMMON_CURRENT_UNIX_TIME_SET_ID 2u
 /** Id of the telemetry that gets it. */
 #define COMMON_CURRENT_UNIX_TIME_GET_ID 140u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define COMMON_CURRENT_UNIX_TIME_LENGTH 6u
 
 /** Raw values. */
@@ -32,13 +32,13 @@ typedef struct {
     uint16_t milliseconds;
 } common_current_unix_time_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void common_current_unix_time_init(common_current_unix_time_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t common_current_unix_time_decode(
     common_current_unix_time_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -52,7 +52,7 @@ static inline icd_status_t common_current_unix_time_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t common_current_unix_time_encode(
     const common_current_unix_time_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -66,7 +66,7 @@ static inline icd_status_t common_current_unix_time_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *common_current_unix_time_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

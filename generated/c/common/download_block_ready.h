@@ -15,7 +15,7 @@
 
 /** Id of the telemetry. */
 #define COMMON_DOWNLOAD_BLOCK_READY_ID 242u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define COMMON_DOWNLOAD_BLOCK_READY_LENGTH 5u
 
 /** Raw values. */
@@ -39,13 +39,13 @@ typedef struct {
     uint16_t block_length;
 } common_download_block_ready_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void common_download_block_ready_init(common_download_block_ready_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 5 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 5 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t common_download_block_ready_decode(
     common_download_block_ready_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -61,7 +61,7 @@ static inline icd_status_t common_download_block_ready_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 5 bytes, reserved bits 0; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 5 bytes, reserved bits 0. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t common_download_block_ready_encode(
     const common_download_block_ready_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -76,7 +76,7 @@ static inline icd_status_t common_download_block_ready_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *common_download_block_ready_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -5,14 +5,15 @@
 
 /**
  * @file
- * Enumerations of Common messages. A variable of such a type may hold any value: what a node sends is kept as it is.
+ * Enumerations of Common messages.
+ * A variable of these types can store any value: unknown values from a node are kept unchanged.
  */
 
 #include <stddef.h>
 #include <stdint.h>
 
 /**
- * FileType: an enumeration. Table 16. Held by File Type in Erase File, Load File Download Block and File Information.
+ * FileType: an enumeration. Table 16. Used by File Type in Erase File, Load File Download Block and File Information.
  * @note COM-037 (open): FileType begins at 2 and jumps to 15. Values 0, 1 and 5 to 14 are not explained. Value 0 ends
  * the file list, since an entry of zeroes does.
  */
@@ -34,7 +35,7 @@ enum {
     COMMON_FILE_TYPE_INDEX = 15
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *common_file_type_name(common_file_type_t value)
 {
     switch (value) {
@@ -52,7 +53,7 @@ static inline const char *common_file_type_name(common_file_type_t value)
 }
 
 /**
- * FileUploadDestination: an enumeration. Table 20. The SD card destinations are not supported. Held by Destination in
+ * FileUploadDestination: an enumeration. Table 20. The SD card destinations are not supported. Used by Destination in
  * Initiate File Upload and Finalize Upload Block.
  * @note COM-045 (certain): Names of the flash areas differ between two lists. Flash program 1 of the upload is External
  * Flash Program 1 of the bootloader, with the same number.
@@ -123,7 +124,7 @@ enum {
     COMMON_FILE_UPLOAD_DESTINATION_SD_USER_FILE_8 = 17
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *common_file_upload_destination_name(common_file_upload_destination_t value)
 {
     switch (value) {
@@ -164,7 +165,7 @@ static inline const char *common_file_upload_destination_name(common_file_upload
     }
 }
 
-/** ResetCause: an enumeration. Table 29. Held by Cause of MCU Reset in Boot And Running Program Status. */
+/** ResetCause: an enumeration. Table 29. Used by Cause of MCU Reset in Boot And Running Program Status. */
 typedef uint8_t common_reset_cause_t;
 
 enum {
@@ -221,7 +222,7 @@ enum {
     COMMON_RESET_CAUSE_UNKNOWN_RESET_CAUSE = 15
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *common_reset_cause_name(common_reset_cause_t value)
 {
     switch (value) {
@@ -262,7 +263,7 @@ static inline const char *common_reset_cause_name(common_reset_cause_t value)
     }
 }
 
-/** BootCause: an enumeration. Table 30. Held by Boot Cause in Boot And Running Program Status. */
+/** BootCause: an enumeration. Table 30. Used by Boot Cause in Boot And Running Program Status. */
 typedef uint8_t common_boot_cause_t;
 
 enum {
@@ -292,7 +293,7 @@ enum {
     COMMON_BOOT_CAUSE_SRAM_LATCHUP = 5
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *common_boot_cause_name(common_boot_cause_t value)
 {
     switch (value) {
@@ -314,7 +315,7 @@ static inline const char *common_boot_cause_name(common_boot_cause_t value)
 }
 
 /**
- * BootProgramsList: an enumeration. Table 31. Held by Boot Program Index in Boot And Running Program Status; Program
+ * BootProgramsList: an enumeration. Table 31. Used by Boot Program Index in Boot And Running Program Status; Program
  * Index in Boot Index and Status.
  */
 typedef uint8_t common_boot_programs_list_t;
@@ -331,7 +332,7 @@ enum {
     COMMON_BOOT_PROGRAMS_LIST_BOOTLOADER = 2
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *common_boot_programs_list_name(common_boot_programs_list_t value)
 {
     switch (value) {
@@ -346,7 +347,7 @@ static inline const char *common_boot_programs_list_name(common_boot_programs_li
 
 /**
  * BootStatus: an enumeration. Table 33. Kept in flash. The bootloader counts up before each attempt, the program sets
- * Boot Success once it runs. Held by Boot Status in Boot Index and Status.
+ * Boot Success once it runs. Used by Boot Status in Boot Index and Status.
  * @note COM-070 (open): Boot Status: whether the third attempt still takes place. After a first failure the bootloader
  * is to try twice more, three attempts in all. But the status is raised before each start, so it reads 4 before the
  * third attempt begins, and at 4 the application is said not to be started any more.
@@ -377,7 +378,7 @@ enum {
     COMMON_BOOT_STATUS_FAILED_BOOT_ATTEMPTS_3 = 4
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *common_boot_status_name(common_boot_status_t value)
 {
     switch (value) {
@@ -396,7 +397,7 @@ static inline const char *common_boot_status_name(common_boot_status_t value)
     }
 }
 
-/** TcErrorReason: an enumeration. Table 40. Held by TC error status in Telecommand Acknowledge. */
+/** TcErrorReason: an enumeration. Table 40. Used by TC error status in Telecommand Acknowledge. */
 typedef uint8_t common_tc_error_reason_t;
 
 enum {
@@ -418,7 +419,7 @@ enum {
     COMMON_TC_ERROR_REASON_CRC_CHECK_FAILED = 4
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *common_tc_error_reason_name(common_tc_error_reason_t value)
 {
     switch (value) {

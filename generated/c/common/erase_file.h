@@ -17,7 +17,7 @@
 
 /** Id of the telecommand. */
 #define COMMON_ERASE_FILE_ID 108u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define COMMON_ERASE_FILE_LENGTH 3u
 
 /** Raw values. */
@@ -34,13 +34,13 @@ typedef struct {
     bool erase_all;
 } common_erase_file_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void common_erase_file_init(common_erase_file_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 3 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 3 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t common_erase_file_decode(
     common_erase_file_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -55,7 +55,7 @@ static inline icd_status_t common_erase_file_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 3 bytes, reserved bits 0; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 3 bytes, reserved bits 0. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t common_erase_file_encode(
     const common_erase_file_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -70,7 +70,7 @@ static inline icd_status_t common_erase_file_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *common_erase_file_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -18,7 +18,7 @@
 
 /** Id of the telemetry. */
 #define COMMON_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS_ID 241u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define COMMON_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS_LENGTH 22u
 
 /** Raw values. */
@@ -41,14 +41,14 @@ typedef struct {
     uint8_t file_bytes[20];
 } common_file_download_buffer_with_file_contents_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void common_file_download_buffer_with_file_contents_init(
     common_file_download_buffer_with_file_contents_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 22 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 22 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t common_file_download_buffer_with_file_contents_decode(
     common_file_download_buffer_with_file_contents_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -62,7 +62,7 @@ static inline icd_status_t common_file_download_buffer_with_file_contents_decode
     return ICD_OK;
 }
 
-/** Encodes a frame of 22 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 22 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t common_file_download_buffer_with_file_contents_encode(
     const common_file_download_buffer_with_file_contents_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -76,7 +76,7 @@ static inline icd_status_t common_file_download_buffer_with_file_contents_encode
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *common_file_download_buffer_with_file_contents_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -18,7 +18,7 @@
 
 /** Id of the telemetry. */
 #define COMMON_FILE_INFORMATION_ID 243u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define COMMON_FILE_INFORMATION_LENGTH 12u
 
 /** Raw values. */
@@ -59,13 +59,13 @@ typedef struct {
     uint16_t file_crc16_checksum;
 } common_file_information_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void common_file_information_init(common_file_information_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 12 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 12 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t common_file_information_decode(
     common_file_information_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -83,7 +83,7 @@ static inline icd_status_t common_file_information_decode(
     return ICD_OK;
 }
 
-/** Name of the first field whose raw value has more bits than the field; NULL if all fit. */
+/** Return the name of the first field whose raw value has more bits than the field; NULL if all fit. */
 static inline const char *common_file_information_misfit(const common_file_information_t *message)
 {
     if ((message->file_type & 0xF0u) != 0u) {
@@ -93,8 +93,8 @@ static inline const char *common_file_information_misfit(const common_file_infor
 }
 
 /**
- * Writes a frame of 12 bytes, reserved bits 0. ICD_ERROR_LENGTH if the buffer is smaller, ICD_ERROR_RANGE if a raw
- * value does not fit its field; nothing is written then.
+ * Encode a frame of 12 bytes, reserved bits 0. Return ICD_ERROR_LENGTH if the buffer is too small, and ICD_ERROR_RANGE
+ * if a raw value does not fit into its field. Nothing is written in case of an error.
  */
 static inline icd_status_t common_file_information_encode(
     const common_file_information_t *ICDGEN_RESTRICT message,
@@ -117,7 +117,7 @@ static inline icd_status_t common_file_information_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *common_file_information_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

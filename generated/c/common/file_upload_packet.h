@@ -7,7 +7,7 @@
  * @file
  * File Upload Packet: telecommand 115, 22 bytes. Table 21.
  * One packet of a block. Packets may follow one another without a pause.
- * The node does not acknowledge it.
+ * The node does not send an acknowledge.
  * @note COM-041 (open): File upload is listed as common but described for the bootloader only. The messages of the
  * upload are in the list common to both programs, the procedure belongs to the bootloader. Whether the ACP answers
  * them, refuses them, or uploads somewhere is not said.
@@ -22,7 +22,7 @@
 
 /** Id of the telecommand. */
 #define COMMON_FILE_UPLOAD_PACKET_ID 115u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define COMMON_FILE_UPLOAD_PACKET_LENGTH 22u
 
 /** Raw values. */
@@ -42,13 +42,13 @@ typedef struct {
     uint8_t file_bytes[20];
 } common_file_upload_packet_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void common_file_upload_packet_init(common_file_upload_packet_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 22 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 22 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t common_file_upload_packet_decode(
     common_file_upload_packet_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -62,7 +62,7 @@ static inline icd_status_t common_file_upload_packet_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 22 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 22 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t common_file_upload_packet_encode(
     const common_file_upload_packet_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -76,7 +76,7 @@ static inline icd_status_t common_file_upload_packet_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *common_file_upload_packet_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -14,7 +14,7 @@
 
 /** Id of the telecommand. */
 #define COMMON_FORMAT_SD_CARD_ID 33u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define COMMON_FORMAT_SD_CARD_LENGTH 1u
 /** Magic Number: the only valid raw value. */
 #define COMMON_FORMAT_SD_CARD_MAGIC_NUMBER_CONST 0x5Au
@@ -25,14 +25,14 @@ typedef struct {
     uint8_t magic_number;
 } common_format_sd_card_t;
 
-/** Sets all raw values to 0, or the only valid one. */
+/** Set all raw values to 0, constants to their values. */
 static inline void common_format_sd_card_init(common_format_sd_card_t *message)
 {
     (void)memset(message, 0, sizeof *message);
     message->magic_number = COMMON_FORMAT_SD_CARD_MAGIC_NUMBER_CONST;
 }
 
-/** Decodes a frame of 1 byte; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 1 byte. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t common_format_sd_card_decode(
     common_format_sd_card_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -45,7 +45,7 @@ static inline icd_status_t common_format_sd_card_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 1 byte; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 1 byte. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t common_format_sd_card_encode(
     const common_format_sd_card_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -58,7 +58,7 @@ static inline icd_status_t common_format_sd_card_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *common_format_sd_card_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -5,7 +5,7 @@
 
 /**
  * @file
- * Hole Map 3: configuration, set by telecommand 122, got by telemetry 249, 16 bytes. Table 54.
+ * Hole Map 3: configuration, set by telecommand 122, read by telemetry 249, 16 bytes. Table 54.
  * Packets 256 to 383 of a file block.
  * @note COM-115 (certain): Hole maps are named for the upload and serve the download too. All eight messages are
  * described as file upload hole map. For a download the OBC sets them, for an upload it reads them. Whether both use
@@ -24,7 +24,7 @@
 #define COMMON_HOLE_MAP_3_SET_ID 122u
 /** Id of the telemetry that gets it. */
 #define COMMON_HOLE_MAP_3_GET_ID 249u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define COMMON_HOLE_MAP_3_LENGTH 16u
 
 /** Raw values. */
@@ -33,13 +33,13 @@ typedef struct {
     uint8_t hole_map[16];
 } common_hole_map_3_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void common_hole_map_3_init(common_hole_map_3_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 16 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 16 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t common_hole_map_3_decode(
     common_hole_map_3_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -52,7 +52,7 @@ static inline icd_status_t common_hole_map_3_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 16 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 16 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t common_hole_map_3_encode(
     const common_hole_map_3_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -65,7 +65,7 @@ static inline icd_status_t common_hole_map_3_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *common_hole_map_3_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -16,7 +16,7 @@
 
 /** Id of the telemetry. */
 #define COMMON_IDENTIFICATION_ID 128u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define COMMON_IDENTIFICATION_LENGTH 8u
 
 /** Raw values. */
@@ -49,13 +49,13 @@ typedef struct {
     uint16_t runtime_milliseconds;
 } common_identification_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void common_identification_init(common_identification_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 8 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 8 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t common_identification_decode(
     common_identification_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -73,7 +73,7 @@ static inline icd_status_t common_identification_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 8 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 8 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t common_identification_encode(
     const common_identification_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -91,7 +91,7 @@ static inline icd_status_t common_identification_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *common_identification_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -21,7 +21,7 @@
 
 /** Id of the telemetry. */
 #define COMMON_INITIALIZE_UPLOAD_COMPLETE_ID 244u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define COMMON_INITIALIZE_UPLOAD_COMPLETE_LENGTH 1u
 
 /** Raw values. */
@@ -34,13 +34,13 @@ typedef struct {
     bool busy;
 } common_initialize_upload_complete_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void common_initialize_upload_complete_init(common_initialize_upload_complete_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 1 byte; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 1 byte. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t common_initialize_upload_complete_decode(
     common_initialize_upload_complete_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -53,7 +53,7 @@ static inline icd_status_t common_initialize_upload_complete_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 1 byte, reserved bits 0; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 1 byte, reserved bits 0. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t common_initialize_upload_complete_encode(
     const common_initialize_upload_complete_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -66,7 +66,7 @@ static inline icd_status_t common_initialize_upload_complete_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *common_initialize_upload_complete_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -18,7 +18,7 @@
 
 /** Id of the telecommand. */
 #define COMMON_INITIATE_FILE_UPLOAD_ID 114u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define COMMON_INITIATE_FILE_UPLOAD_LENGTH 2u
 
 /** Raw values. */
@@ -33,13 +33,13 @@ typedef struct {
     uint8_t block_size;
 } common_initiate_file_upload_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void common_initiate_file_upload_init(common_initiate_file_upload_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 2 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 2 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t common_initiate_file_upload_decode(
     common_initiate_file_upload_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -53,7 +53,7 @@ static inline icd_status_t common_initiate_file_upload_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 2 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 2 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t common_initiate_file_upload_encode(
     const common_initiate_file_upload_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -67,7 +67,7 @@ static inline icd_status_t common_initiate_file_upload_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *common_initiate_file_upload_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -15,7 +15,7 @@
 
 /** Id of the telemetry. */
 #define COMMON_LAST_LOGGED_EVENT_ID 141u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define COMMON_LAST_LOGGED_EVENT_LENGTH 6u
 
 /** Raw values. */
@@ -38,13 +38,13 @@ typedef struct {
     uint8_t event_parameter;
 } common_last_logged_event_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void common_last_logged_event_init(common_last_logged_event_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t common_last_logged_event_decode(
     common_last_logged_event_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -59,7 +59,7 @@ static inline icd_status_t common_last_logged_event_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t common_last_logged_event_encode(
     const common_last_logged_event_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -74,7 +74,7 @@ static inline icd_status_t common_last_logged_event_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *common_last_logged_event_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

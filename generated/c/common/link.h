@@ -5,25 +5,25 @@
 
 /**
  * @file
- * Common messages: how its messages travel.
+ * Common messages: description of its protocol and sizes of buffers.
  */
 
 #include "../icdgen_wire.h"
 
-/** The node whose messages these are. */
+/** Name of the node. */
 #define COMMON_NODE "common"
-/** Bytes of the longest message of either direction, with id and checksum. */
+/** Size in bytes of the longest message in either direction, with id and checksum. */
 #define COMMON_LONGEST 23u
-/** Bytes that joining CAN packets takes for each sender at once. */
+/** Buffer size in bytes of a CAN joiner, per slot. */
 #define COMMON_CAN_SLOT_BYTES 29u
-/** Bytes of a client's buffer. */
+/** Buffer size of a client in bytes. */
 #define COMMON_CLIENT_BYTES 52u
-/** Bytes of the largest block of a file. */
+/** Size in bytes of the largest block of a file. */
 #define COMMON_BLOCK_BYTES 20480u
-/** Bytes of a bit for each packet of such a block. */
+/** Size in bytes of a bitmap for the packets of this block. */
 #define COMMON_BLOCK_BITMAP_BYTES 128u
 
-/** Facts of the link of Common messages. */
+/** Return the description of the protocol of Common messages. */
 ICDGEN_API const icd_link_t *common_link(void);
 
 #ifndef ICDGEN_SHARED

@@ -14,7 +14,7 @@
 
 /** Id of the telecommand. */
 #define COMMON_LOAD_FILE_DOWNLOAD_BLOCK_ID 112u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define COMMON_LOAD_FILE_DOWNLOAD_BLOCK_LENGTH 8u
 /** BlockLength in byte: largest value. */
 #define COMMON_LOAD_FILE_DOWNLOAD_BLOCK_BLOCK_LENGTH_MAX 20480
@@ -47,13 +47,13 @@ typedef struct {
     uint16_t block_length;
 } common_load_file_download_block_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void common_load_file_download_block_init(common_load_file_download_block_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 8 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 8 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t common_load_file_download_block_decode(
     common_load_file_download_block_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -69,7 +69,7 @@ static inline icd_status_t common_load_file_download_block_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 8 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 8 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t common_load_file_download_block_encode(
     const common_load_file_download_block_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -85,7 +85,7 @@ static inline icd_status_t common_load_file_download_block_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *common_load_file_download_block_fields(size_t *count)
 {
     static const icd_limit_t limits[] = {

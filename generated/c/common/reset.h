@@ -7,8 +7,8 @@
  * @file
  * Reset: telecommand 1, 1 byte. Table 10.
  * Restarts the CubeComputer.
- * Dangerous: The program that runs is stopped, and what it has not saved is lost. The node restarts instead of
- * acknowledging it.
+ * Dangerous: The program that runs is stopped, and what it has not saved is lost. The node restarts instead of sending
+ * an acknowledge.
  * @note COM-028 (open): The Reset telecommand: acknowledged or not. Every telecommand is acknowledged, but this one
  * restarts the program that would do it. Whether the reply comes first is not said.
  */
@@ -17,7 +17,7 @@
 
 /** Id of the telecommand. */
 #define COMMON_RESET_ID 1u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define COMMON_RESET_LENGTH 1u
 /** Magic number: the only valid raw value. */
 #define COMMON_RESET_MAGIC_NUMBER_CONST 0x5Au
@@ -33,14 +33,14 @@ typedef struct {
     uint8_t magic_number;
 } common_reset_t;
 
-/** Sets all raw values to 0, or the only valid one. */
+/** Set all raw values to 0, constants to their values. */
 static inline void common_reset_init(common_reset_t *message)
 {
     (void)memset(message, 0, sizeof *message);
     message->magic_number = COMMON_RESET_MAGIC_NUMBER_CONST;
 }
 
-/** Decodes a frame of 1 byte; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 1 byte. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t common_reset_decode(
     common_reset_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -53,7 +53,7 @@ static inline icd_status_t common_reset_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 1 byte; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 1 byte. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t common_reset_encode(
     const common_reset_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -66,7 +66,7 @@ static inline icd_status_t common_reset_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *common_reset_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -5,7 +5,7 @@
 
 /**
  * @file
- * SRAM Scrub Parameters: configuration, set by telecommand 8, got by telemetry 134, 2 bytes. Table 49.
+ * SRAM Scrub Parameters: configuration, set by telecommand 8, read by telemetry 134, 2 bytes. Table 49.
  */
 
 #include "../icdgen.h"
@@ -14,7 +14,7 @@
 #define COMMON_SRAM_SCRUB_PARAMETERS_SET_ID 8u
 /** Id of the telemetry that gets it. */
 #define COMMON_SRAM_SCRUB_PARAMETERS_GET_ID 134u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define COMMON_SRAM_SCRUB_PARAMETERS_LENGTH 2u
 
 /** Raw values. */
@@ -27,13 +27,13 @@ typedef struct {
     uint16_t scrub_size;
 } common_sram_scrub_parameters_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void common_sram_scrub_parameters_init(common_sram_scrub_parameters_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 2 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 2 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t common_sram_scrub_parameters_decode(
     common_sram_scrub_parameters_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -46,7 +46,7 @@ static inline icd_status_t common_sram_scrub_parameters_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 2 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 2 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t common_sram_scrub_parameters_encode(
     const common_sram_scrub_parameters_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -59,7 +59,7 @@ static inline icd_status_t common_sram_scrub_parameters_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *common_sram_scrub_parameters_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

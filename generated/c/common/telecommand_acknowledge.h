@@ -18,7 +18,7 @@
 
 /** Id of the telemetry. */
 #define COMMON_TELECOMMAND_ACKNOWLEDGE_ID 240u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define COMMON_TELECOMMAND_ACKNOWLEDGE_LENGTH 4u
 
 /** Raw values. */
@@ -55,13 +55,13 @@ typedef struct {
     uint8_t tc_parameter_error_index;
 } common_telecommand_acknowledge_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void common_telecommand_acknowledge_init(common_telecommand_acknowledge_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 4 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 4 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t common_telecommand_acknowledge_decode(
     common_telecommand_acknowledge_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -77,7 +77,7 @@ static inline icd_status_t common_telecommand_acknowledge_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 4 bytes, reserved bits 0; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 4 bytes, reserved bits 0. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t common_telecommand_acknowledge_encode(
     const common_telecommand_acknowledge_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -93,7 +93,7 @@ static inline icd_status_t common_telecommand_acknowledge_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *common_telecommand_acknowledge_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

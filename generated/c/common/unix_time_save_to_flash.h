@@ -5,7 +5,7 @@
 
 /**
  * @file
- * Unix Time Save to Flash: configuration, set by telecommand 9, got by telemetry 145, 2 bytes. Table 51.
+ * Unix Time Save to Flash: configuration, set by telecommand 9, read by telemetry 145, 2 bytes. Table 51.
  * When the Unix time is kept in flash, so that it survives a power cycle.
  * @note COM-112 (certain): Unix Time Save to Flash is described in two spellings. The list has Unix time, the table
  * unixtime.
@@ -17,7 +17,7 @@
 #define COMMON_UNIX_TIME_SAVE_TO_FLASH_SET_ID 9u
 /** Id of the telemetry that gets it. */
 #define COMMON_UNIX_TIME_SAVE_TO_FLASH_GET_ID 145u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define COMMON_UNIX_TIME_SAVE_TO_FLASH_LENGTH 2u
 
 /** Raw values. */
@@ -40,13 +40,13 @@ typedef struct {
     uint8_t period;
 } common_unix_time_save_to_flash_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void common_unix_time_save_to_flash_init(common_unix_time_save_to_flash_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 2 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 2 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t common_unix_time_save_to_flash_decode(
     common_unix_time_save_to_flash_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -62,7 +62,7 @@ static inline icd_status_t common_unix_time_save_to_flash_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 2 bytes, reserved bits 0; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 2 bytes, reserved bits 0. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t common_unix_time_save_to_flash_encode(
     const common_unix_time_save_to_flash_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -76,7 +76,7 @@ static inline icd_status_t common_unix_time_save_to_flash_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *common_unix_time_save_to_flash_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -14,7 +14,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_ACP_EXECUTION_STATE_ID 220u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_ACP_EXECUTION_STATE_LENGTH 3u
 
 /** Raw values. */
@@ -25,13 +25,13 @@ typedef struct {
     cubeacp_execution_waypoints_t current_execution_point;
 } cubeacp_acp_execution_state_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_acp_execution_state_init(cubeacp_acp_execution_state_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 3 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 3 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_acp_execution_state_decode(
     cubeacp_acp_execution_state_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -45,7 +45,7 @@ static inline icd_status_t cubeacp_acp_execution_state_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 3 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 3 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_acp_execution_state_encode(
     const cubeacp_acp_execution_state_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -59,7 +59,7 @@ static inline icd_status_t cubeacp_acp_execution_state_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_acp_execution_state_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -5,7 +5,7 @@
 
 /**
  * @file
- * ADCS Configuration: configuration, set by telecommand 20, got by telemetry 206, 504 bytes. Table 192.
+ * ADCS Configuration: configuration, set by telecommand 20, read by telemetry 206, 504 bytes. Table 192.
  * Most configuration messages in one frame.
  * Repeats Set Magnetorquer Configuration from byte 0. Repeats Set Wheel Configuration from byte 3. Repeats Set Rate
  * Gyro Configuration from byte 7. Repeats CSS Configuration from byte 17. Repeats CubeSense Configuration from byte 38.
@@ -45,7 +45,7 @@
 #define CUBEACP_ADCS_CONFIGURATION_SET_ID 20u
 /** Id of the telemetry that gets it. */
 #define CUBEACP_ADCS_CONFIGURATION_GET_ID 206u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_ADCS_CONFIGURATION_LENGTH 504u
 /** Reference spin rate in deg/s: must be below this. */
 #define CUBEACP_ADCS_CONFIGURATION_REFERENCE_SPIN_RATE_DEG_PER_S_BELOW 0.0
@@ -793,13 +793,13 @@ typedef struct {
     uint8_t user_coded_estimator_settings[48];
 } cubeacp_adcs_configuration_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_adcs_configuration_init(cubeacp_adcs_configuration_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 504 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 504 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_adcs_configuration_decode(
     cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -927,7 +927,7 @@ static inline icd_status_t cubeacp_adcs_configuration_decode(
     return ICD_OK;
 }
 
-/** Name of the first field whose raw value has more bits than the field; NULL if all fit. */
+/** Return the name of the first field whose raw value has more bits than the field; NULL if all fit. */
 static inline const char *cubeacp_adcs_configuration_misfit(const cubeacp_adcs_configuration_t *message)
 {
     if ((message->sun_pointing_facet & 0x80u) != 0u) {
@@ -949,8 +949,8 @@ static inline const char *cubeacp_adcs_configuration_misfit(const cubeacp_adcs_c
 }
 
 /**
- * Writes a frame of 504 bytes, reserved bits 0. ICD_ERROR_LENGTH if the buffer is smaller, ICD_ERROR_RANGE if a raw
- * value does not fit its field; nothing is written then.
+ * Encode a frame of 504 bytes, reserved bits 0. Return ICD_ERROR_LENGTH if the buffer is too small, and ICD_ERROR_RANGE
+ * if a raw value does not fit into its field. Nothing is written in case of an error.
  */
 static inline icd_status_t cubeacp_adcs_configuration_encode(
     const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
@@ -1089,7 +1089,7 @@ static inline icd_status_t cubeacp_adcs_configuration_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_adcs_configuration_fields(size_t *count)
 {
     static const icd_limit_t limits[] = {
@@ -1651,7 +1651,10 @@ static inline int32_t cubeacp_adcs_configuration_x_rate_sensor_offset_mdeg_per_s
     return message->x_rate_sensor_offset;
 }
 
-/** Sets X-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set X-Rate Sensor Offset in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_x_rate_sensor_offset_mdeg_per_s(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1670,7 +1673,10 @@ static inline int32_t cubeacp_adcs_configuration_y_rate_sensor_offset_mdeg_per_s
     return message->y_rate_sensor_offset;
 }
 
-/** Sets Y-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Y-Rate Sensor Offset in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_y_rate_sensor_offset_mdeg_per_s(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1689,7 +1695,10 @@ static inline int32_t cubeacp_adcs_configuration_z_rate_sensor_offset_mdeg_per_s
     return message->z_rate_sensor_offset;
 }
 
-/** Sets Z-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Z-Rate Sensor Offset in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_z_rate_sensor_offset_mdeg_per_s(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1707,7 +1716,7 @@ static inline int32_t cubeacp_adcs_configuration_css1_relative_scale_milli(const
     return message->css1_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS1 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CSS1 Relative Scale in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css1_relative_scale_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1725,7 +1734,7 @@ static inline int32_t cubeacp_adcs_configuration_css2_relative_scale_milli(const
     return message->css2_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS2 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CSS2 Relative Scale in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css2_relative_scale_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1743,7 +1752,7 @@ static inline int32_t cubeacp_adcs_configuration_css3_relative_scale_milli(const
     return message->css3_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS3 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CSS3 Relative Scale in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css3_relative_scale_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1761,7 +1770,7 @@ static inline int32_t cubeacp_adcs_configuration_css4_relative_scale_milli(const
     return message->css4_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS4 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CSS4 Relative Scale in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css4_relative_scale_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1779,7 +1788,7 @@ static inline int32_t cubeacp_adcs_configuration_css5_relative_scale_milli(const
     return message->css5_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS5 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CSS5 Relative Scale in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css5_relative_scale_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1797,7 +1806,7 @@ static inline int32_t cubeacp_adcs_configuration_css6_relative_scale_milli(const
     return message->css6_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS6 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CSS6 Relative Scale in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css6_relative_scale_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1815,7 +1824,7 @@ static inline int32_t cubeacp_adcs_configuration_css7_relative_scale_milli(const
     return message->css7_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS7 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CSS7 Relative Scale in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css7_relative_scale_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1833,7 +1842,7 @@ static inline int32_t cubeacp_adcs_configuration_css8_relative_scale_milli(const
     return message->css8_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS8 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CSS8 Relative Scale in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css8_relative_scale_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1851,7 +1860,7 @@ static inline int32_t cubeacp_adcs_configuration_css9_relative_scale_milli(const
     return message->css9_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS9 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CSS9 Relative Scale in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css9_relative_scale_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1869,7 +1878,7 @@ static inline int32_t cubeacp_adcs_configuration_css10_relative_scale_milli(cons
     return message->css10_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS10 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CSS10 Relative Scale in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_css10_relative_scale_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1888,8 +1897,8 @@ static inline int32_t cubeacp_adcs_configuration_cam1_mounting_alpha_mdeg(const 
 }
 
 /**
- * Sets Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE
+ * if it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam1_mounting_alpha_mdeg(
     cubeacp_adcs_configuration_t *message,
@@ -1909,8 +1918,8 @@ static inline int32_t cubeacp_adcs_configuration_cam1_mounting_beta_mdeg(const c
 }
 
 /**
- * Sets Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE
+ * if it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam1_mounting_beta_mdeg(
     cubeacp_adcs_configuration_t *message,
@@ -1930,8 +1939,8 @@ static inline int32_t cubeacp_adcs_configuration_cam1_mounting_gamma_mdeg(const 
 }
 
 /**
- * Sets Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE
+ * if it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam1_mounting_gamma_mdeg(
     cubeacp_adcs_configuration_t *message,
@@ -1951,7 +1960,9 @@ static inline int32_t cubeacp_adcs_configuration_cam1_boresight_x_milli_pixels(
     return message->cam1_boresight_x * INT32_C(10);
 }
 
-/** Sets Cam1 Boresight X in thousandths of pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Cam1 Boresight X in thousandths of pixels to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam1_boresight_x_milli_pixels(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1970,7 +1981,9 @@ static inline int32_t cubeacp_adcs_configuration_cam1_boresight_y_milli_pixels(
     return message->cam1_boresight_y * INT32_C(10);
 }
 
-/** Sets Cam1 Boresight Y in thousandths of pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Cam1 Boresight Y in thousandths of pixels to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam1_boresight_y_milli_pixels(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -1989,8 +2002,8 @@ static inline int32_t cubeacp_adcs_configuration_cam2_mounting_alpha_mdeg(const 
 }
 
 /**
- * Sets Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE
+ * if it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam2_mounting_alpha_mdeg(
     cubeacp_adcs_configuration_t *message,
@@ -2010,8 +2023,8 @@ static inline int32_t cubeacp_adcs_configuration_cam2_mounting_beta_mdeg(const c
 }
 
 /**
- * Sets Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE
+ * if it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam2_mounting_beta_mdeg(
     cubeacp_adcs_configuration_t *message,
@@ -2031,8 +2044,8 @@ static inline int32_t cubeacp_adcs_configuration_cam2_mounting_gamma_mdeg(const 
 }
 
 /**
- * Sets Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE
+ * if it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam2_mounting_gamma_mdeg(
     cubeacp_adcs_configuration_t *message,
@@ -2052,7 +2065,9 @@ static inline int32_t cubeacp_adcs_configuration_cam2_boresight_x_milli_pixels(
     return message->cam2_boresight_x * INT32_C(10);
 }
 
-/** Sets Cam2 Boresight X in thousandths of pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Cam2 Boresight X in thousandths of pixels to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam2_boresight_x_milli_pixels(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2071,7 +2086,9 @@ static inline int32_t cubeacp_adcs_configuration_cam2_boresight_y_milli_pixels(
     return message->cam2_boresight_y * INT32_C(10);
 }
 
-/** Sets Cam2 Boresight Y in thousandths of pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Cam2 Boresight Y in thousandths of pixels to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam2_boresight_y_milli_pixels(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2091,8 +2108,8 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_mounting_alpha_mde
 }
 
 /**
- * Sets Magnetometer Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Magnetometer Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_alpha_mdeg(
     cubeacp_adcs_configuration_t *message,
@@ -2113,8 +2130,8 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_mounting_beta_mdeg
 }
 
 /**
- * Sets Magnetometer Mounting Transform Beta Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Magnetometer Mounting Transform Beta Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE
+ * if it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_beta_mdeg(
     cubeacp_adcs_configuration_t *message,
@@ -2135,8 +2152,8 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_mounting_gamma_mde
 }
 
 /**
- * Sets Magnetometer Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Magnetometer Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_gamma_mdeg(
     cubeacp_adcs_configuration_t *message,
@@ -2156,7 +2173,10 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_channel_1_offset_m
     return message->magnetometer_channel_1_offset;
 }
 
-/** Sets Magnetometer Channel 1 Offset in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Magnetometer Channel 1 Offset in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_channel_1_offset_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2175,7 +2195,10 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_channel_2_offset_m
     return message->magnetometer_channel_2_offset;
 }
 
-/** Sets Magnetometer Channel 2 Offset in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Magnetometer Channel 2 Offset in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_channel_2_offset_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2194,7 +2217,10 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_channel_3_offset_m
     return message->magnetometer_channel_3_offset;
 }
 
-/** Sets Magnetometer Channel 3 Offset in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Magnetometer Channel 3 Offset in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_channel_3_offset_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2214,7 +2240,8 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s11_mi
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S11 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Sensitivity Matrix S11 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s11_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2235,7 +2262,8 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s22_mi
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S22 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Sensitivity Matrix S22 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s22_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2256,7 +2284,8 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s33_mi
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S33 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Sensitivity Matrix S33 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s33_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2277,7 +2306,8 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s12_mi
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S12 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Sensitivity Matrix S12 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s12_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2298,7 +2328,8 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s13_mi
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S13 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Sensitivity Matrix S13 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s13_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2319,7 +2350,8 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s21_mi
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S21 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Sensitivity Matrix S21 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s21_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2340,7 +2372,8 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s23_mi
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S23 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Sensitivity Matrix S23 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s23_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2361,7 +2394,8 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s31_mi
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S31 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Sensitivity Matrix S31 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s31_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2382,7 +2416,8 @@ static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s32_mi
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S32 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Sensitivity Matrix S32 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s32_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2403,8 +2438,8 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_mounting_alpha_md
 }
 
 /**
- * Sets Redundant Magnetometer Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw value;
- * ICD_ERROR_RANGE if there is none.
+ * Set Redundant Magnetometer Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_mounting_alpha_mdeg(
     cubeacp_adcs_configuration_t *message,
@@ -2425,8 +2460,8 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_mounting_beta_mde
 }
 
 /**
- * Sets Redundant Magnetometer Mounting Transform Beta Angle in thousandths of deg, to the nearest raw value;
- * ICD_ERROR_RANGE if there is none.
+ * Set Redundant Magnetometer Mounting Transform Beta Angle in thousandths of deg to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_mounting_beta_mdeg(
     cubeacp_adcs_configuration_t *message,
@@ -2447,8 +2482,8 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_mounting_gamma_md
 }
 
 /**
- * Sets Redundant Magnetometer Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw value;
- * ICD_ERROR_RANGE if there is none.
+ * Set Redundant Magnetometer Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_mounting_gamma_mdeg(
     cubeacp_adcs_configuration_t *message,
@@ -2469,8 +2504,8 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_channel_1_offset_
 }
 
 /**
- * Sets Redundant Magnetometer Channel 1 Offset in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Redundant Magnetometer Channel 1 Offset in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is
+ * out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_channel_1_offset_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2491,8 +2526,8 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_channel_2_offset_
 }
 
 /**
- * Sets Redundant Magnetometer Channel 2 Offset in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Redundant Magnetometer Channel 2 Offset in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is
+ * out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_channel_2_offset_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2513,8 +2548,8 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_channel_3_offset_
 }
 
 /**
- * Sets Redundant Magnetometer Channel 3 Offset in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Redundant Magnetometer Channel 3 Offset in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is
+ * out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_channel_3_offset_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2535,8 +2570,8 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s11_m
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S11 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S11 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s11_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2557,8 +2592,8 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s22_m
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S22 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S22 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s22_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2579,8 +2614,8 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s33_m
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S33 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S33 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s33_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2601,8 +2636,8 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s12_m
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S12 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S12 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s12_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2623,8 +2658,8 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s13_m
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S13 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S13 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s13_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2645,8 +2680,8 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s21_m
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S21 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S21 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s21_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2667,8 +2702,8 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s23_m
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S23 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S23 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s23_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2689,8 +2724,8 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s31_m
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S31 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S31 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s31_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2711,8 +2746,8 @@ static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s32_m
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S32 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S32 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s32_milli(
     cubeacp_adcs_configuration_t *message,
@@ -2733,8 +2768,8 @@ static inline int32_t cubeacp_adcs_configuration_star_tracker_mounting_alpha_mde
 }
 
 /**
- * Sets StarTracker Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set StarTracker Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE
+ * if it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_alpha_mdeg(
     cubeacp_adcs_configuration_t *message,
@@ -2755,8 +2790,8 @@ static inline int32_t cubeacp_adcs_configuration_star_tracker_mounting_beta_mdeg
 }
 
 /**
- * Sets StarTracker Mounting Transform Beta Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set StarTracker Mounting Transform Beta Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE
+ * if it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_beta_mdeg(
     cubeacp_adcs_configuration_t *message,
@@ -2777,8 +2812,8 @@ static inline int32_t cubeacp_adcs_configuration_star_tracker_mounting_gamma_mde
 }
 
 /**
- * Sets StarTracker Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set StarTracker Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE
+ * if it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_gamma_mdeg(
     cubeacp_adcs_configuration_t *message,
@@ -2798,7 +2833,10 @@ static inline int32_t cubeacp_adcs_configuration_star_tracker_error_margin_milli
     return message->star_tracker_error_margin * INT32_C(10);
 }
 
-/** Sets Star Tracker Error Margin in thousandths of %, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Star Tracker Error Margin in thousandths of % to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_error_margin_milli_percent(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2816,7 +2854,7 @@ static inline int32_t cubeacp_adcs_configuration_star_tracking_margin_milli(cons
     return message->star_tracking_margin * INT32_C(10);
 }
 
-/** Sets Star Tracking Margin in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star Tracking Margin in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_tracking_margin_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2835,7 +2873,7 @@ static inline int32_t cubeacp_adcs_configuration_star_validation_margin_milli(
     return message->star_validation_margin * INT32_C(10);
 }
 
-/** Sets Star Validation Margin in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star Validation Margin in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_validation_margin_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2854,7 +2892,9 @@ static inline int32_t cubeacp_adcs_configuration_star_tracking_search_width_mill
     return message->star_tracking_search_width * INT32_C(200);
 }
 
-/** Sets Star Tracking Search Width in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Star Tracking Search Width in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_tracking_search_width_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2873,7 +2913,10 @@ static inline int32_t cubeacp_adcs_configuration_reference_spin_rate_mdeg_per_s(
     return message->reference_spin_rate;
 }
 
-/** Sets Reference spin rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Reference spin rate in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_reference_spin_rate_mdeg_per_s(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2891,7 +2934,7 @@ static inline int32_t cubeacp_adcs_configuration_incl_coefficient_milli(const cu
     return message->incl_coefficient;
 }
 
-/** Sets Incl. coefficient in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Incl. coefficient in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_incl_coefficient_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2909,7 +2952,7 @@ static inline int32_t cubeacp_adcs_configuration_raan_coefficient_milli(const cu
     return message->raan_coefficient;
 }
 
-/** Sets Raan coefficient in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Raan coefficient in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_raan_coefficient_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2927,7 +2970,7 @@ static inline int32_t cubeacp_adcs_configuration_ecc_coefficient_milli(const cub
     return message->ecc_coefficient;
 }
 
-/** Sets Ecc coefficient in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Ecc coefficient in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_ecc_coefficient_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2945,7 +2988,7 @@ static inline int32_t cubeacp_adcs_configuration_aop_coefficient_milli(const cub
     return message->aop_coefficient;
 }
 
-/** Sets Aop coefficient in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Aop coefficient in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_aop_coefficient_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2963,7 +3006,7 @@ static inline int32_t cubeacp_adcs_configuration_time_coefficient_milli(const cu
     return message->time_coefficient;
 }
 
-/** Sets Time coefficient in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Time coefficient in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_time_coefficient_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -2981,7 +3024,7 @@ static inline int32_t cubeacp_adcs_configuration_pos_coefficient_milli(const cub
     return message->pos_coefficient;
 }
 
-/** Sets Pos coefficient in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Pos coefficient in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_pos_coefficient_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -3000,7 +3043,7 @@ static inline int32_t cubeacp_adcs_configuration_maximum_position_error_milli(
     return message->maximum_position_error * INT32_C(100);
 }
 
-/** Sets Maximum position error in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Maximum position error in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_maximum_position_error_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -3018,7 +3061,7 @@ static inline int32_t cubeacp_adcs_configuration_position_sd_milli(const cubeacp
     return message->position_sd * INT32_C(100);
 }
 
-/** Sets Position sd in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Position sd in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_position_sd_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -3036,7 +3079,7 @@ static inline int32_t cubeacp_adcs_configuration_velocity_sd_milli(const cubeacp
     return message->velocity_sd * INT32_C(10);
 }
 
-/** Sets Velocity sd in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Velocity sd in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_velocity_sd_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -3054,7 +3097,7 @@ static inline int32_t cubeacp_adcs_configuration_time_gain_milli(const cubeacp_a
     return message->time_gain * INT32_C(10);
 }
 
-/** Sets Time gain in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Time gain in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_time_gain_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -3072,7 +3115,7 @@ static inline int32_t cubeacp_adcs_configuration_max_lag_milli(const cubeacp_adc
     return message->max_lag * INT32_C(10);
 }
 
-/** Sets Max. lag in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Max. lag in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_max_lag_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
@@ -3093,7 +3136,7 @@ static inline double cubeacp_adcs_configuration_x_rate_sensor_offset_deg_per_s(
     return icdgen_quotient(message->x_rate_sensor_offset, 1000);
 }
 
-/** Sets X-Rate Sensor Offset in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set X-Rate Sensor Offset in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_x_rate_sensor_offset_deg_per_s(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3108,7 +3151,7 @@ static inline double cubeacp_adcs_configuration_y_rate_sensor_offset_deg_per_s(
     return icdgen_quotient(message->y_rate_sensor_offset, 1000);
 }
 
-/** Sets Y-Rate Sensor Offset in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Y-Rate Sensor Offset in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_y_rate_sensor_offset_deg_per_s(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3123,7 +3166,7 @@ static inline double cubeacp_adcs_configuration_z_rate_sensor_offset_deg_per_s(
     return icdgen_quotient(message->z_rate_sensor_offset, 1000);
 }
 
-/** Sets Z-Rate Sensor Offset in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Z-Rate Sensor Offset in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_z_rate_sensor_offset_deg_per_s(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3138,7 +3181,9 @@ static inline double cubeacp_adcs_configuration_css1_relative_scale_physical(
     return icdgen_quotient(message->css1_relative_scale, 100);
 }
 
-/** Sets CSS1 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set CSS1 Relative Scale, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_css1_relative_scale_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3153,7 +3198,9 @@ static inline double cubeacp_adcs_configuration_css2_relative_scale_physical(
     return icdgen_quotient(message->css2_relative_scale, 100);
 }
 
-/** Sets CSS2 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set CSS2 Relative Scale, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_css2_relative_scale_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3168,7 +3215,9 @@ static inline double cubeacp_adcs_configuration_css3_relative_scale_physical(
     return icdgen_quotient(message->css3_relative_scale, 100);
 }
 
-/** Sets CSS3 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set CSS3 Relative Scale, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_css3_relative_scale_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3183,7 +3232,9 @@ static inline double cubeacp_adcs_configuration_css4_relative_scale_physical(
     return icdgen_quotient(message->css4_relative_scale, 100);
 }
 
-/** Sets CSS4 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set CSS4 Relative Scale, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_css4_relative_scale_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3198,7 +3249,9 @@ static inline double cubeacp_adcs_configuration_css5_relative_scale_physical(
     return icdgen_quotient(message->css5_relative_scale, 100);
 }
 
-/** Sets CSS5 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set CSS5 Relative Scale, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_css5_relative_scale_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3213,7 +3266,9 @@ static inline double cubeacp_adcs_configuration_css6_relative_scale_physical(
     return icdgen_quotient(message->css6_relative_scale, 100);
 }
 
-/** Sets CSS6 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set CSS6 Relative Scale, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_css6_relative_scale_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3228,7 +3283,9 @@ static inline double cubeacp_adcs_configuration_css7_relative_scale_physical(
     return icdgen_quotient(message->css7_relative_scale, 100);
 }
 
-/** Sets CSS7 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set CSS7 Relative Scale, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_css7_relative_scale_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3243,7 +3300,9 @@ static inline double cubeacp_adcs_configuration_css8_relative_scale_physical(
     return icdgen_quotient(message->css8_relative_scale, 100);
 }
 
-/** Sets CSS8 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set CSS8 Relative Scale, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_css8_relative_scale_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3258,7 +3317,9 @@ static inline double cubeacp_adcs_configuration_css9_relative_scale_physical(
     return icdgen_quotient(message->css9_relative_scale, 100);
 }
 
-/** Sets CSS9 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set CSS9 Relative Scale, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_css9_relative_scale_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3273,7 +3334,9 @@ static inline double cubeacp_adcs_configuration_css10_relative_scale_physical(
     return icdgen_quotient(message->css10_relative_scale, 100);
 }
 
-/** Sets CSS10 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set CSS10 Relative Scale, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_css10_relative_scale_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3288,7 +3351,8 @@ static inline double cubeacp_adcs_configuration_cam1_mounting_alpha_deg(const cu
 }
 
 /**
- * Sets Cam1 Sensor Mounting Transform Alpha Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Cam1 Sensor Mounting Transform Alpha Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam1_mounting_alpha_deg(
     cubeacp_adcs_configuration_t *message,
@@ -3304,7 +3368,8 @@ static inline double cubeacp_adcs_configuration_cam1_mounting_beta_deg(const cub
 }
 
 /**
- * Sets Cam1 Sensor Mounting Transform Beta Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Cam1 Sensor Mounting Transform Beta Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam1_mounting_beta_deg(
     cubeacp_adcs_configuration_t *message,
@@ -3320,7 +3385,8 @@ static inline double cubeacp_adcs_configuration_cam1_mounting_gamma_deg(const cu
 }
 
 /**
- * Sets Cam1 Sensor Mounting Transform Gamma Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Cam1 Sensor Mounting Transform Gamma Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam1_mounting_gamma_deg(
     cubeacp_adcs_configuration_t *message,
@@ -3335,7 +3401,7 @@ static inline double cubeacp_adcs_configuration_cam1_boresight_x_pixels(const cu
     return icdgen_quotient(message->cam1_boresight_x, 100);
 }
 
-/** Sets Cam1 Boresight X in pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Cam1 Boresight X in pixels to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam1_boresight_x_pixels(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3349,7 +3415,7 @@ static inline double cubeacp_adcs_configuration_cam1_boresight_y_pixels(const cu
     return icdgen_quotient(message->cam1_boresight_y, 100);
 }
 
-/** Sets Cam1 Boresight Y in pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Cam1 Boresight Y in pixels to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam1_boresight_y_pixels(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3364,7 +3430,8 @@ static inline double cubeacp_adcs_configuration_cam2_mounting_alpha_deg(const cu
 }
 
 /**
- * Sets Cam2 Sensor Mounting Transform Alpha Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Cam2 Sensor Mounting Transform Alpha Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam2_mounting_alpha_deg(
     cubeacp_adcs_configuration_t *message,
@@ -3380,7 +3447,8 @@ static inline double cubeacp_adcs_configuration_cam2_mounting_beta_deg(const cub
 }
 
 /**
- * Sets Cam2 Sensor Mounting Transform Beta Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Cam2 Sensor Mounting Transform Beta Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam2_mounting_beta_deg(
     cubeacp_adcs_configuration_t *message,
@@ -3396,7 +3464,8 @@ static inline double cubeacp_adcs_configuration_cam2_mounting_gamma_deg(const cu
 }
 
 /**
- * Sets Cam2 Sensor Mounting Transform Gamma Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Cam2 Sensor Mounting Transform Gamma Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam2_mounting_gamma_deg(
     cubeacp_adcs_configuration_t *message,
@@ -3411,7 +3480,7 @@ static inline double cubeacp_adcs_configuration_cam2_boresight_x_pixels(const cu
     return icdgen_quotient(message->cam2_boresight_x, 100);
 }
 
-/** Sets Cam2 Boresight X in pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Cam2 Boresight X in pixels to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam2_boresight_x_pixels(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3425,7 +3494,7 @@ static inline double cubeacp_adcs_configuration_cam2_boresight_y_pixels(const cu
     return icdgen_quotient(message->cam2_boresight_y, 100);
 }
 
-/** Sets Cam2 Boresight Y in pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Cam2 Boresight Y in pixels to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_cam2_boresight_y_pixels(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -3441,7 +3510,8 @@ static inline double cubeacp_adcs_configuration_magnetometer_mounting_alpha_deg(
 }
 
 /**
- * Sets Magnetometer Mounting Transform Alpha Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Mounting Transform Alpha Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_alpha_deg(
     cubeacp_adcs_configuration_t *message,
@@ -3458,7 +3528,8 @@ static inline double cubeacp_adcs_configuration_magnetometer_mounting_beta_deg(
 }
 
 /**
- * Sets Magnetometer Mounting Transform Beta Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Mounting Transform Beta Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_beta_deg(
     cubeacp_adcs_configuration_t *message,
@@ -3475,7 +3546,8 @@ static inline double cubeacp_adcs_configuration_magnetometer_mounting_gamma_deg(
 }
 
 /**
- * Sets Magnetometer Mounting Transform Gamma Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Mounting Transform Gamma Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_gamma_deg(
     cubeacp_adcs_configuration_t *message,
@@ -3492,7 +3564,8 @@ static inline double cubeacp_adcs_configuration_magnetometer_channel_1_offset_ph
 }
 
 /**
- * Sets Magnetometer Channel 1 Offset, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Channel 1 Offset, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_channel_1_offset_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3509,7 +3582,8 @@ static inline double cubeacp_adcs_configuration_magnetometer_channel_2_offset_ph
 }
 
 /**
- * Sets Magnetometer Channel 2 Offset, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Channel 2 Offset, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_channel_2_offset_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3526,7 +3600,8 @@ static inline double cubeacp_adcs_configuration_magnetometer_channel_3_offset_ph
 }
 
 /**
- * Sets Magnetometer Channel 3 Offset, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Channel 3 Offset, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_channel_3_offset_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3543,8 +3618,8 @@ static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s11_phy
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S11, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Magnetometer Sensitivity Matrix S11, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it
+ * is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s11_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3561,8 +3636,8 @@ static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s22_phy
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S22, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Magnetometer Sensitivity Matrix S22, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it
+ * is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s22_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3579,8 +3654,8 @@ static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s33_phy
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S33, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Magnetometer Sensitivity Matrix S33, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it
+ * is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s33_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3597,8 +3672,8 @@ static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s12_phy
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S12, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Magnetometer Sensitivity Matrix S12, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it
+ * is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s12_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3615,8 +3690,8 @@ static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s13_phy
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S13, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Magnetometer Sensitivity Matrix S13, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it
+ * is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s13_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3633,8 +3708,8 @@ static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s21_phy
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S21, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Magnetometer Sensitivity Matrix S21, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it
+ * is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s21_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3651,8 +3726,8 @@ static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s23_phy
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S23, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Magnetometer Sensitivity Matrix S23, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it
+ * is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s23_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3669,8 +3744,8 @@ static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s31_phy
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S31, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Magnetometer Sensitivity Matrix S31, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it
+ * is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s31_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3687,8 +3762,8 @@ static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s32_phy
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S32, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Magnetometer Sensitivity Matrix S32, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it
+ * is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s32_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3705,8 +3780,8 @@ static inline double cubeacp_adcs_configuration_redundant_mag_mounting_alpha_deg
 }
 
 /**
- * Sets Redundant Magnetometer Mounting Transform Alpha Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Mounting Transform Alpha Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_mounting_alpha_deg(
     cubeacp_adcs_configuration_t *message,
@@ -3723,8 +3798,8 @@ static inline double cubeacp_adcs_configuration_redundant_mag_mounting_beta_deg(
 }
 
 /**
- * Sets Redundant Magnetometer Mounting Transform Beta Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Mounting Transform Beta Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_mounting_beta_deg(
     cubeacp_adcs_configuration_t *message,
@@ -3741,8 +3816,8 @@ static inline double cubeacp_adcs_configuration_redundant_mag_mounting_gamma_deg
 }
 
 /**
- * Sets Redundant Magnetometer Mounting Transform Gamma Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Mounting Transform Gamma Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_mounting_gamma_deg(
     cubeacp_adcs_configuration_t *message,
@@ -3759,8 +3834,8 @@ static inline double cubeacp_adcs_configuration_redundant_mag_channel_1_offset_p
 }
 
 /**
- * Sets Redundant Magnetometer Channel 1 Offset, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Channel 1 Offset, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_channel_1_offset_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3777,8 +3852,8 @@ static inline double cubeacp_adcs_configuration_redundant_mag_channel_2_offset_p
 }
 
 /**
- * Sets Redundant Magnetometer Channel 2 Offset, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Channel 2 Offset, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_channel_2_offset_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3795,8 +3870,8 @@ static inline double cubeacp_adcs_configuration_redundant_mag_channel_3_offset_p
 }
 
 /**
- * Sets Redundant Magnetometer Channel 3 Offset, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Channel 3 Offset, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_channel_3_offset_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3813,8 +3888,8 @@ static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s11_ph
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S11, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S11, as a physical value to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s11_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3831,8 +3906,8 @@ static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s22_ph
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S22, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S22, as a physical value to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s22_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3849,8 +3924,8 @@ static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s33_ph
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S33, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S33, as a physical value to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s33_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3867,8 +3942,8 @@ static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s12_ph
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S12, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S12, as a physical value to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s12_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3885,8 +3960,8 @@ static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s13_ph
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S13, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S13, as a physical value to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s13_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3903,8 +3978,8 @@ static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s21_ph
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S21, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S21, as a physical value to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s21_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3921,8 +3996,8 @@ static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s23_ph
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S23, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S23, as a physical value to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s23_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3939,8 +4014,8 @@ static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s31_ph
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S31, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S31, as a physical value to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s31_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3957,8 +4032,8 @@ static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s32_ph
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S32, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S32, as a physical value to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s32_physical(
     cubeacp_adcs_configuration_t *message,
@@ -3975,7 +4050,8 @@ static inline double cubeacp_adcs_configuration_star_tracker_mounting_alpha_deg(
 }
 
 /**
- * Sets StarTracker Mounting Transform Alpha Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set StarTracker Mounting Transform Alpha Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_alpha_deg(
     cubeacp_adcs_configuration_t *message,
@@ -3992,7 +4068,8 @@ static inline double cubeacp_adcs_configuration_star_tracker_mounting_beta_deg(
 }
 
 /**
- * Sets StarTracker Mounting Transform Beta Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set StarTracker Mounting Transform Beta Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_beta_deg(
     cubeacp_adcs_configuration_t *message,
@@ -4009,7 +4086,8 @@ static inline double cubeacp_adcs_configuration_star_tracker_mounting_gamma_deg(
 }
 
 /**
- * Sets StarTracker Mounting Transform Gamma Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set StarTracker Mounting Transform Gamma Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_gamma_deg(
     cubeacp_adcs_configuration_t *message,
@@ -4025,7 +4103,7 @@ static inline double cubeacp_adcs_configuration_star_tracker_error_margin_percen
     return icdgen_quotient(message->star_tracker_error_margin, 100);
 }
 
-/** Sets Star Tracker Error Margin in %, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star Tracker Error Margin in % to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_error_margin_percent(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4040,7 +4118,9 @@ static inline double cubeacp_adcs_configuration_star_tracking_margin_physical(
     return icdgen_quotient(message->star_tracking_margin, 100);
 }
 
-/** Sets Star Tracking Margin, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Star Tracking Margin, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_tracking_margin_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4055,7 +4135,10 @@ static inline double cubeacp_adcs_configuration_star_validation_margin_physical(
     return icdgen_quotient(message->star_validation_margin, 100);
 }
 
-/** Sets Star Validation Margin, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Star Validation Margin, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_validation_margin_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4070,7 +4153,10 @@ static inline double cubeacp_adcs_configuration_star_tracking_search_width_physi
     return icdgen_quotient(message->star_tracking_search_width, 5);
 }
 
-/** Sets Star Tracking Search Width, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Star Tracking Search Width, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_star_tracking_search_width_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4085,7 +4171,7 @@ static inline double cubeacp_adcs_configuration_reference_spin_rate_deg_per_s(
     return icdgen_quotient(message->reference_spin_rate, 1000);
 }
 
-/** Sets Reference spin rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Reference spin rate in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_reference_spin_rate_deg_per_s(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4099,7 +4185,9 @@ static inline double cubeacp_adcs_configuration_incl_coefficient_physical(const 
     return icdgen_quotient(message->incl_coefficient, 1000);
 }
 
-/** Sets Incl. coefficient, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Incl. coefficient, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_incl_coefficient_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4113,7 +4201,7 @@ static inline double cubeacp_adcs_configuration_raan_coefficient_physical(const 
     return icdgen_quotient(message->raan_coefficient, 1000);
 }
 
-/** Sets Raan coefficient, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Raan coefficient, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_raan_coefficient_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4127,7 +4215,7 @@ static inline double cubeacp_adcs_configuration_ecc_coefficient_physical(const c
     return icdgen_quotient(message->ecc_coefficient, 1000);
 }
 
-/** Sets Ecc coefficient, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Ecc coefficient, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_ecc_coefficient_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4141,7 +4229,7 @@ static inline double cubeacp_adcs_configuration_aop_coefficient_physical(const c
     return icdgen_quotient(message->aop_coefficient, 1000);
 }
 
-/** Sets Aop coefficient, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Aop coefficient, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_aop_coefficient_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4155,7 +4243,7 @@ static inline double cubeacp_adcs_configuration_time_coefficient_physical(const 
     return icdgen_quotient(message->time_coefficient, 1000);
 }
 
-/** Sets Time coefficient, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Time coefficient, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_time_coefficient_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4169,7 +4257,7 @@ static inline double cubeacp_adcs_configuration_pos_coefficient_physical(const c
     return icdgen_quotient(message->pos_coefficient, 1000);
 }
 
-/** Sets Pos coefficient, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Pos coefficient, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_pos_coefficient_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4184,7 +4272,10 @@ static inline double cubeacp_adcs_configuration_maximum_position_error_physical(
     return icdgen_quotient(message->maximum_position_error, 10);
 }
 
-/** Sets Maximum position error, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Maximum position error, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_adcs_configuration_set_maximum_position_error_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4198,7 +4289,7 @@ static inline double cubeacp_adcs_configuration_xp_coefficient_physical(const cu
     return icdgen_quotient(message->xp_coefficient, 10000000);
 }
 
-/** Sets xp coefficient, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set xp coefficient, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_xp_coefficient_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4212,7 +4303,7 @@ static inline double cubeacp_adcs_configuration_yp_coefficient_physical(const cu
     return icdgen_quotient(message->yp_coefficient, 10000000);
 }
 
-/** Sets yp coefficient, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set yp coefficient, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_yp_coefficient_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4226,7 +4317,7 @@ static inline double cubeacp_adcs_configuration_position_sd_physical(const cubea
     return icdgen_quotient(message->position_sd, 10);
 }
 
-/** Sets Position sd, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Position sd, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_position_sd_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4240,7 +4331,7 @@ static inline double cubeacp_adcs_configuration_velocity_sd_physical(const cubea
     return icdgen_quotient(message->velocity_sd, 100);
 }
 
-/** Sets Velocity sd, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Velocity sd, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_velocity_sd_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4254,7 +4345,7 @@ static inline double cubeacp_adcs_configuration_time_gain_physical(const cubeacp
     return icdgen_quotient(message->time_gain, 100);
 }
 
-/** Sets Time gain, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Time gain, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_time_gain_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
@@ -4268,7 +4359,7 @@ static inline double cubeacp_adcs_configuration_max_lag_physical(const cubeacp_a
     return icdgen_quotient(message->max_lag, 100);
 }
 
-/** Sets Max. lag, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Max. lag, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_configuration_set_max_lag_physical(
     cubeacp_adcs_configuration_t *message,
     double value)

@@ -15,7 +15,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_ADCS_EXECUTION_TIMES_ID 196u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_ADCS_EXECUTION_TIMES_LENGTH 8u
 
 /** Raw values. */
@@ -30,13 +30,13 @@ typedef struct {
     uint16_t time_to_execute_igrf_model;
 } cubeacp_adcs_execution_times_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_adcs_execution_times_init(cubeacp_adcs_execution_times_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 8 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 8 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_adcs_execution_times_decode(
     cubeacp_adcs_execution_times_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -52,7 +52,7 @@ static inline icd_status_t cubeacp_adcs_execution_times_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 8 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 8 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_adcs_execution_times_encode(
     const cubeacp_adcs_execution_times_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -68,7 +68,7 @@ static inline icd_status_t cubeacp_adcs_execution_times_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_adcs_execution_times_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

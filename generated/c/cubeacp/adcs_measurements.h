@@ -30,7 +30,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_ADCS_MEASUREMENTS_ID 191u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_ADCS_MEASUREMENTS_LENGTH 72u
 
 /** Raw values. */
@@ -163,13 +163,13 @@ typedef struct {
     int16_t star3_orbit_z;
 } cubeacp_adcs_measurements_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_adcs_measurements_init(cubeacp_adcs_measurements_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 72 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 72 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_adcs_measurements_decode(
     cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -182,7 +182,7 @@ static inline icd_status_t cubeacp_adcs_measurements_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 72 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 72 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_adcs_measurements_encode(
     const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -195,7 +195,7 @@ static inline icd_status_t cubeacp_adcs_measurements_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_adcs_measurements_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -366,7 +366,7 @@ static inline int32_t cubeacp_adcs_measurements_magnetic_field_x_nt(const cubeac
     return message->magnetic_field_x * INT32_C(10);
 }
 
-/** Sets Magnetic Field X in nT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Magnetic Field X in nT to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_magnetic_field_x_nt(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -384,7 +384,7 @@ static inline int32_t cubeacp_adcs_measurements_magnetic_field_y_nt(const cubeac
     return message->magnetic_field_y * INT32_C(10);
 }
 
-/** Sets Magnetic Field Y in nT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Magnetic Field Y in nT to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_magnetic_field_y_nt(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -402,7 +402,7 @@ static inline int32_t cubeacp_adcs_measurements_magnetic_field_z_nt(const cubeac
     return message->magnetic_field_z * INT32_C(10);
 }
 
-/** Sets Magnetic Field Z in nT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Magnetic Field Z in nT to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_magnetic_field_z_nt(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -420,7 +420,7 @@ static inline int32_t cubeacp_adcs_measurements_coarse_sun_x_micro(const cubeacp
     return message->coarse_sun_x * INT32_C(100);
 }
 
-/** Sets Coarse Sun X in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Coarse Sun X in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_coarse_sun_x_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -438,7 +438,7 @@ static inline int32_t cubeacp_adcs_measurements_coarse_sun_y_micro(const cubeacp
     return message->coarse_sun_y * INT32_C(100);
 }
 
-/** Sets Coarse Sun Y in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Coarse Sun Y in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_coarse_sun_y_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -456,7 +456,7 @@ static inline int32_t cubeacp_adcs_measurements_coarse_sun_z_micro(const cubeacp
     return message->coarse_sun_z * INT32_C(100);
 }
 
-/** Sets Coarse Sun Z in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Coarse Sun Z in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_coarse_sun_z_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -474,7 +474,7 @@ static inline int32_t cubeacp_adcs_measurements_sun_x_micro(const cubeacp_adcs_m
     return message->sun_x * INT32_C(100);
 }
 
-/** Sets Sun X in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Sun X in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_sun_x_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -492,7 +492,7 @@ static inline int32_t cubeacp_adcs_measurements_sun_y_micro(const cubeacp_adcs_m
     return message->sun_y * INT32_C(100);
 }
 
-/** Sets Sun Y in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Sun Y in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_sun_y_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -510,7 +510,7 @@ static inline int32_t cubeacp_adcs_measurements_sun_z_micro(const cubeacp_adcs_m
     return message->sun_z * INT32_C(100);
 }
 
-/** Sets Sun Z in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Sun Z in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_sun_z_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -528,7 +528,7 @@ static inline int32_t cubeacp_adcs_measurements_nadir_x_micro(const cubeacp_adcs
     return message->nadir_x * INT32_C(100);
 }
 
-/** Sets Nadir X in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Nadir X in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_nadir_x_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -546,7 +546,7 @@ static inline int32_t cubeacp_adcs_measurements_nadir_y_micro(const cubeacp_adcs
     return message->nadir_y * INT32_C(100);
 }
 
-/** Sets Nadir Y in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Nadir Y in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_nadir_y_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -564,7 +564,7 @@ static inline int32_t cubeacp_adcs_measurements_nadir_z_micro(const cubeacp_adcs
     return message->nadir_z * INT32_C(100);
 }
 
-/** Sets Nadir Z in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Nadir Z in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_nadir_z_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -582,7 +582,9 @@ static inline int32_t cubeacp_adcs_measurements_x_angular_rate_mdeg_per_s(const 
     return message->x_angular_rate * INT32_C(10);
 }
 
-/** Sets X Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set X Angular Rate in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_adcs_measurements_set_x_angular_rate_mdeg_per_s(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -600,7 +602,9 @@ static inline int32_t cubeacp_adcs_measurements_y_angular_rate_mdeg_per_s(const 
     return message->y_angular_rate * INT32_C(10);
 }
 
-/** Sets Y Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Y Angular Rate in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_adcs_measurements_set_y_angular_rate_mdeg_per_s(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -618,7 +622,9 @@ static inline int32_t cubeacp_adcs_measurements_z_angular_rate_mdeg_per_s(const 
     return message->z_angular_rate * INT32_C(10);
 }
 
-/** Sets Z Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Z Angular Rate in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_adcs_measurements_set_z_angular_rate_mdeg_per_s(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -636,7 +642,7 @@ static inline int32_t cubeacp_adcs_measurements_star1_body_x_micro(const cubeacp
     return message->star1_body_x * INT32_C(100);
 }
 
-/** Sets Star1BX in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star1BX in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star1_body_x_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -654,7 +660,7 @@ static inline int32_t cubeacp_adcs_measurements_star1_body_y_micro(const cubeacp
     return message->star1_body_y * INT32_C(100);
 }
 
-/** Sets Star1BY in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star1BY in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star1_body_y_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -672,7 +678,7 @@ static inline int32_t cubeacp_adcs_measurements_star1_body_z_micro(const cubeacp
     return message->star1_body_z * INT32_C(100);
 }
 
-/** Sets Star1BZ in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star1BZ in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star1_body_z_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -690,7 +696,7 @@ static inline int32_t cubeacp_adcs_measurements_star1_orbit_x_micro(const cubeac
     return message->star1_orbit_x * INT32_C(100);
 }
 
-/** Sets Star1OX in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star1OX in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star1_orbit_x_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -708,7 +714,7 @@ static inline int32_t cubeacp_adcs_measurements_star1_orbit_y_micro(const cubeac
     return message->star1_orbit_y * INT32_C(100);
 }
 
-/** Sets Star1OY in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star1OY in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star1_orbit_y_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -726,7 +732,7 @@ static inline int32_t cubeacp_adcs_measurements_star1_orbit_z_micro(const cubeac
     return message->star1_orbit_z * INT32_C(100);
 }
 
-/** Sets Star1OZ in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star1OZ in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star1_orbit_z_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -744,7 +750,7 @@ static inline int32_t cubeacp_adcs_measurements_star2_body_x_micro(const cubeacp
     return message->star2_body_x * INT32_C(100);
 }
 
-/** Sets Star2BX in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star2BX in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star2_body_x_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -762,7 +768,7 @@ static inline int32_t cubeacp_adcs_measurements_star2_body_y_micro(const cubeacp
     return message->star2_body_y * INT32_C(100);
 }
 
-/** Sets Star2BY in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star2BY in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star2_body_y_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -780,7 +786,7 @@ static inline int32_t cubeacp_adcs_measurements_star2_body_z_micro(const cubeacp
     return message->star2_body_z * INT32_C(100);
 }
 
-/** Sets Star2BZ in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star2BZ in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star2_body_z_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -798,7 +804,7 @@ static inline int32_t cubeacp_adcs_measurements_star2_orbit_x_micro(const cubeac
     return message->star2_orbit_x * INT32_C(100);
 }
 
-/** Sets Star2OX in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star2OX in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star2_orbit_x_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -816,7 +822,7 @@ static inline int32_t cubeacp_adcs_measurements_star2_orbit_y_micro(const cubeac
     return message->star2_orbit_y * INT32_C(100);
 }
 
-/** Sets Star2OY in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star2OY in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star2_orbit_y_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -834,7 +840,7 @@ static inline int32_t cubeacp_adcs_measurements_star2_orbit_z_micro(const cubeac
     return message->star2_orbit_z * INT32_C(100);
 }
 
-/** Sets Star2OZ in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star2OZ in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star2_orbit_z_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -852,7 +858,7 @@ static inline int32_t cubeacp_adcs_measurements_star3_body_x_micro(const cubeacp
     return message->star3_body_x * INT32_C(100);
 }
 
-/** Sets Star3BX in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star3BX in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star3_body_x_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -870,7 +876,7 @@ static inline int32_t cubeacp_adcs_measurements_star3_body_y_micro(const cubeacp
     return message->star3_body_y * INT32_C(100);
 }
 
-/** Sets Star3BY in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star3BY in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star3_body_y_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -888,7 +894,7 @@ static inline int32_t cubeacp_adcs_measurements_star3_body_z_micro(const cubeacp
     return message->star3_body_z * INT32_C(100);
 }
 
-/** Sets Star3BZ in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star3BZ in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star3_body_z_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -906,7 +912,7 @@ static inline int32_t cubeacp_adcs_measurements_star3_orbit_x_micro(const cubeac
     return message->star3_orbit_x * INT32_C(100);
 }
 
-/** Sets Star3OX in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star3OX in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star3_orbit_x_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -924,7 +930,7 @@ static inline int32_t cubeacp_adcs_measurements_star3_orbit_y_micro(const cubeac
     return message->star3_orbit_y * INT32_C(100);
 }
 
-/** Sets Star3OY in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star3OY in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star3_orbit_y_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -942,7 +948,7 @@ static inline int32_t cubeacp_adcs_measurements_star3_orbit_z_micro(const cubeac
     return message->star3_orbit_z * INT32_C(100);
 }
 
-/** Sets Star3OZ in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star3OZ in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star3_orbit_z_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -962,7 +968,7 @@ static inline double cubeacp_adcs_measurements_magnetic_field_x_ut(const cubeacp
     return icdgen_quotient(message->magnetic_field_x, 100);
 }
 
-/** Sets Magnetic Field X in uT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Magnetic Field X in uT to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_magnetic_field_x_ut(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -976,7 +982,7 @@ static inline double cubeacp_adcs_measurements_magnetic_field_y_ut(const cubeacp
     return icdgen_quotient(message->magnetic_field_y, 100);
 }
 
-/** Sets Magnetic Field Y in uT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Magnetic Field Y in uT to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_magnetic_field_y_ut(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -990,7 +996,7 @@ static inline double cubeacp_adcs_measurements_magnetic_field_z_ut(const cubeacp
     return icdgen_quotient(message->magnetic_field_z, 100);
 }
 
-/** Sets Magnetic Field Z in uT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Magnetic Field Z in uT to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_magnetic_field_z_ut(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1004,7 +1010,7 @@ static inline double cubeacp_adcs_measurements_coarse_sun_x_physical(const cubea
     return icdgen_quotient(message->coarse_sun_x, 10000);
 }
 
-/** Sets Coarse Sun X, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Coarse Sun X, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_coarse_sun_x_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1018,7 +1024,7 @@ static inline double cubeacp_adcs_measurements_coarse_sun_y_physical(const cubea
     return icdgen_quotient(message->coarse_sun_y, 10000);
 }
 
-/** Sets Coarse Sun Y, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Coarse Sun Y, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_coarse_sun_y_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1032,7 +1038,7 @@ static inline double cubeacp_adcs_measurements_coarse_sun_z_physical(const cubea
     return icdgen_quotient(message->coarse_sun_z, 10000);
 }
 
-/** Sets Coarse Sun Z, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Coarse Sun Z, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_coarse_sun_z_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1046,7 +1052,7 @@ static inline double cubeacp_adcs_measurements_sun_x_physical(const cubeacp_adcs
     return icdgen_quotient(message->sun_x, 10000);
 }
 
-/** Sets Sun X, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Sun X, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_sun_x_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1060,7 +1066,7 @@ static inline double cubeacp_adcs_measurements_sun_y_physical(const cubeacp_adcs
     return icdgen_quotient(message->sun_y, 10000);
 }
 
-/** Sets Sun Y, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Sun Y, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_sun_y_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1074,7 +1080,7 @@ static inline double cubeacp_adcs_measurements_sun_z_physical(const cubeacp_adcs
     return icdgen_quotient(message->sun_z, 10000);
 }
 
-/** Sets Sun Z, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Sun Z, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_sun_z_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1088,7 +1094,7 @@ static inline double cubeacp_adcs_measurements_nadir_x_physical(const cubeacp_ad
     return icdgen_quotient(message->nadir_x, 10000);
 }
 
-/** Sets Nadir X, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Nadir X, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_nadir_x_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1102,7 +1108,7 @@ static inline double cubeacp_adcs_measurements_nadir_y_physical(const cubeacp_ad
     return icdgen_quotient(message->nadir_y, 10000);
 }
 
-/** Sets Nadir Y, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Nadir Y, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_nadir_y_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1116,7 +1122,7 @@ static inline double cubeacp_adcs_measurements_nadir_z_physical(const cubeacp_ad
     return icdgen_quotient(message->nadir_z, 10000);
 }
 
-/** Sets Nadir Z, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Nadir Z, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_nadir_z_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1130,7 +1136,7 @@ static inline double cubeacp_adcs_measurements_x_angular_rate_deg_per_s(const cu
     return icdgen_quotient(message->x_angular_rate, 100);
 }
 
-/** Sets X Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set X Angular Rate in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_x_angular_rate_deg_per_s(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1144,7 +1150,7 @@ static inline double cubeacp_adcs_measurements_y_angular_rate_deg_per_s(const cu
     return icdgen_quotient(message->y_angular_rate, 100);
 }
 
-/** Sets Y Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Y Angular Rate in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_y_angular_rate_deg_per_s(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1158,7 +1164,7 @@ static inline double cubeacp_adcs_measurements_z_angular_rate_deg_per_s(const cu
     return icdgen_quotient(message->z_angular_rate, 100);
 }
 
-/** Sets Z Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Z Angular Rate in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_z_angular_rate_deg_per_s(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1172,7 +1178,7 @@ static inline double cubeacp_adcs_measurements_star1_body_x_physical(const cubea
     return icdgen_quotient(message->star1_body_x, 10000);
 }
 
-/** Sets Star1BX, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star1BX, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star1_body_x_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1186,7 +1192,7 @@ static inline double cubeacp_adcs_measurements_star1_body_y_physical(const cubea
     return icdgen_quotient(message->star1_body_y, 10000);
 }
 
-/** Sets Star1BY, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star1BY, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star1_body_y_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1200,7 +1206,7 @@ static inline double cubeacp_adcs_measurements_star1_body_z_physical(const cubea
     return icdgen_quotient(message->star1_body_z, 10000);
 }
 
-/** Sets Star1BZ, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star1BZ, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star1_body_z_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1214,7 +1220,7 @@ static inline double cubeacp_adcs_measurements_star1_orbit_x_physical(const cube
     return icdgen_quotient(message->star1_orbit_x, 10000);
 }
 
-/** Sets Star1OX, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star1OX, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star1_orbit_x_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1228,7 +1234,7 @@ static inline double cubeacp_adcs_measurements_star1_orbit_y_physical(const cube
     return icdgen_quotient(message->star1_orbit_y, 10000);
 }
 
-/** Sets Star1OY, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star1OY, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star1_orbit_y_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1242,7 +1248,7 @@ static inline double cubeacp_adcs_measurements_star1_orbit_z_physical(const cube
     return icdgen_quotient(message->star1_orbit_z, 10000);
 }
 
-/** Sets Star1OZ, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star1OZ, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star1_orbit_z_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1256,7 +1262,7 @@ static inline double cubeacp_adcs_measurements_star2_body_x_physical(const cubea
     return icdgen_quotient(message->star2_body_x, 10000);
 }
 
-/** Sets Star2BX, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star2BX, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star2_body_x_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1270,7 +1276,7 @@ static inline double cubeacp_adcs_measurements_star2_body_y_physical(const cubea
     return icdgen_quotient(message->star2_body_y, 10000);
 }
 
-/** Sets Star2BY, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star2BY, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star2_body_y_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1284,7 +1290,7 @@ static inline double cubeacp_adcs_measurements_star2_body_z_physical(const cubea
     return icdgen_quotient(message->star2_body_z, 10000);
 }
 
-/** Sets Star2BZ, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star2BZ, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star2_body_z_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1298,7 +1304,7 @@ static inline double cubeacp_adcs_measurements_star2_orbit_x_physical(const cube
     return icdgen_quotient(message->star2_orbit_x, 10000);
 }
 
-/** Sets Star2OX, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star2OX, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star2_orbit_x_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1312,7 +1318,7 @@ static inline double cubeacp_adcs_measurements_star2_orbit_y_physical(const cube
     return icdgen_quotient(message->star2_orbit_y, 10000);
 }
 
-/** Sets Star2OY, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star2OY, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star2_orbit_y_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1326,7 +1332,7 @@ static inline double cubeacp_adcs_measurements_star2_orbit_z_physical(const cube
     return icdgen_quotient(message->star2_orbit_z, 10000);
 }
 
-/** Sets Star2OZ, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star2OZ, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star2_orbit_z_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1340,7 +1346,7 @@ static inline double cubeacp_adcs_measurements_star3_body_x_physical(const cubea
     return icdgen_quotient(message->star3_body_x, 10000);
 }
 
-/** Sets Star3BX, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star3BX, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star3_body_x_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1354,7 +1360,7 @@ static inline double cubeacp_adcs_measurements_star3_body_y_physical(const cubea
     return icdgen_quotient(message->star3_body_y, 10000);
 }
 
-/** Sets Star3BY, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star3BY, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star3_body_y_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1368,7 +1374,7 @@ static inline double cubeacp_adcs_measurements_star3_body_z_physical(const cubea
     return icdgen_quotient(message->star3_body_z, 10000);
 }
 
-/** Sets Star3BZ, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star3BZ, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star3_body_z_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1382,7 +1388,7 @@ static inline double cubeacp_adcs_measurements_star3_orbit_x_physical(const cube
     return icdgen_quotient(message->star3_orbit_x, 10000);
 }
 
-/** Sets Star3OX, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star3OX, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star3_orbit_x_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1396,7 +1402,7 @@ static inline double cubeacp_adcs_measurements_star3_orbit_y_physical(const cube
     return icdgen_quotient(message->star3_orbit_y, 10000);
 }
 
-/** Sets Star3OY, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star3OY, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star3_orbit_y_physical(
     cubeacp_adcs_measurements_t *message,
     double value)
@@ -1410,7 +1416,7 @@ static inline double cubeacp_adcs_measurements_star3_orbit_z_physical(const cube
     return icdgen_quotient(message->star3_orbit_z, 10000);
 }
 
-/** Sets Star3OZ, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star3OZ, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_measurements_set_star3_orbit_z_physical(
     cubeacp_adcs_measurements_t *message,
     double value)

@@ -14,7 +14,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_ADCS_MISC_CURRENTS_ID 198u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_ADCS_MISC_CURRENTS_LENGTH 6u
 
 /** Raw values. */
@@ -38,13 +38,13 @@ typedef struct {
     int16_t cubestar_mcu_temperature;
 } cubeacp_adcs_misc_currents_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_adcs_misc_currents_init(cubeacp_adcs_misc_currents_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_adcs_misc_currents_decode(
     cubeacp_adcs_misc_currents_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -59,7 +59,7 @@ static inline icd_status_t cubeacp_adcs_misc_currents_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_adcs_misc_currents_encode(
     const cubeacp_adcs_misc_currents_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -74,7 +74,7 @@ static inline icd_status_t cubeacp_adcs_misc_currents_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_adcs_misc_currents_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -92,7 +92,7 @@ static inline int32_t cubeacp_adcs_misc_currents_cubestar_current_ua(const cubea
     return message->cubestar_current * INT32_C(10);
 }
 
-/** Sets CubeStarCurrent in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CubeStarCurrent in uA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_misc_currents_set_cubestar_current_ua(
     cubeacp_adcs_misc_currents_t *message,
     int32_t value)
@@ -110,7 +110,7 @@ static inline int32_t cubeacp_adcs_misc_currents_magnetorquer_current_ua(const c
     return message->magnetorquer_current * INT32_C(100);
 }
 
-/** Sets Magnetorquer Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Magnetorquer Current in uA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_misc_currents_set_magnetorquer_current_ua(
     cubeacp_adcs_misc_currents_t *message,
     int32_t value)
@@ -129,7 +129,10 @@ static inline int32_t cubeacp_adcs_misc_currents_cubestar_mcu_temperature_mc(
     return message->cubestar_mcu_temperature * INT32_C(10);
 }
 
-/** Sets CubeStar MCU temperature in thousandths of C, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set CubeStar MCU temperature in thousandths of C to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_adcs_misc_currents_set_cubestar_mcu_temperature_mc(
     cubeacp_adcs_misc_currents_t *message,
     int32_t value)
@@ -149,7 +152,7 @@ static inline double cubeacp_adcs_misc_currents_cubestar_current_ma(const cubeac
     return icdgen_quotient(message->cubestar_current, 100);
 }
 
-/** Sets CubeStarCurrent in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CubeStarCurrent in mA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_misc_currents_set_cubestar_current_ma(
     cubeacp_adcs_misc_currents_t *message,
     double value)
@@ -163,7 +166,7 @@ static inline double cubeacp_adcs_misc_currents_magnetorquer_current_ma(const cu
     return icdgen_quotient(message->magnetorquer_current, 10);
 }
 
-/** Sets Magnetorquer Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Magnetorquer Current in mA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_misc_currents_set_magnetorquer_current_ma(
     cubeacp_adcs_misc_currents_t *message,
     double value)
@@ -177,7 +180,7 @@ static inline double cubeacp_adcs_misc_currents_cubestar_mcu_temperature_c(const
     return icdgen_quotient(message->cubestar_mcu_temperature, 100);
 }
 
-/** Sets CubeStar MCU temperature in C, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CubeStar MCU temperature in C to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_misc_currents_set_cubestar_mcu_temperature_c(
     cubeacp_adcs_misc_currents_t *message,
     double value)

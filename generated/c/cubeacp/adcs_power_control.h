@@ -5,7 +5,7 @@
 
 /**
  * @file
- * ADCS Power Control: configuration, set by telecommand 11, got by telemetry 197, 3 bytes. Table 184.
+ * ADCS Power Control: configuration, set by telecommand 11, read by telemetry 197, 3 bytes. Table 184.
  * Switches components on and off.
  * @note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained. They are written 0 and
  * ignored.
@@ -18,7 +18,7 @@
 #define CUBEACP_ADCS_POWER_CONTROL_SET_ID 11u
 /** Id of the telemetry that gets it. */
 #define CUBEACP_ADCS_POWER_CONTROL_GET_ID 197u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_ADCS_POWER_CONTROL_LENGTH 3u
 
 /** Raw values. */
@@ -76,13 +76,13 @@ typedef struct {
     cubeacp_power_select_t gps_power;
 } cubeacp_adcs_power_control_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_adcs_power_control_init(cubeacp_adcs_power_control_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 3 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 3 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_adcs_power_control_decode(
     cubeacp_adcs_power_control_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -104,7 +104,7 @@ static inline icd_status_t cubeacp_adcs_power_control_decode(
     return ICD_OK;
 }
 
-/** Name of the first field whose raw value has more bits than the field; NULL if all fit. */
+/** Return the name of the first field whose raw value has more bits than the field; NULL if all fit. */
 static inline const char *cubeacp_adcs_power_control_misfit(const cubeacp_adcs_power_control_t *message)
 {
     if ((message->cubecontrol_signal_power_selection & 0xFCu) != 0u) {
@@ -141,8 +141,8 @@ static inline const char *cubeacp_adcs_power_control_misfit(const cubeacp_adcs_p
 }
 
 /**
- * Writes a frame of 3 bytes, reserved bits 0. ICD_ERROR_LENGTH if the buffer is smaller, ICD_ERROR_RANGE if a raw
- * value does not fit its field; nothing is written then.
+ * Encode a frame of 3 bytes, reserved bits 0. Return ICD_ERROR_LENGTH if the buffer is too small, and ICD_ERROR_RANGE
+ * if a raw value does not fit into its field. Nothing is written in case of an error.
  */
 static inline icd_status_t cubeacp_adcs_power_control_encode(
     const cubeacp_adcs_power_control_t *ICDGEN_RESTRICT message,
@@ -180,7 +180,7 @@ static inline icd_status_t cubeacp_adcs_power_control_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_adcs_power_control_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

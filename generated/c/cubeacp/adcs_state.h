@@ -31,7 +31,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_ADCS_STATE_ID 190u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_ADCS_STATE_LENGTH 54u
 
 /** Raw values. */
@@ -262,13 +262,13 @@ typedef struct {
     int16_t ecef_position_z;
 } cubeacp_adcs_state_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_adcs_state_init(cubeacp_adcs_state_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 54 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 54 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_adcs_state_decode(
     cubeacp_adcs_state_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -366,7 +366,7 @@ static inline icd_status_t cubeacp_adcs_state_decode(
     return ICD_OK;
 }
 
-/** Name of the first field whose raw value has more bits than the field; NULL if all fit. */
+/** Return the name of the first field whose raw value has more bits than the field; NULL if all fit. */
 static inline const char *cubeacp_adcs_state_misfit(const cubeacp_adcs_state_t *message)
 {
     if ((message->attitude_estimation_mode & 0xF0u) != 0u) {
@@ -388,8 +388,8 @@ static inline const char *cubeacp_adcs_state_misfit(const cubeacp_adcs_state_t *
 }
 
 /**
- * Writes a frame of 54 bytes, reserved bits 0. ICD_ERROR_LENGTH if the buffer is smaller, ICD_ERROR_RANGE if a raw
- * value does not fit its field; nothing is written then.
+ * Encode a frame of 54 bytes, reserved bits 0. Return ICD_ERROR_LENGTH if the buffer is too small, and ICD_ERROR_RANGE
+ * if a raw value does not fit into its field. Nothing is written in case of an error.
  */
 static inline icd_status_t cubeacp_adcs_state_encode(
     const cubeacp_adcs_state_t *ICDGEN_RESTRICT message,
@@ -490,7 +490,7 @@ static inline icd_status_t cubeacp_adcs_state_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_adcs_state_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -724,7 +724,10 @@ static inline int32_t cubeacp_adcs_state_estimated_roll_angle_mdeg(const cubeacp
     return message->estimated_roll_angle * INT32_C(10);
 }
 
-/** Sets Estimated Roll Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Estimated Roll Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_adcs_state_set_estimated_roll_angle_mdeg(
     cubeacp_adcs_state_t *message,
     int32_t value)
@@ -742,7 +745,10 @@ static inline int32_t cubeacp_adcs_state_estimated_pitch_angle_mdeg(const cubeac
     return message->estimated_pitch_angle * INT32_C(10);
 }
 
-/** Sets Estimated Pitch Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Estimated Pitch Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_adcs_state_set_estimated_pitch_angle_mdeg(
     cubeacp_adcs_state_t *message,
     int32_t value)
@@ -760,7 +766,9 @@ static inline int32_t cubeacp_adcs_state_estimated_yaw_angle_mdeg(const cubeacp_
     return message->estimated_yaw_angle * INT32_C(10);
 }
 
-/** Sets Estimated Yaw Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Estimated Yaw Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_adcs_state_set_estimated_yaw_angle_mdeg(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -327685) || (value > 327674)) {
@@ -777,7 +785,8 @@ static inline int32_t cubeacp_adcs_state_estimated_x_angular_rate_mdeg_per_s(con
 }
 
 /**
- * Sets Estimated X Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Estimated X Angular Rate in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
  */
 static inline icd_status_t cubeacp_adcs_state_set_estimated_x_angular_rate_mdeg_per_s(
     cubeacp_adcs_state_t *message,
@@ -797,7 +806,8 @@ static inline int32_t cubeacp_adcs_state_estimated_y_angular_rate_mdeg_per_s(con
 }
 
 /**
- * Sets Estimated Y Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Estimated Y Angular Rate in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
  */
 static inline icd_status_t cubeacp_adcs_state_set_estimated_y_angular_rate_mdeg_per_s(
     cubeacp_adcs_state_t *message,
@@ -817,7 +827,8 @@ static inline int32_t cubeacp_adcs_state_estimated_z_angular_rate_mdeg_per_s(con
 }
 
 /**
- * Sets Estimated Z Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Estimated Z Angular Rate in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
  */
 static inline icd_status_t cubeacp_adcs_state_set_estimated_z_angular_rate_mdeg_per_s(
     cubeacp_adcs_state_t *message,
@@ -836,7 +847,7 @@ static inline int32_t cubeacp_adcs_state_x_position_m(const cubeacp_adcs_state_t
     return message->x_position * INT32_C(250);
 }
 
-/** Sets X position in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set X position in m to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_state_set_x_position_m(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -8192125) || (value > 8191874)) {
@@ -852,7 +863,7 @@ static inline int32_t cubeacp_adcs_state_y_position_m(const cubeacp_adcs_state_t
     return message->y_position * INT32_C(250);
 }
 
-/** Sets Y position in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Y position in m to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_state_set_y_position_m(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -8192125) || (value > 8191874)) {
@@ -868,7 +879,7 @@ static inline int32_t cubeacp_adcs_state_z_position_m(const cubeacp_adcs_state_t
     return message->z_position * INT32_C(250);
 }
 
-/** Sets Z position in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Z position in m to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_state_set_z_position_m(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -8192125) || (value > 8191874)) {
@@ -884,7 +895,7 @@ static inline int32_t cubeacp_adcs_state_x_velocity_mm_per_s(const cubeacp_adcs_
     return message->x_velocity * INT32_C(250);
 }
 
-/** Sets X Velocity in mm/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set X Velocity in mm/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_state_set_x_velocity_mm_per_s(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -8192125) || (value > 8191874)) {
@@ -900,7 +911,7 @@ static inline int32_t cubeacp_adcs_state_y_velocity_mm_per_s(const cubeacp_adcs_
     return message->y_velocity * INT32_C(250);
 }
 
-/** Sets Y Velocity in mm/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Y Velocity in mm/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_state_set_y_velocity_mm_per_s(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -8192125) || (value > 8191874)) {
@@ -916,7 +927,7 @@ static inline int32_t cubeacp_adcs_state_z_velocity_mm_per_s(const cubeacp_adcs_
     return message->z_velocity * INT32_C(250);
 }
 
-/** Sets Z Velocity in mm/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Z Velocity in mm/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_state_set_z_velocity_mm_per_s(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -8192125) || (value > 8191874)) {
@@ -932,7 +943,7 @@ static inline int32_t cubeacp_adcs_state_latitude_mdeg(const cubeacp_adcs_state_
     return message->latitude * INT32_C(10);
 }
 
-/** Sets Latitude in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Latitude in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_state_set_latitude_mdeg(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -327685) || (value > 327674)) {
@@ -948,7 +959,7 @@ static inline int32_t cubeacp_adcs_state_longitude_mdeg(const cubeacp_adcs_state
     return message->longitude * INT32_C(10);
 }
 
-/** Sets Longitude in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Longitude in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_state_set_longitude_mdeg(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -327685) || (value > 327674)) {
@@ -964,7 +975,7 @@ static inline int32_t cubeacp_adcs_state_altitude_m(const cubeacp_adcs_state_t *
     return message->altitude * INT32_C(10);
 }
 
-/** Sets Altitude in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Altitude in m to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_state_set_altitude_m(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -5) || (value > 655354)) {
@@ -982,7 +993,7 @@ static inline double cubeacp_adcs_state_estimated_roll_angle_deg(const cubeacp_a
     return icdgen_quotient(message->estimated_roll_angle, 100);
 }
 
-/** Sets Estimated Roll Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Estimated Roll Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_state_set_estimated_roll_angle_deg(cubeacp_adcs_state_t *message, double value)
 {
     return icdgen_set_i16(&message->estimated_roll_angle, value, 1, 0, 100, INT16_MIN, INT16_MAX);
@@ -994,7 +1005,7 @@ static inline double cubeacp_adcs_state_estimated_pitch_angle_deg(const cubeacp_
     return icdgen_quotient(message->estimated_pitch_angle, 100);
 }
 
-/** Sets Estimated Pitch Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Estimated Pitch Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_state_set_estimated_pitch_angle_deg(cubeacp_adcs_state_t *message, double value)
 {
     return icdgen_set_i16(&message->estimated_pitch_angle, value, 1, 0, 100, INT16_MIN, INT16_MAX);
@@ -1006,7 +1017,7 @@ static inline double cubeacp_adcs_state_estimated_yaw_angle_deg(const cubeacp_ad
     return icdgen_quotient(message->estimated_yaw_angle, 100);
 }
 
-/** Sets Estimated Yaw Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Estimated Yaw Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_state_set_estimated_yaw_angle_deg(cubeacp_adcs_state_t *message, double value)
 {
     return icdgen_set_i16(&message->estimated_yaw_angle, value, 1, 0, 100, INT16_MIN, INT16_MAX);
@@ -1018,7 +1029,7 @@ static inline double cubeacp_adcs_state_estimated_x_angular_rate_deg_per_s(const
     return icdgen_quotient(message->estimated_x_angular_rate, 100);
 }
 
-/** Sets Estimated X Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Estimated X Angular Rate in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_state_set_estimated_x_angular_rate_deg_per_s(
     cubeacp_adcs_state_t *message,
     double value)
@@ -1032,7 +1043,7 @@ static inline double cubeacp_adcs_state_estimated_y_angular_rate_deg_per_s(const
     return icdgen_quotient(message->estimated_y_angular_rate, 100);
 }
 
-/** Sets Estimated Y Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Estimated Y Angular Rate in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_state_set_estimated_y_angular_rate_deg_per_s(
     cubeacp_adcs_state_t *message,
     double value)
@@ -1046,7 +1057,7 @@ static inline double cubeacp_adcs_state_estimated_z_angular_rate_deg_per_s(const
     return icdgen_quotient(message->estimated_z_angular_rate, 100);
 }
 
-/** Sets Estimated Z Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Estimated Z Angular Rate in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_state_set_estimated_z_angular_rate_deg_per_s(
     cubeacp_adcs_state_t *message,
     double value)
@@ -1060,7 +1071,7 @@ static inline double cubeacp_adcs_state_x_position_km(const cubeacp_adcs_state_t
     return icdgen_quotient(message->x_position, 4);
 }
 
-/** Sets X position in km, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set X position in km to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_state_set_x_position_km(cubeacp_adcs_state_t *message, double value)
 {
     return icdgen_set_i16(&message->x_position, value, 1, 0, 4, INT16_MIN, INT16_MAX);
@@ -1072,7 +1083,7 @@ static inline double cubeacp_adcs_state_y_position_km(const cubeacp_adcs_state_t
     return icdgen_quotient(message->y_position, 4);
 }
 
-/** Sets Y position in km, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Y position in km to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_state_set_y_position_km(cubeacp_adcs_state_t *message, double value)
 {
     return icdgen_set_i16(&message->y_position, value, 1, 0, 4, INT16_MIN, INT16_MAX);
@@ -1084,7 +1095,7 @@ static inline double cubeacp_adcs_state_z_position_km(const cubeacp_adcs_state_t
     return icdgen_quotient(message->z_position, 4);
 }
 
-/** Sets Z position in km, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Z position in km to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_state_set_z_position_km(cubeacp_adcs_state_t *message, double value)
 {
     return icdgen_set_i16(&message->z_position, value, 1, 0, 4, INT16_MIN, INT16_MAX);
@@ -1096,7 +1107,7 @@ static inline double cubeacp_adcs_state_x_velocity_m_per_s(const cubeacp_adcs_st
     return icdgen_quotient(message->x_velocity, 4);
 }
 
-/** Sets X Velocity in m/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set X Velocity in m/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_state_set_x_velocity_m_per_s(cubeacp_adcs_state_t *message, double value)
 {
     return icdgen_set_i16(&message->x_velocity, value, 1, 0, 4, INT16_MIN, INT16_MAX);
@@ -1108,7 +1119,7 @@ static inline double cubeacp_adcs_state_y_velocity_m_per_s(const cubeacp_adcs_st
     return icdgen_quotient(message->y_velocity, 4);
 }
 
-/** Sets Y Velocity in m/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Y Velocity in m/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_state_set_y_velocity_m_per_s(cubeacp_adcs_state_t *message, double value)
 {
     return icdgen_set_i16(&message->y_velocity, value, 1, 0, 4, INT16_MIN, INT16_MAX);
@@ -1120,7 +1131,7 @@ static inline double cubeacp_adcs_state_z_velocity_m_per_s(const cubeacp_adcs_st
     return icdgen_quotient(message->z_velocity, 4);
 }
 
-/** Sets Z Velocity in m/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Z Velocity in m/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_state_set_z_velocity_m_per_s(cubeacp_adcs_state_t *message, double value)
 {
     return icdgen_set_i16(&message->z_velocity, value, 1, 0, 4, INT16_MIN, INT16_MAX);
@@ -1132,7 +1143,7 @@ static inline double cubeacp_adcs_state_latitude_deg(const cubeacp_adcs_state_t 
     return icdgen_quotient(message->latitude, 100);
 }
 
-/** Sets Latitude in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Latitude in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_state_set_latitude_deg(cubeacp_adcs_state_t *message, double value)
 {
     return icdgen_set_i16(&message->latitude, value, 1, 0, 100, INT16_MIN, INT16_MAX);
@@ -1144,7 +1155,7 @@ static inline double cubeacp_adcs_state_longitude_deg(const cubeacp_adcs_state_t
     return icdgen_quotient(message->longitude, 100);
 }
 
-/** Sets Longitude in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Longitude in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_state_set_longitude_deg(cubeacp_adcs_state_t *message, double value)
 {
     return icdgen_set_i16(&message->longitude, value, 1, 0, 100, INT16_MIN, INT16_MAX);
@@ -1156,7 +1167,7 @@ static inline double cubeacp_adcs_state_altitude_km(const cubeacp_adcs_state_t *
     return icdgen_quotient(message->altitude, 100);
 }
 
-/** Sets Altitude in km, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Altitude in km to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_state_set_altitude_km(cubeacp_adcs_state_t *message, double value)
 {
     return icdgen_set_u16(&message->altitude, value, 1, 0, 100, UINT16_MAX);

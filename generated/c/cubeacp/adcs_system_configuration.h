@@ -5,7 +5,7 @@
 
 /**
  * @file
- * ADCS System Configuration: configuration, set by telecommand 30, got by telemetry 225, 173 bytes. Table 201.
+ * ADCS System Configuration: configuration, set by telecommand 30, read by telemetry 225, 173 bytes. Table 201.
  * What is hard-coded: versions, ratings, calibration and pins.
  * @note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained. They are written 0 and
  * ignored.
@@ -20,7 +20,7 @@
 #define CUBEACP_ADCS_SYSTEM_CONFIGURATION_SET_ID 30u
 /** Id of the telemetry that gets it. */
 #define CUBEACP_ADCS_SYSTEM_CONFIGURATION_GET_ID 225u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_ADCS_SYSTEM_CONFIGURATION_LENGTH 173u
 
 /** Raw values. */
@@ -309,13 +309,13 @@ typedef struct {
     cubeacp_gpio_port_pin_t cubewheel3_enable_pin;
 } cubeacp_adcs_system_configuration_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_adcs_system_configuration_init(cubeacp_adcs_system_configuration_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 173 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 173 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_adcs_system_configuration_decode(
     cubeacp_adcs_system_configuration_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -363,7 +363,7 @@ static inline icd_status_t cubeacp_adcs_system_configuration_decode(
     return ICD_OK;
 }
 
-/** Name of the first field whose raw value has more bits than the field; NULL if all fit. */
+/** Return the name of the first field whose raw value has more bits than the field; NULL if all fit. */
 static inline const char *cubeacp_adcs_system_configuration_misfit(const cubeacp_adcs_system_configuration_t *message)
 {
     if ((message->acp_type & 0xF0u) != 0u) {
@@ -439,8 +439,8 @@ static inline const char *cubeacp_adcs_system_configuration_misfit(const cubeacp
 }
 
 /**
- * Writes a frame of 173 bytes, reserved bits 0. ICD_ERROR_LENGTH if the buffer is smaller, ICD_ERROR_RANGE if a raw
- * value does not fit its field; nothing is written then.
+ * Encode a frame of 173 bytes, reserved bits 0. Return ICD_ERROR_LENGTH if the buffer is too small, and ICD_ERROR_RANGE
+ * if a raw value does not fit into its field. Nothing is written in case of an error.
  */
 static inline icd_status_t cubeacp_adcs_system_configuration_encode(
     const cubeacp_adcs_system_configuration_t *ICDGEN_RESTRICT message,
@@ -504,7 +504,7 @@ static inline icd_status_t cubeacp_adcs_system_configuration_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_adcs_system_configuration_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -14,7 +14,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_ADCS_TEMPERATURES_ID 174u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_ADCS_TEMPERATURES_LENGTH 6u
 
 /** Raw values. */
@@ -41,13 +41,13 @@ typedef struct {
     int16_t redundant_mag_temperature;
 } cubeacp_adcs_temperatures_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_adcs_temperatures_init(cubeacp_adcs_temperatures_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_adcs_temperatures_decode(
     cubeacp_adcs_temperatures_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -62,7 +62,7 @@ static inline icd_status_t cubeacp_adcs_temperatures_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_adcs_temperatures_encode(
     const cubeacp_adcs_temperatures_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -77,7 +77,7 @@ static inline icd_status_t cubeacp_adcs_temperatures_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_adcs_temperatures_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -95,7 +95,10 @@ static inline int32_t cubeacp_adcs_temperatures_magnetometer_temperature_mc(cons
     return message->magnetometer_temperature * INT32_C(100);
 }
 
-/** Sets Magnetometer Temperature in thousandths of C, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Magnetometer Temperature in thousandths of C to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_adcs_temperatures_set_magnetometer_temperature_mc(
     cubeacp_adcs_temperatures_t *message,
     int32_t value)
@@ -114,8 +117,8 @@ static inline int32_t cubeacp_adcs_temperatures_redundant_mag_temperature_mc(con
 }
 
 /**
- * Sets Redundant Magnetometer Temperature in thousandths of C, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Redundant Magnetometer Temperature in thousandths of C to the nearest raw value. Return ICD_ERROR_RANGE if it is
+ * out of range.
  */
 static inline icd_status_t cubeacp_adcs_temperatures_set_redundant_mag_temperature_mc(
     cubeacp_adcs_temperatures_t *message,
@@ -136,7 +139,7 @@ static inline double cubeacp_adcs_temperatures_magnetometer_temperature_c(const 
     return icdgen_quotient(message->magnetometer_temperature, 10);
 }
 
-/** Sets Magnetometer Temperature in C, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Magnetometer Temperature in C to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_adcs_temperatures_set_magnetometer_temperature_c(
     cubeacp_adcs_temperatures_t *message,
     double value)
@@ -150,7 +153,9 @@ static inline double cubeacp_adcs_temperatures_redundant_mag_temperature_c(const
     return icdgen_quotient(message->redundant_mag_temperature, 10);
 }
 
-/** Sets Redundant Magnetometer Temperature in C, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Redundant Magnetometer Temperature in C to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_adcs_temperatures_set_redundant_mag_temperature_c(
     cubeacp_adcs_temperatures_t *message,
     double value)

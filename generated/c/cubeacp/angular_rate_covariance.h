@@ -13,7 +13,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_ANGULAR_RATE_COVARIANCE_ID 165u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_ANGULAR_RATE_COVARIANCE_LENGTH 6u
 
 /** Raw values. */
@@ -36,13 +36,13 @@ typedef struct {
     int16_t z_angular_rate_covariance;
 } cubeacp_angular_rate_covariance_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_angular_rate_covariance_init(cubeacp_angular_rate_covariance_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_angular_rate_covariance_decode(
     cubeacp_angular_rate_covariance_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -57,7 +57,7 @@ static inline icd_status_t cubeacp_angular_rate_covariance_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_angular_rate_covariance_encode(
     const cubeacp_angular_rate_covariance_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -72,7 +72,7 @@ static inline icd_status_t cubeacp_angular_rate_covariance_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_angular_rate_covariance_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -91,7 +91,9 @@ static inline int32_t cubeacp_angular_rate_covariance_x_angular_rate_covariance_
     return message->x_angular_rate_covariance;
 }
 
-/** Sets X Angular Rate Covariance in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set X Angular Rate Covariance in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_angular_rate_covariance_set_x_angular_rate_covariance_milli(
     cubeacp_angular_rate_covariance_t *message,
     int32_t value)
@@ -110,7 +112,9 @@ static inline int32_t cubeacp_angular_rate_covariance_y_angular_rate_covariance_
     return message->y_angular_rate_covariance;
 }
 
-/** Sets Y Angular Rate Covariance in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Y Angular Rate Covariance in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_angular_rate_covariance_set_y_angular_rate_covariance_milli(
     cubeacp_angular_rate_covariance_t *message,
     int32_t value)
@@ -129,7 +133,9 @@ static inline int32_t cubeacp_angular_rate_covariance_z_angular_rate_covariance_
     return message->z_angular_rate_covariance;
 }
 
-/** Sets Z Angular Rate Covariance in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Z Angular Rate Covariance in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_angular_rate_covariance_set_z_angular_rate_covariance_milli(
     cubeacp_angular_rate_covariance_t *message,
     int32_t value)
@@ -150,7 +156,10 @@ static inline double cubeacp_angular_rate_covariance_x_angular_rate_covariance_p
     return icdgen_quotient(message->x_angular_rate_covariance, 1000);
 }
 
-/** Sets X Angular Rate Covariance, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set X Angular Rate Covariance, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_angular_rate_covariance_set_x_angular_rate_covariance_physical(
     cubeacp_angular_rate_covariance_t *message,
     double value)
@@ -165,7 +174,10 @@ static inline double cubeacp_angular_rate_covariance_y_angular_rate_covariance_p
     return icdgen_quotient(message->y_angular_rate_covariance, 1000);
 }
 
-/** Sets Y Angular Rate Covariance, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Y Angular Rate Covariance, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_angular_rate_covariance_set_y_angular_rate_covariance_physical(
     cubeacp_angular_rate_covariance_t *message,
     double value)
@@ -180,7 +192,10 @@ static inline double cubeacp_angular_rate_covariance_z_angular_rate_covariance_p
     return icdgen_quotient(message->z_angular_rate_covariance, 1000);
 }
 
-/** Sets Z Angular Rate Covariance, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Z Angular Rate Covariance, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_angular_rate_covariance_set_z_angular_rate_covariance_physical(
     cubeacp_angular_rate_covariance_t *message,
     double value)

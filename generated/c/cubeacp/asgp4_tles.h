@@ -14,7 +14,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_ASGP4_TLES_ID 228u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_ASGP4_TLES_LENGTH 33u
 
 /** Raw values. */
@@ -76,13 +76,13 @@ typedef struct {
     float asgp4_bstar;
 } cubeacp_asgp4_tles_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_asgp4_tles_init(cubeacp_asgp4_tles_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 33 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 33 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_asgp4_tles_decode(
     cubeacp_asgp4_tles_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -97,7 +97,7 @@ static inline icd_status_t cubeacp_asgp4_tles_decode(
     return ICD_OK;
 }
 
-/** Name of the first field whose raw value has more bits than the field; NULL if all fit. */
+/** Return the name of the first field whose raw value has more bits than the field; NULL if all fit. */
 static inline const char *cubeacp_asgp4_tles_misfit(const cubeacp_asgp4_tles_t *message)
 {
     if ((message->asgp4_error & 0x80u) != 0u) {
@@ -107,8 +107,8 @@ static inline const char *cubeacp_asgp4_tles_misfit(const cubeacp_asgp4_tles_t *
 }
 
 /**
- * Writes a frame of 33 bytes. ICD_ERROR_LENGTH if the buffer is smaller, ICD_ERROR_RANGE if a raw
- * value does not fit its field; nothing is written then.
+ * Encode a frame of 33 bytes. Return ICD_ERROR_LENGTH if the buffer is too small, and ICD_ERROR_RANGE
+ * if a raw value does not fit into its field. Nothing is written in case of an error.
  */
 static inline icd_status_t cubeacp_asgp4_tles_encode(
     const cubeacp_asgp4_tles_t *ICDGEN_RESTRICT message,
@@ -128,7 +128,7 @@ static inline icd_status_t cubeacp_asgp4_tles_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_asgp4_tles_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -13,22 +13,22 @@
 
 /** Id of the telecommand. */
 #define CUBEACP_ASGP4_TRIGGER_ID 32u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_ASGP4_TRIGGER_LENGTH 0u
 
 /** Raw values. */
 typedef struct {
-    /** There are no fields; C has no empty structs. */
+    /** Unused. The message has no fields, but C has no empty structs. */
     uint8_t empty;
 } cubeacp_asgp4_trigger_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_asgp4_trigger_init(cubeacp_asgp4_trigger_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 0 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 0 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_asgp4_trigger_decode(
     cubeacp_asgp4_trigger_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -42,7 +42,7 @@ static inline icd_status_t cubeacp_asgp4_trigger_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 0 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 0 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_asgp4_trigger_encode(
     const cubeacp_asgp4_trigger_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -54,7 +54,7 @@ static inline icd_status_t cubeacp_asgp4_trigger_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_asgp4_trigger_fields(size_t *count)
 {
     *count = 0u;

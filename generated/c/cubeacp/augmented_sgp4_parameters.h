@@ -5,7 +5,7 @@
 
 /**
  * @file
- * Augmented-SGP4 Parameters: configuration, set by telecommand 28, got by telemetry 227, 30 bytes. Table 209.
+ * Augmented-SGP4 Parameters: configuration, set by telecommand 28, read by telemetry 227, 30 bytes. Table 209.
  * Settings of the SGP4 that GPS measurements augment.
  */
 
@@ -16,7 +16,7 @@
 #define CUBEACP_AUGMENTED_SGP4_PARAMETERS_SET_ID 28u
 /** Id of the telemetry that gets it. */
 #define CUBEACP_AUGMENTED_SGP4_PARAMETERS_GET_ID 227u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_AUGMENTED_SGP4_PARAMETERS_LENGTH 30u
 
 /** Raw values. */
@@ -118,13 +118,13 @@ typedef struct {
     uint16_t min_samples;
 } cubeacp_augmented_sgp4_parameters_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_augmented_sgp4_parameters_init(cubeacp_augmented_sgp4_parameters_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 30 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 30 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_decode(
     cubeacp_augmented_sgp4_parameters_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -153,7 +153,7 @@ static inline icd_status_t cubeacp_augmented_sgp4_parameters_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 30 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 30 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_encode(
     const cubeacp_augmented_sgp4_parameters_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -182,7 +182,7 @@ static inline icd_status_t cubeacp_augmented_sgp4_parameters_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_augmented_sgp4_parameters_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -215,7 +215,7 @@ static inline int32_t cubeacp_augmented_sgp4_parameters_incl_coefficient_milli(
     return message->incl_coefficient;
 }
 
-/** Sets Incl. coefficient in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Incl. coefficient in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_incl_coefficient_milli(
     cubeacp_augmented_sgp4_parameters_t *message,
     int32_t value)
@@ -234,7 +234,7 @@ static inline int32_t cubeacp_augmented_sgp4_parameters_raan_coefficient_milli(
     return message->raan_coefficient;
 }
 
-/** Sets Raan coefficient in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Raan coefficient in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_raan_coefficient_milli(
     cubeacp_augmented_sgp4_parameters_t *message,
     int32_t value)
@@ -253,7 +253,7 @@ static inline int32_t cubeacp_augmented_sgp4_parameters_ecc_coefficient_milli(
     return message->ecc_coefficient;
 }
 
-/** Sets Ecc coefficient in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Ecc coefficient in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_ecc_coefficient_milli(
     cubeacp_augmented_sgp4_parameters_t *message,
     int32_t value)
@@ -272,7 +272,7 @@ static inline int32_t cubeacp_augmented_sgp4_parameters_aop_coefficient_milli(
     return message->aop_coefficient;
 }
 
-/** Sets Aop coefficient in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Aop coefficient in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_aop_coefficient_milli(
     cubeacp_augmented_sgp4_parameters_t *message,
     int32_t value)
@@ -291,7 +291,7 @@ static inline int32_t cubeacp_augmented_sgp4_parameters_time_coefficient_milli(
     return message->time_coefficient;
 }
 
-/** Sets Time coefficient in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Time coefficient in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_time_coefficient_milli(
     cubeacp_augmented_sgp4_parameters_t *message,
     int32_t value)
@@ -310,7 +310,7 @@ static inline int32_t cubeacp_augmented_sgp4_parameters_pos_coefficient_milli(
     return message->pos_coefficient;
 }
 
-/** Sets Pos coefficient in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Pos coefficient in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_pos_coefficient_milli(
     cubeacp_augmented_sgp4_parameters_t *message,
     int32_t value)
@@ -329,7 +329,7 @@ static inline int32_t cubeacp_augmented_sgp4_parameters_maximum_position_error_m
     return message->maximum_position_error * INT32_C(100);
 }
 
-/** Sets Maximum position error in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Maximum position error in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_maximum_position_error_milli(
     cubeacp_augmented_sgp4_parameters_t *message,
     int32_t value)
@@ -348,7 +348,7 @@ static inline int32_t cubeacp_augmented_sgp4_parameters_position_sd_milli(
     return message->position_sd * INT32_C(100);
 }
 
-/** Sets Position sd in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Position sd in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_position_sd_milli(
     cubeacp_augmented_sgp4_parameters_t *message,
     int32_t value)
@@ -367,7 +367,7 @@ static inline int32_t cubeacp_augmented_sgp4_parameters_velocity_sd_milli(
     return message->velocity_sd * INT32_C(10);
 }
 
-/** Sets Velocity sd in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Velocity sd in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_velocity_sd_milli(
     cubeacp_augmented_sgp4_parameters_t *message,
     int32_t value)
@@ -386,7 +386,7 @@ static inline int32_t cubeacp_augmented_sgp4_parameters_time_gain_milli(
     return message->time_gain * INT32_C(10);
 }
 
-/** Sets Time gain in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Time gain in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_time_gain_milli(
     cubeacp_augmented_sgp4_parameters_t *message,
     int32_t value)
@@ -405,7 +405,7 @@ static inline int32_t cubeacp_augmented_sgp4_parameters_max_lag_milli(
     return message->max_lag * INT32_C(10);
 }
 
-/** Sets Max. lag in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Max. lag in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_max_lag_milli(
     cubeacp_augmented_sgp4_parameters_t *message,
     int32_t value)
@@ -426,7 +426,9 @@ static inline double cubeacp_augmented_sgp4_parameters_incl_coefficient_physical
     return icdgen_quotient(message->incl_coefficient, 1000);
 }
 
-/** Sets Incl. coefficient, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Incl. coefficient, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_incl_coefficient_physical(
     cubeacp_augmented_sgp4_parameters_t *message,
     double value)
@@ -441,7 +443,7 @@ static inline double cubeacp_augmented_sgp4_parameters_raan_coefficient_physical
     return icdgen_quotient(message->raan_coefficient, 1000);
 }
 
-/** Sets Raan coefficient, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Raan coefficient, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_raan_coefficient_physical(
     cubeacp_augmented_sgp4_parameters_t *message,
     double value)
@@ -456,7 +458,7 @@ static inline double cubeacp_augmented_sgp4_parameters_ecc_coefficient_physical(
     return icdgen_quotient(message->ecc_coefficient, 1000);
 }
 
-/** Sets Ecc coefficient, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Ecc coefficient, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_ecc_coefficient_physical(
     cubeacp_augmented_sgp4_parameters_t *message,
     double value)
@@ -471,7 +473,7 @@ static inline double cubeacp_augmented_sgp4_parameters_aop_coefficient_physical(
     return icdgen_quotient(message->aop_coefficient, 1000);
 }
 
-/** Sets Aop coefficient, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Aop coefficient, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_aop_coefficient_physical(
     cubeacp_augmented_sgp4_parameters_t *message,
     double value)
@@ -486,7 +488,7 @@ static inline double cubeacp_augmented_sgp4_parameters_time_coefficient_physical
     return icdgen_quotient(message->time_coefficient, 1000);
 }
 
-/** Sets Time coefficient, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Time coefficient, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_time_coefficient_physical(
     cubeacp_augmented_sgp4_parameters_t *message,
     double value)
@@ -501,7 +503,7 @@ static inline double cubeacp_augmented_sgp4_parameters_pos_coefficient_physical(
     return icdgen_quotient(message->pos_coefficient, 1000);
 }
 
-/** Sets Pos coefficient, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Pos coefficient, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_pos_coefficient_physical(
     cubeacp_augmented_sgp4_parameters_t *message,
     double value)
@@ -516,7 +518,10 @@ static inline double cubeacp_augmented_sgp4_parameters_maximum_position_error_ph
     return icdgen_quotient(message->maximum_position_error, 10);
 }
 
-/** Sets Maximum position error, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Maximum position error, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_maximum_position_error_physical(
     cubeacp_augmented_sgp4_parameters_t *message,
     double value)
@@ -531,7 +536,7 @@ static inline double cubeacp_augmented_sgp4_parameters_xp_coefficient_physical(
     return icdgen_quotient(message->xp_coefficient, 10000000);
 }
 
-/** Sets xp coefficient, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set xp coefficient, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_xp_coefficient_physical(
     cubeacp_augmented_sgp4_parameters_t *message,
     double value)
@@ -546,7 +551,7 @@ static inline double cubeacp_augmented_sgp4_parameters_yp_coefficient_physical(
     return icdgen_quotient(message->yp_coefficient, 10000000);
 }
 
-/** Sets yp coefficient, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set yp coefficient, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_yp_coefficient_physical(
     cubeacp_augmented_sgp4_parameters_t *message,
     double value)
@@ -561,7 +566,7 @@ static inline double cubeacp_augmented_sgp4_parameters_position_sd_physical(
     return icdgen_quotient(message->position_sd, 10);
 }
 
-/** Sets Position sd, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Position sd, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_position_sd_physical(
     cubeacp_augmented_sgp4_parameters_t *message,
     double value)
@@ -576,7 +581,7 @@ static inline double cubeacp_augmented_sgp4_parameters_velocity_sd_physical(
     return icdgen_quotient(message->velocity_sd, 100);
 }
 
-/** Sets Velocity sd, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Velocity sd, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_velocity_sd_physical(
     cubeacp_augmented_sgp4_parameters_t *message,
     double value)
@@ -591,7 +596,7 @@ static inline double cubeacp_augmented_sgp4_parameters_time_gain_physical(
     return icdgen_quotient(message->time_gain, 100);
 }
 
-/** Sets Time gain, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Time gain, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_time_gain_physical(
     cubeacp_augmented_sgp4_parameters_t *message,
     double value)
@@ -606,7 +611,7 @@ static inline double cubeacp_augmented_sgp4_parameters_max_lag_physical(
     return icdgen_quotient(message->max_lag, 100);
 }
 
-/** Sets Max. lag, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Max. lag, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_max_lag_physical(
     cubeacp_augmented_sgp4_parameters_t *message,
     double value)

@@ -15,7 +15,7 @@
 
 /** Id of the telecommand. */
 #define CUBEACP_CLEAR_ERRORS_ID 12u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_CLEAR_ERRORS_LENGTH 1u
 
 /** Raw values. */
@@ -34,13 +34,13 @@ typedef struct {
     bool hk_error_flags;
 } cubeacp_clear_errors_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_clear_errors_init(cubeacp_clear_errors_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 1 byte; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 1 byte. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_clear_errors_decode(
     cubeacp_clear_errors_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -54,7 +54,7 @@ static inline icd_status_t cubeacp_clear_errors_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 1 byte, reserved bits 0; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 1 byte, reserved bits 0. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_clear_errors_encode(
     const cubeacp_clear_errors_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -67,7 +67,7 @@ static inline icd_status_t cubeacp_clear_errors_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_clear_errors_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

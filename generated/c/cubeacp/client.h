@@ -5,7 +5,7 @@
 
 /**
  * @file
- * CubeACP: a client that takes its messages only.
+ * CubeACP: client with one function per message.
  */
 
 #include "link.h"
@@ -126,24 +126,27 @@
 #include "wheel_speed.h"
 #include "wheel_speed_commands.h"
 
-/** A client that sends and requests messages of CubeACP only; `client` is for the functions of icd_client_t. */
+/**
+ * A client that accepts only messages of CubeACP at compile time.
+ * Pass `&client->client` to the icd_client_...() functions.
+ */
 typedef struct {
     icd_client_t client;
 } cubeacp_client_t;
 
-/** Begins a client: see icd_client_uart(). CUBEACP_CLIENT_BYTES are enough. */
+/** Initialize a client with a buffer of CUBEACP_CLIENT_BYTES bytes. See icd_client_uart(). */
 static inline icd_status_t cubeacp_client_uart(cubeacp_client_t *client, uint8_t *buffer, size_t size)
 {
     return icd_client_uart(&client->client, cubeacp_link(), buffer, size);
 }
 
-/** Begins a client: see icd_client_i2c(). CUBEACP_CLIENT_BYTES are enough. */
+/** Initialize a client with a buffer of CUBEACP_CLIENT_BYTES bytes. See icd_client_i2c(). */
 static inline icd_status_t cubeacp_client_i2c(cubeacp_client_t *client, uint8_t *buffer, size_t size)
 {
     return icd_client_i2c(&client->client, cubeacp_link(), buffer, size);
 }
 
-/** Begins a client: see icd_client_can(). CUBEACP_CLIENT_BYTES are enough. */
+/** Initialize a client with a buffer of CUBEACP_CLIENT_BYTES bytes. See icd_client_can(). */
 static inline icd_status_t cubeacp_client_can(cubeacp_client_t *client, uint8_t address, uint8_t *buffer, size_t size)
 {
     return icd_client_can(&client->client, cubeacp_link(), address, buffer, size);
@@ -151,7 +154,7 @@ static inline icd_status_t cubeacp_client_can(cubeacp_client_t *client, uint8_t 
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET)
 /**
- * Sends Reset, as icd_client_send().
+ * Send Reset. See icd_client_send().
  * Dangerous: The program that runs is stopped, and what it has not saved is lost.
  */
 static inline icd_status_t cubeacp_send_reset(
@@ -171,7 +174,7 @@ static inline icd_status_t cubeacp_send_reset(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET_LOG_POINTER)
-/** Sends Reset Log Pointer, as icd_client_send(). */
+/** Send Reset Log Pointer. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_reset_log_pointer(
     cubeacp_client_t *client,
     uint32_t now,
@@ -191,7 +194,7 @@ static inline icd_status_t cubeacp_send_reset_log_pointer(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADVANCE_LOG_POINTER)
-/** Sends Advance Log Pointer, as icd_client_send(). */
+/** Send Advance Log Pointer. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_advance_log_pointer(
     cubeacp_client_t *client,
     uint32_t now,
@@ -211,7 +214,7 @@ static inline icd_status_t cubeacp_send_advance_log_pointer(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET_BOOT_REGISTERS)
-/** Sends Reset Boot Registers, as icd_client_send(). */
+/** Send Reset Boot Registers. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_reset_boot_registers(
     cubeacp_client_t *client,
     uint32_t now,
@@ -232,7 +235,7 @@ static inline icd_status_t cubeacp_send_reset_boot_registers(
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FORMAT_SD_CARD)
 /**
- * Sends Format SD card, as icd_client_send().
+ * Send Format SD card. See icd_client_send().
  * Dangerous: All files on the SD card are lost.
  */
 static inline icd_status_t cubeacp_send_format_sd_card(
@@ -261,7 +264,7 @@ static inline icd_status_t cubeacp_send_format_sd_card(
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ERASE_FILE)
 /**
- * Sends Erase File, as icd_client_send().
+ * Send Erase File. See icd_client_send().
  * Dangerous: The file is lost; all files are with Erase All.
  */
 static inline icd_status_t cubeacp_send_erase_file(
@@ -289,7 +292,7 @@ static inline icd_status_t cubeacp_send_erase_file(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_LOAD_FILE_DOWNLOAD_BLOCK)
-/** Sends Load File Download Block, as icd_client_send(). */
+/** Send Load File Download Block. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_load_file_download_block(
     cubeacp_client_t *client,
     uint32_t now,
@@ -315,7 +318,7 @@ static inline icd_status_t cubeacp_send_load_file_download_block(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADVANCE_FILE_LIST_READ_POINTER)
-/** Sends Advance File List Read Pointer, as icd_client_send(). */
+/** Send Advance File List Read Pointer. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_advance_file_list_read_pointer(
     cubeacp_client_t *client,
     uint32_t now,
@@ -336,7 +339,7 @@ static inline icd_status_t cubeacp_send_advance_file_list_read_pointer(
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_INITIATE_FILE_UPLOAD)
 /**
- * Sends Initiate File Upload, as icd_client_send().
+ * Send Initiate File Upload. See icd_client_send().
  * Dangerous: The program in the destination is lost.
  */
 static inline icd_status_t cubeacp_send_initiate_file_upload(
@@ -364,7 +367,7 @@ static inline icd_status_t cubeacp_send_initiate_file_upload(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FILE_UPLOAD_PACKET)
-/** Sends File Upload Packet, as icd_client_send(). */
+/** Send File Upload Packet. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_file_upload_packet(
     cubeacp_client_t *client,
     uint32_t now,
@@ -390,7 +393,7 @@ static inline icd_status_t cubeacp_send_file_upload_packet(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FINALIZE_UPLOAD_BLOCK)
-/** Sends Finalize Upload Block, as icd_client_send(). */
+/** Send Finalize Upload Block. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_finalize_upload_block(
     cubeacp_client_t *client,
     uint32_t now,
@@ -416,7 +419,7 @@ static inline icd_status_t cubeacp_send_finalize_upload_block(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET_UPLOAD_BLOCK)
-/** Sends Reset Upload Block, as icd_client_send(). */
+/** Send Reset Upload Block. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_reset_upload_block(
     cubeacp_client_t *client,
     uint32_t now,
@@ -436,7 +439,7 @@ static inline icd_status_t cubeacp_send_reset_upload_block(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET_FILE_LIST_READ_POINTER)
-/** Sends Reset File List Read Pointer, as icd_client_send(). */
+/** Send Reset File List Read Pointer. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_reset_file_list_read_pointer(
     cubeacp_client_t *client,
     uint32_t now,
@@ -456,7 +459,7 @@ static inline icd_status_t cubeacp_send_reset_file_list_read_pointer(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_INITIATE_DOWNLOAD_BURST)
-/** Sends Initiate Download Burst, as icd_client_send(). */
+/** Send Initiate Download Burst. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_initiate_download_burst(
     cubeacp_client_t *client,
     uint32_t now,
@@ -482,7 +485,7 @@ static inline icd_status_t cubeacp_send_initiate_download_burst(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CACHE_ENABLED_STATE)
-/** Sends Cache enabled state, as icd_client_send(). */
+/** Send Cache enabled state. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_cache_enabled_state(
     cubeacp_client_t *client,
     uint32_t now,
@@ -508,7 +511,7 @@ static inline icd_status_t cubeacp_send_cache_enabled_state(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SRAM_SCRUB_PARAMETERS)
-/** Sends SRAM Scrub Parameters, as icd_client_send(). */
+/** Send SRAM Scrub Parameters. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_sram_scrub_parameters(
     cubeacp_client_t *client,
     uint32_t now,
@@ -534,7 +537,7 @@ static inline icd_status_t cubeacp_send_sram_scrub_parameters(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CURRENT_UNIX_TIME)
-/** Sends Current Unix Time, as icd_client_send(). */
+/** Send Current Unix Time. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_current_unix_time(
     cubeacp_client_t *client,
     uint32_t now,
@@ -560,7 +563,7 @@ static inline icd_status_t cubeacp_send_current_unix_time(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_UNIX_TIME_SAVE_TO_FLASH)
-/** Sends Unix Time Save to Flash, as icd_client_send(). */
+/** Send Unix Time Save to Flash. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_unix_time_save_to_flash(
     cubeacp_client_t *client,
     uint32_t now,
@@ -586,7 +589,7 @@ static inline icd_status_t cubeacp_send_unix_time_save_to_flash(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_1)
-/** Sends Hole Map 1, as icd_client_send(). */
+/** Send Hole Map 1. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_hole_map_1(
     cubeacp_client_t *client,
     uint32_t now,
@@ -612,7 +615,7 @@ static inline icd_status_t cubeacp_send_hole_map_1(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_2)
-/** Sends Hole Map 2, as icd_client_send(). */
+/** Send Hole Map 2. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_hole_map_2(
     cubeacp_client_t *client,
     uint32_t now,
@@ -638,7 +641,7 @@ static inline icd_status_t cubeacp_send_hole_map_2(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_3)
-/** Sends Hole Map 3, as icd_client_send(). */
+/** Send Hole Map 3. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_hole_map_3(
     cubeacp_client_t *client,
     uint32_t now,
@@ -664,7 +667,7 @@ static inline icd_status_t cubeacp_send_hole_map_3(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_4)
-/** Sends Hole Map 4, as icd_client_send(). */
+/** Send Hole Map 4. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_hole_map_4(
     cubeacp_client_t *client,
     uint32_t now,
@@ -690,7 +693,7 @@ static inline icd_status_t cubeacp_send_hole_map_4(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_5)
-/** Sends Hole Map 5, as icd_client_send(). */
+/** Send Hole Map 5. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_hole_map_5(
     cubeacp_client_t *client,
     uint32_t now,
@@ -716,7 +719,7 @@ static inline icd_status_t cubeacp_send_hole_map_5(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_6)
-/** Sends Hole Map 6, as icd_client_send(). */
+/** Send Hole Map 6. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_hole_map_6(
     cubeacp_client_t *client,
     uint32_t now,
@@ -742,7 +745,7 @@ static inline icd_status_t cubeacp_send_hole_map_6(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_7)
-/** Sends Hole Map 7, as icd_client_send(). */
+/** Send Hole Map 7. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_hole_map_7(
     cubeacp_client_t *client,
     uint32_t now,
@@ -768,7 +771,7 @@ static inline icd_status_t cubeacp_send_hole_map_7(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_8)
-/** Sends Hole Map 8, as icd_client_send(). */
+/** Send Hole Map 8. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_hole_map_8(
     cubeacp_client_t *client,
     uint32_t now,
@@ -795,7 +798,7 @@ static inline icd_status_t cubeacp_send_hole_map_8(
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_DEPLOY_MAGNETOMETER_BOOM)
 /**
- * Sends Deploy Magnetometer Boom, as icd_client_send().
+ * Send Deploy Magnetometer Boom. See icd_client_send().
  * Dangerous: The boom stays deployed.
  */
 static inline icd_status_t cubeacp_send_deploy_magnetometer_boom(
@@ -823,7 +826,7 @@ static inline icd_status_t cubeacp_send_deploy_magnetometer_boom(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_ADCS_RUN_MODE)
-/** Sends ADCS Run Mode, as icd_client_send(). */
+/** Send ADCS Run Mode. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_adcs_run_mode(
     cubeacp_client_t *client,
     uint32_t now,
@@ -849,7 +852,7 @@ static inline icd_status_t cubeacp_send_set_adcs_run_mode(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CLEAR_ERRORS)
-/** Sends Clear Errors, as icd_client_send(). */
+/** Send Clear Errors. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_clear_errors(
     cubeacp_client_t *client,
     uint32_t now,
@@ -875,7 +878,7 @@ static inline icd_status_t cubeacp_send_clear_errors(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_ATTITUDE_CONTROL_MODE)
-/** Sends Set Attitude Control Mode, as icd_client_send(). */
+/** Send Set Attitude Control Mode. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_attitude_control_mode(
     cubeacp_client_t *client,
     uint32_t now,
@@ -901,7 +904,7 @@ static inline icd_status_t cubeacp_send_set_attitude_control_mode(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_ATTITUDE_ESTIMATION_MODE)
-/** Sends Set Attitude Estimation Mode, as icd_client_send(). */
+/** Send Set Attitude Estimation Mode. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_attitude_estimation_mode(
     cubeacp_client_t *client,
     uint32_t now,
@@ -927,7 +930,7 @@ static inline icd_status_t cubeacp_send_set_attitude_estimation_mode(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_MAGNETORQUER_OUTPUT)
-/** Sends Set Magnetorquer Output, as icd_client_send(). */
+/** Send Set Magnetorquer Output. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_magnetorquer_output(
     cubeacp_client_t *client,
     uint32_t now,
@@ -953,7 +956,7 @@ static inline icd_status_t cubeacp_send_set_magnetorquer_output(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_WHEEL_SPEED)
-/** Sends Set Wheel Speed, as icd_client_send(). */
+/** Send Set Wheel Speed. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_wheel_speed(
     cubeacp_client_t *client,
     uint32_t now,
@@ -979,7 +982,7 @@ static inline icd_status_t cubeacp_send_set_wheel_speed(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_TRIGGER_ADCS_LOOP)
-/** Sends Trigger ADCS Loop, as icd_client_send(). */
+/** Send Trigger ADCS Loop. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_trigger_adcs_loop(
     cubeacp_client_t *client,
     uint32_t now,
@@ -999,7 +1002,7 @@ static inline icd_status_t cubeacp_send_trigger_adcs_loop(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_TRIGGER_SIMULATED_LOOP)
-/** Sends Trigger ADCS Loop with Simulated Sensor Data, as icd_client_send(). */
+/** Send Trigger ADCS Loop with Simulated Sensor Data. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_trigger_simulated_loop(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1025,7 +1028,7 @@ static inline icd_status_t cubeacp_send_trigger_simulated_loop(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ASGP4_RUN_MODE)
-/** Sends ASGP4 Run Mode, as icd_client_send(). */
+/** Send ASGP4 Run Mode. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_asgp4_run_mode(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1051,7 +1054,7 @@ static inline icd_status_t cubeacp_send_asgp4_run_mode(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ASGP4_TRIGGER)
-/** Sends ASGP4 Trigger, as icd_client_send(). */
+/** Send ASGP4 Trigger. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_asgp4_trigger(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1071,7 +1074,7 @@ static inline icd_status_t cubeacp_send_asgp4_trigger(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_MODE_OF_MAGNETOMETER_OPERATION)
-/** Sends Set Mode of Magnetometer Operation, as icd_client_send(). */
+/** Send Set Mode of Magnetometer Operation. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_mode_of_magnetometer_operation(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1097,7 +1100,7 @@ static inline icd_status_t cubeacp_send_set_mode_of_magnetometer_operation(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CONVERT_TO_JPG_FILE)
-/** Sends Convert to JPG file, as icd_client_send(). */
+/** Send Convert to JPG file. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_convert_to_jpg_file(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1123,7 +1126,7 @@ static inline icd_status_t cubeacp_send_convert_to_jpg_file(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SAVE_CONFIGURATION)
-/** Sends Save Configuration, as icd_client_send(). */
+/** Send Save Configuration. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_save_configuration(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1143,7 +1146,7 @@ static inline icd_status_t cubeacp_send_save_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SAVE_ORBIT_PARAMETERS)
-/** Sends Save Orbit Parameters, as icd_client_send(). */
+/** Send Save Orbit Parameters. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_save_orbit_parameters(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1163,7 +1166,7 @@ static inline icd_status_t cubeacp_send_save_orbit_parameters(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SAVE_IMAGE)
-/** Sends Save Image, as icd_client_send(). */
+/** Send Save Image. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_save_image(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1189,7 +1192,7 @@ static inline icd_status_t cubeacp_send_save_image(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_MAGNETORQUER_CONFIGURATION)
-/** Sends Set Magnetorquer Configuration, as icd_client_send(). */
+/** Send Set Magnetorquer Configuration. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_magnetorquer_configuration(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1215,7 +1218,7 @@ static inline icd_status_t cubeacp_send_set_magnetorquer_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_WHEEL_CONFIGURATION)
-/** Sends Set Wheel Configuration, as icd_client_send(). */
+/** Send Set Wheel Configuration. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_wheel_configuration(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1241,7 +1244,7 @@ static inline icd_status_t cubeacp_send_set_wheel_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_RATE_GYRO_CONFIGURATION)
-/** Sends Set Rate Gyro Configuration, as icd_client_send(). */
+/** Send Set Rate Gyro Configuration. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_rate_gyro_configuration(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1267,7 +1270,7 @@ static inline icd_status_t cubeacp_send_set_rate_gyro_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CSS_CONFIGURATION)
-/** Sends CSS Configuration, as icd_client_send(). */
+/** Send CSS Configuration. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_css_configuration(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1293,7 +1296,7 @@ static inline icd_status_t cubeacp_send_css_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_POWER_CONTROL)
-/** Sends ADCS Power Control, as icd_client_send(). */
+/** Send ADCS Power Control. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_adcs_power_control(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1319,7 +1322,7 @@ static inline icd_status_t cubeacp_send_adcs_power_control(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_COMMANDED_ATTITUDE_ANGLES)
-/** Sends Commanded Attitude Angles, as icd_client_send(). */
+/** Send Commanded Attitude Angles. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_commanded_attitude_angles(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1345,7 +1348,7 @@ static inline icd_status_t cubeacp_send_commanded_attitude_angles(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_TRACKING_CONTROLLER_TARGET_REFERENCE)
-/** Sends Tracking Controller Target Reference, as icd_client_send(). */
+/** Send Tracking Controller Target Reference. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_tracking_controller_target_reference(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1371,7 +1374,7 @@ static inline icd_status_t cubeacp_send_tracking_controller_target_reference(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_STAR_TRACKER_CONFIGURATION)
-/** Sends Set Star Tracker Configuration, as icd_client_send(). */
+/** Send Set Star Tracker Configuration. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_star_tracker_configuration(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1397,7 +1400,7 @@ static inline icd_status_t cubeacp_send_set_star_tracker_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESENSE_CONFIGURATION)
-/** Sends CubeSense Configuration, as icd_client_send(). */
+/** Send CubeSense Configuration. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_cubesense_configuration(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1423,7 +1426,7 @@ static inline icd_status_t cubeacp_send_cubesense_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MAGNETOMETER_CONFIGURATION)
-/** Sends Magnetometer Configuration, as icd_client_send(). */
+/** Send Magnetometer Configuration. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_magnetometer_configuration(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1449,7 +1452,7 @@ static inline icd_status_t cubeacp_send_magnetometer_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_REDUNDANT_MAG_CONFIGURATION)
-/** Sends Redundant Magnetometer Configuration, as icd_client_send(). */
+/** Send Redundant Magnetometer Configuration. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_redundant_mag_configuration(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1475,7 +1478,7 @@ static inline icd_status_t cubeacp_send_redundant_mag_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_CONFIGURATION)
-/** Sends ADCS Configuration, as icd_client_send(). */
+/** Send ADCS Configuration. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_adcs_configuration(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1501,7 +1504,7 @@ static inline icd_status_t cubeacp_send_adcs_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SGP4_ORBIT_PARAMETERS)
-/** Sends SGP4 Orbit Parameters, as icd_client_send(). */
+/** Send SGP4 Orbit Parameters. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_sgp4_orbit_parameters(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1527,7 +1530,7 @@ static inline icd_status_t cubeacp_send_sgp4_orbit_parameters(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_DETUMBLING_CONTROL_PARAMETERS)
-/** Sends Set Detumbling Control Parameters, as icd_client_send(). */
+/** Send Set Detumbling Control Parameters. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_detumbling_control_parameters(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1553,7 +1556,7 @@ static inline icd_status_t cubeacp_send_set_detumbling_control_parameters(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_Y_WHEEL_CONTROL_PARAMETERS)
-/** Sends Set Y-Wheel Control Parameters, as icd_client_send(). */
+/** Send Set Y-Wheel Control Parameters. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_y_wheel_control_parameters(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1579,7 +1582,7 @@ static inline icd_status_t cubeacp_send_set_y_wheel_control_parameters(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_REACTION_WHEEL_CONTROL_PARAMETERS)
-/** Sends Set Reaction Wheel Control Parameters, as icd_client_send(). */
+/** Send Set Reaction Wheel Control Parameters. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_reaction_wheel_control_parameters(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1605,7 +1608,7 @@ static inline icd_status_t cubeacp_send_set_reaction_wheel_control_parameters(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS)
-/** Sends Set Tracking Controller Gain Parameters, as icd_client_send(). */
+/** Send Set Tracking Controller Gain Parameters. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_tracking_controller_gain_parameters(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1631,7 +1634,7 @@ static inline icd_status_t cubeacp_send_set_tracking_controller_gain_parameters(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MOMENT_OF_INERTIA_MATRIX)
-/** Sends Moment of Inertia Matrix, as icd_client_send(). */
+/** Send Moment of Inertia Matrix. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_moment_of_inertia_matrix(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1657,7 +1660,7 @@ static inline icd_status_t cubeacp_send_moment_of_inertia_matrix(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATION_PARAMETERS)
-/** Sends Estimation Parameters, as icd_client_send(). */
+/** Send Estimation Parameters. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_estimation_parameters(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1683,7 +1686,7 @@ static inline icd_status_t cubeacp_send_estimation_parameters(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_SYSTEM_CONFIGURATION)
-/** Sends ADCS System Configuration, as icd_client_send(). */
+/** Send ADCS System Configuration. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_adcs_system_configuration(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1709,7 +1712,7 @@ static inline icd_status_t cubeacp_send_adcs_system_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS)
-/** Sends User-coded Controller and Estimator Parameters, as icd_client_send(). */
+/** Send User-coded Controller and Estimator Parameters. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_user_coded_controller_and_estimator_parameters(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1738,7 +1741,7 @@ static inline icd_status_t cubeacp_send_user_coded_controller_and_estimator_para
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_AUGMENTED_SGP4_PARAMETERS)
-/** Sends Augmented-SGP4 Parameters, as icd_client_send(). */
+/** Send Augmented-SGP4 Parameters. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_augmented_sgp4_parameters(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1764,7 +1767,7 @@ static inline icd_status_t cubeacp_send_augmented_sgp4_parameters(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SD_LOG1_CONFIGURATION)
-/** Sends SD Log1 Configuration, as icd_client_send(). */
+/** Send SD Log1 Configuration. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_sd_log1_configuration(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1790,7 +1793,7 @@ static inline icd_status_t cubeacp_send_sd_log1_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SD_LOG2_CONFIGURATION)
-/** Sends SD Log2 Configuration, as icd_client_send(). */
+/** Send SD Log2 Configuration. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_sd_log2_configuration(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1816,7 +1819,7 @@ static inline icd_status_t cubeacp_send_sd_log2_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_UART_LOG_CONFIGURATION)
-/** Sends UART Log Configuration, as icd_client_send(). */
+/** Send UART Log Configuration. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_uart_log_configuration(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1842,7 +1845,7 @@ static inline icd_status_t cubeacp_send_uart_log_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_INERTIAL_POINTING_REFERENCE_VECTOR)
-/** Sends Inertial Pointing Reference Vector, as icd_client_send(). */
+/** Send Inertial Pointing Reference Vector. See icd_client_send(). */
 static inline icd_status_t cubeacp_send_inertial_pointing_reference_vector(
     cubeacp_client_t *client,
     uint32_t now,
@@ -1868,13 +1871,13 @@ static inline icd_status_t cubeacp_send_inertial_pointing_reference_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_IDENTIFICATION)
-/** Requests Identification, as icd_client_request(). */
+/** Request Identification. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_identification(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_IDENTIFICATION_ID);
 }
 
-/** Reads Identification from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Identification from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_identification(common_identification_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, COMMON_IDENTIFICATION_ID)) {
@@ -1885,13 +1888,13 @@ static inline icd_status_t cubeacp_receive_identification(common_identification_
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_BOOT_AND_RUNNING_PROGRAM_STATUS)
-/** Requests Boot And Running Program Status, as icd_client_request(). */
+/** Request Boot And Running Program Status. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_boot_and_running_program_status(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_ID);
 }
 
-/** Reads Boot And Running Program Status from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Boot And Running Program Status from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_boot_and_running_program_status(
     common_boot_and_running_program_status_t *message,
     const icd_event_t *event)
@@ -1904,13 +1907,13 @@ static inline icd_status_t cubeacp_receive_boot_and_running_program_status(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_BOOT_INDEX_AND_STATUS)
-/** Requests Boot Index and Status, as icd_client_request(). */
+/** Request Boot Index and Status. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_boot_index_and_status(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BOOT_INDEX_AND_STATUS_ID);
 }
 
-/** Reads Boot Index and Status from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Boot Index and Status from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_boot_index_and_status(
     common_boot_index_and_status_t *message,
     const icd_event_t *event)
@@ -1923,13 +1926,13 @@ static inline icd_status_t cubeacp_receive_boot_index_and_status(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_LAST_LOGGED_EVENT)
-/** Requests Last Logged Event, as icd_client_request(). */
+/** Request Last Logged Event. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_last_logged_event(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_LAST_LOGGED_EVENT_ID);
 }
 
-/** Reads Last Logged Event from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Last Logged Event from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_last_logged_event(
     common_last_logged_event_t *message,
     const icd_event_t *event)
@@ -1942,13 +1945,13 @@ static inline icd_status_t cubeacp_receive_last_logged_event(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SRAM_LATCHUP_COUNTERS)
-/** Requests SRAM Latchup counters, as icd_client_request(). */
+/** Request SRAM Latchup counters. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_sram_latchup_counters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SRAM_LATCHUP_COUNTERS_ID);
 }
 
-/** Reads SRAM Latchup counters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode SRAM Latchup counters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_sram_latchup_counters(
     common_sram_latchup_counters_t *message,
     const icd_event_t *event)
@@ -1961,13 +1964,13 @@ static inline icd_status_t cubeacp_receive_sram_latchup_counters(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_EDAC_ERROR_COUNTERS)
-/** Requests EDAC Error Counters, as icd_client_request(). */
+/** Request EDAC Error Counters. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_edac_error_counters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_EDAC_ERROR_COUNTERS_ID);
 }
 
-/** Reads EDAC Error Counters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode EDAC Error Counters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_edac_error_counters(
     common_edac_error_counters_t *message,
     const icd_event_t *event)
@@ -1980,13 +1983,13 @@ static inline icd_status_t cubeacp_receive_edac_error_counters(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_COMMUNICATION_STATUS)
-/** Requests Communication Status, as icd_client_request(). */
+/** Request Communication Status. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_communication_status(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_COMMUNICATION_STATUS_ID);
 }
 
-/** Reads Communication Status from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Communication Status from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_communication_status(
     common_communication_status_t *message,
     const icd_event_t *event)
@@ -1999,13 +2002,13 @@ static inline icd_status_t cubeacp_receive_communication_status(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SD_CARD_FORMAT_ERASE_PROGRESS)
-/** Requests SD card format/erase progress, as icd_client_request(). */
+/** Request SD card format/erase progress. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_sd_card_format_erase_progress(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_ID);
 }
 
-/** Reads SD card format/erase progress from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode SD card format/erase progress from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_sd_card_format_erase_progress(
     common_sd_card_format_erase_progress_t *message,
     const icd_event_t *event)
@@ -2018,13 +2021,13 @@ static inline icd_status_t cubeacp_receive_sd_card_format_erase_progress(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_TELECOMMAND_ACKNOWLEDGE)
-/** Requests Telecommand Acknowledge, as icd_client_request(). */
+/** Request Telecommand Acknowledge. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_telecommand_acknowledge(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_TELECOMMAND_ACKNOWLEDGE_ID);
 }
 
-/** Reads Telecommand Acknowledge from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Telecommand Acknowledge from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_telecommand_acknowledge(
     common_telecommand_acknowledge_t *message,
     const icd_event_t *event)
@@ -2037,7 +2040,7 @@ static inline icd_status_t cubeacp_receive_telecommand_acknowledge(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS)
-/** Requests File Download Buffer with File Contents, as icd_client_request(). */
+/** Request File Download Buffer with File Contents. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_file_download_buffer_with_file_contents(
     cubeacp_client_t *client,
     uint32_t now)
@@ -2045,7 +2048,7 @@ static inline icd_status_t cubeacp_request_file_download_buffer_with_file_conten
     return icd_client_request(&client->client, now, COMMON_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS_ID);
 }
 
-/** Reads File Download Buffer with File Contents from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode File Download Buffer with File Contents from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_file_download_buffer_with_file_contents(
     common_file_download_buffer_with_file_contents_t *message,
     const icd_event_t *event)
@@ -2058,13 +2061,13 @@ static inline icd_status_t cubeacp_receive_file_download_buffer_with_file_conten
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_DOWNLOAD_BLOCK_READY)
-/** Requests Download Block Ready, as icd_client_request(). */
+/** Request Download Block Ready. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_download_block_ready(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_DOWNLOAD_BLOCK_READY_ID);
 }
 
-/** Reads Download Block Ready from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Download Block Ready from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_download_block_ready(
     common_download_block_ready_t *message,
     const icd_event_t *event)
@@ -2077,13 +2080,13 @@ static inline icd_status_t cubeacp_receive_download_block_ready(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FILE_INFORMATION)
-/** Requests File Information, as icd_client_request(). */
+/** Request File Information. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_file_information(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_FILE_INFORMATION_ID);
 }
 
-/** Reads File Information from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode File Information from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_file_information(
     common_file_information_t *message,
     const icd_event_t *event)
@@ -2096,13 +2099,13 @@ static inline icd_status_t cubeacp_receive_file_information(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_INITIALIZE_UPLOAD_COMPLETE)
-/** Requests Initialize Upload Complete, as icd_client_request(). */
+/** Request Initialize Upload Complete. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_initialize_upload_complete(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_INITIALIZE_UPLOAD_COMPLETE_ID);
 }
 
-/** Reads Initialize Upload Complete from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Initialize Upload Complete from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_initialize_upload_complete(
     common_initialize_upload_complete_t *message,
     const icd_event_t *event)
@@ -2115,13 +2118,13 @@ static inline icd_status_t cubeacp_receive_initialize_upload_complete(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_UPLOAD_BLOCK_COMPLETE)
-/** Requests Upload Block Complete, as icd_client_request(). */
+/** Request Upload Block Complete. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_upload_block_complete(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_UPLOAD_BLOCK_COMPLETE_ID);
 }
 
-/** Reads Upload Block Complete from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Upload Block Complete from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_upload_block_complete(
     common_upload_block_complete_t *message,
     const icd_event_t *event)
@@ -2134,13 +2137,13 @@ static inline icd_status_t cubeacp_receive_upload_block_complete(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_BLOCK_CHECKSUM)
-/** Requests Block Checksum, as icd_client_request(). */
+/** Request Block Checksum. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_block_checksum(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BLOCK_CHECKSUM_ID);
 }
 
-/** Reads Block Checksum from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Block Checksum from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_block_checksum(common_block_checksum_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, COMMON_BLOCK_CHECKSUM_ID)) {
@@ -2151,13 +2154,13 @@ static inline icd_status_t cubeacp_receive_block_checksum(common_block_checksum_
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CACHE_ENABLED_STATE)
-/** Requests Cache enabled state, as icd_client_request(). */
+/** Request Cache enabled state. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_cache_enabled_state(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_CACHE_ENABLED_STATE_GET_ID);
 }
 
-/** Reads Cache enabled state from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Cache enabled state from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_cache_enabled_state(
     common_cache_enabled_state_t *message,
     const icd_event_t *event)
@@ -2170,13 +2173,13 @@ static inline icd_status_t cubeacp_receive_cache_enabled_state(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SRAM_SCRUB_PARAMETERS)
-/** Requests SRAM Scrub Parameters, as icd_client_request(). */
+/** Request SRAM Scrub Parameters. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_sram_scrub_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SRAM_SCRUB_PARAMETERS_GET_ID);
 }
 
-/** Reads SRAM Scrub Parameters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode SRAM Scrub Parameters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_sram_scrub_parameters(
     common_sram_scrub_parameters_t *message,
     const icd_event_t *event)
@@ -2189,13 +2192,13 @@ static inline icd_status_t cubeacp_receive_sram_scrub_parameters(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CURRENT_UNIX_TIME)
-/** Requests Current Unix Time, as icd_client_request(). */
+/** Request Current Unix Time. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_current_unix_time(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_CURRENT_UNIX_TIME_GET_ID);
 }
 
-/** Reads Current Unix Time from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Current Unix Time from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_current_unix_time(
     common_current_unix_time_t *message,
     const icd_event_t *event)
@@ -2208,13 +2211,13 @@ static inline icd_status_t cubeacp_receive_current_unix_time(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_UNIX_TIME_SAVE_TO_FLASH)
-/** Requests Unix Time Save to Flash, as icd_client_request(). */
+/** Request Unix Time Save to Flash. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_unix_time_save_to_flash(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_UNIX_TIME_SAVE_TO_FLASH_GET_ID);
 }
 
-/** Reads Unix Time Save to Flash from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Unix Time Save to Flash from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_unix_time_save_to_flash(
     common_unix_time_save_to_flash_t *message,
     const icd_event_t *event)
@@ -2227,13 +2230,13 @@ static inline icd_status_t cubeacp_receive_unix_time_save_to_flash(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_1)
-/** Requests Hole Map 1, as icd_client_request(). */
+/** Request Hole Map 1. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_1(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_1_GET_ID);
 }
 
-/** Reads Hole Map 1 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Hole Map 1 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_hole_map_1(common_hole_map_1_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, COMMON_HOLE_MAP_1_GET_ID)) {
@@ -2244,13 +2247,13 @@ static inline icd_status_t cubeacp_receive_hole_map_1(common_hole_map_1_t *messa
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_2)
-/** Requests Hole Map 2, as icd_client_request(). */
+/** Request Hole Map 2. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_2(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_2_GET_ID);
 }
 
-/** Reads Hole Map 2 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Hole Map 2 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_hole_map_2(common_hole_map_2_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, COMMON_HOLE_MAP_2_GET_ID)) {
@@ -2261,13 +2264,13 @@ static inline icd_status_t cubeacp_receive_hole_map_2(common_hole_map_2_t *messa
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_3)
-/** Requests Hole Map 3, as icd_client_request(). */
+/** Request Hole Map 3. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_3(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_3_GET_ID);
 }
 
-/** Reads Hole Map 3 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Hole Map 3 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_hole_map_3(common_hole_map_3_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, COMMON_HOLE_MAP_3_GET_ID)) {
@@ -2278,13 +2281,13 @@ static inline icd_status_t cubeacp_receive_hole_map_3(common_hole_map_3_t *messa
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_4)
-/** Requests Hole Map 4, as icd_client_request(). */
+/** Request Hole Map 4. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_4(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_4_GET_ID);
 }
 
-/** Reads Hole Map 4 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Hole Map 4 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_hole_map_4(common_hole_map_4_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, COMMON_HOLE_MAP_4_GET_ID)) {
@@ -2295,13 +2298,13 @@ static inline icd_status_t cubeacp_receive_hole_map_4(common_hole_map_4_t *messa
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_5)
-/** Requests Hole Map 5, as icd_client_request(). */
+/** Request Hole Map 5. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_5(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_5_GET_ID);
 }
 
-/** Reads Hole Map 5 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Hole Map 5 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_hole_map_5(common_hole_map_5_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, COMMON_HOLE_MAP_5_GET_ID)) {
@@ -2312,13 +2315,13 @@ static inline icd_status_t cubeacp_receive_hole_map_5(common_hole_map_5_t *messa
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_6)
-/** Requests Hole Map 6, as icd_client_request(). */
+/** Request Hole Map 6. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_6(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_6_GET_ID);
 }
 
-/** Reads Hole Map 6 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Hole Map 6 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_hole_map_6(common_hole_map_6_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, COMMON_HOLE_MAP_6_GET_ID)) {
@@ -2329,13 +2332,13 @@ static inline icd_status_t cubeacp_receive_hole_map_6(common_hole_map_6_t *messa
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_7)
-/** Requests Hole Map 7, as icd_client_request(). */
+/** Request Hole Map 7. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_7(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_7_GET_ID);
 }
 
-/** Reads Hole Map 7 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Hole Map 7 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_hole_map_7(common_hole_map_7_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, COMMON_HOLE_MAP_7_GET_ID)) {
@@ -2346,13 +2349,13 @@ static inline icd_status_t cubeacp_receive_hole_map_7(common_hole_map_7_t *messa
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_8)
-/** Requests Hole Map 8, as icd_client_request(). */
+/** Request Hole Map 8. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_8(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_8_GET_ID);
 }
 
-/** Reads Hole Map 8 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Hole Map 8 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_hole_map_8(common_hole_map_8_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, COMMON_HOLE_MAP_8_GET_ID)) {
@@ -2363,13 +2366,13 @@ static inline icd_status_t cubeacp_receive_hole_map_8(common_hole_map_8_t *messa
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CURRENT_ADCS_STATE)
-/** Requests Current ADCS State, as icd_client_request(). */
+/** Request Current ADCS State. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_current_adcs_state(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CURRENT_ADCS_STATE_ID);
 }
 
-/** Reads Current ADCS State from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Current ADCS State from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_current_adcs_state(
     cubeacp_current_adcs_state_t *message,
     const icd_event_t *event)
@@ -2382,13 +2385,13 @@ static inline icd_status_t cubeacp_receive_current_adcs_state(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_JPG_CONVERSION_PROGRESS)
-/** Requests JPG Conversion Progress, as icd_client_request(). */
+/** Request JPG Conversion Progress. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_jpg_conversion_progress(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_JPG_CONVERSION_PROGRESS_ID);
 }
 
-/** Reads JPG Conversion Progress from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode JPG Conversion Progress from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_jpg_conversion_progress(
     cubeacp_jpg_conversion_progress_t *message,
     const icd_event_t *event)
@@ -2401,13 +2404,13 @@ static inline icd_status_t cubeacp_receive_jpg_conversion_progress(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STATE)
-/** Requests CubeACP State, as icd_client_request(). */
+/** Request CubeACP State. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_state(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STATE_ID);
 }
 
-/** Reads CubeACP State from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode CubeACP State from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_state(cubeacp_state_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STATE_ID)) {
@@ -2418,13 +2421,13 @@ static inline icd_status_t cubeacp_receive_state(cubeacp_state_t *message, const
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATED_ATTITUDE_ANGLES)
-/** Requests Estimated Attitude Angles, as icd_client_request(). */
+/** Request Estimated Attitude Angles. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimated_attitude_angles(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATED_ATTITUDE_ANGLES_ID);
 }
 
-/** Reads Estimated Attitude Angles from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Estimated Attitude Angles from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_estimated_attitude_angles(
     cubeacp_estimated_attitude_angles_t *message,
     const icd_event_t *event)
@@ -2437,13 +2440,13 @@ static inline icd_status_t cubeacp_receive_estimated_attitude_angles(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATED_ANGULAR_RATES)
-/** Requests Estimated Angular Rates, as icd_client_request(). */
+/** Request Estimated Angular Rates. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimated_angular_rates(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATED_ANGULAR_RATES_ID);
 }
 
-/** Reads Estimated Angular Rates from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Estimated Angular Rates from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_estimated_angular_rates(
     cubeacp_estimated_angular_rates_t *message,
     const icd_event_t *event)
@@ -2456,13 +2459,13 @@ static inline icd_status_t cubeacp_receive_estimated_angular_rates(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SATELLITE_POSITION_ECI)
-/** Requests Satellite Position (ECI), as icd_client_request(). */
+/** Request Satellite Position (ECI). See icd_client_request(). */
 static inline icd_status_t cubeacp_request_satellite_position_eci(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SATELLITE_POSITION_ECI_ID);
 }
 
-/** Reads Satellite Position (ECI) from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Satellite Position (ECI) from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_satellite_position_eci(
     cubeacp_satellite_position_eci_t *message,
     const icd_event_t *event)
@@ -2475,13 +2478,13 @@ static inline icd_status_t cubeacp_receive_satellite_position_eci(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SATELLITE_VELOCITY_ECI)
-/** Requests Satellite Velocity (ECI), as icd_client_request(). */
+/** Request Satellite Velocity (ECI). See icd_client_request(). */
 static inline icd_status_t cubeacp_request_satellite_velocity_eci(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SATELLITE_VELOCITY_ECI_ID);
 }
 
-/** Reads Satellite Velocity (ECI) from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Satellite Velocity (ECI) from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_satellite_velocity_eci(
     cubeacp_satellite_velocity_eci_t *message,
     const icd_event_t *event)
@@ -2494,13 +2497,13 @@ static inline icd_status_t cubeacp_receive_satellite_velocity_eci(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SATELLITE_POSITION_LLH)
-/** Requests Satellite Position (LLH), as icd_client_request(). */
+/** Request Satellite Position (LLH). See icd_client_request(). */
 static inline icd_status_t cubeacp_request_satellite_position_llh(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SATELLITE_POSITION_LLH_ID);
 }
 
-/** Reads Satellite Position (LLH) from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Satellite Position (LLH) from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_satellite_position_llh(
     cubeacp_satellite_position_llh_t *message,
     const icd_event_t *event)
@@ -2513,13 +2516,13 @@ static inline icd_status_t cubeacp_receive_satellite_position_llh(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MAGNETIC_FIELD_VECTOR)
-/** Requests Magnetic Field Vector, as icd_client_request(). */
+/** Request Magnetic Field Vector. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_magnetic_field_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_MAGNETIC_FIELD_VECTOR_ID);
 }
 
-/** Reads Magnetic Field Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Magnetic Field Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_magnetic_field_vector(
     cubeacp_magnetic_field_vector_t *message,
     const icd_event_t *event)
@@ -2532,13 +2535,13 @@ static inline icd_status_t cubeacp_receive_magnetic_field_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_COARSE_SUN_VECTOR)
-/** Requests Coarse Sun Vector, as icd_client_request(). */
+/** Request Coarse Sun Vector. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_coarse_sun_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_COARSE_SUN_VECTOR_ID);
 }
 
-/** Reads Coarse Sun Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Coarse Sun Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_coarse_sun_vector(
     cubeacp_coarse_sun_vector_t *message,
     const icd_event_t *event)
@@ -2551,13 +2554,13 @@ static inline icd_status_t cubeacp_receive_coarse_sun_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FINE_SUN_VECTOR)
-/** Requests Fine Sun Vector, as icd_client_request(). */
+/** Request Fine Sun Vector. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_fine_sun_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_FINE_SUN_VECTOR_ID);
 }
 
-/** Reads Fine Sun Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Fine Sun Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_fine_sun_vector(cubeacp_fine_sun_vector_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_FINE_SUN_VECTOR_ID)) {
@@ -2568,13 +2571,13 @@ static inline icd_status_t cubeacp_receive_fine_sun_vector(cubeacp_fine_sun_vect
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_NADIR_VECTOR)
-/** Requests Nadir Vector, as icd_client_request(). */
+/** Request Nadir Vector. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_nadir_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_NADIR_VECTOR_ID);
 }
 
-/** Reads Nadir Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Nadir Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_nadir_vector(cubeacp_nadir_vector_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_NADIR_VECTOR_ID)) {
@@ -2585,13 +2588,13 @@ static inline icd_status_t cubeacp_receive_nadir_vector(cubeacp_nadir_vector_t *
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RATE_SENSOR_RATES)
-/** Requests Rate Sensor Rates, as icd_client_request(). */
+/** Request Rate Sensor Rates. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_rate_sensor_rates(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RATE_SENSOR_RATES_ID);
 }
 
-/** Reads Rate Sensor Rates from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Rate Sensor Rates from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_rate_sensor_rates(
     cubeacp_rate_sensor_rates_t *message,
     const icd_event_t *event)
@@ -2604,13 +2607,13 @@ static inline icd_status_t cubeacp_receive_rate_sensor_rates(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_WHEEL_SPEED)
-/** Requests Wheel Speed, as icd_client_request(). */
+/** Request Wheel Speed. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_wheel_speed(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_WHEEL_SPEED_ID);
 }
 
-/** Reads Wheel Speed from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Wheel Speed from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_wheel_speed(cubeacp_wheel_speed_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_WHEEL_SPEED_ID)) {
@@ -2621,13 +2624,13 @@ static inline icd_status_t cubeacp_receive_wheel_speed(cubeacp_wheel_speed_t *me
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MAGNETORQUER_COMMAND)
-/** Requests Magnetorquer Command, as icd_client_request(). */
+/** Request Magnetorquer Command. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_magnetorquer_command(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_MAGNETORQUER_COMMAND_ID);
 }
 
-/** Reads Magnetorquer Command from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Magnetorquer Command from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_magnetorquer_command(
     cubeacp_magnetorquer_command_t *message,
     const icd_event_t *event)
@@ -2640,13 +2643,13 @@ static inline icd_status_t cubeacp_receive_magnetorquer_command(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_WHEEL_SPEED_COMMANDS)
-/** Requests Wheel Speed Commands, as icd_client_request(). */
+/** Request Wheel Speed Commands. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_wheel_speed_commands(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_WHEEL_SPEED_COMMANDS_ID);
 }
 
-/** Reads Wheel Speed Commands from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Wheel Speed Commands from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_wheel_speed_commands(
     cubeacp_wheel_speed_commands_t *message,
     const icd_event_t *event)
@@ -2659,13 +2662,13 @@ static inline icd_status_t cubeacp_receive_wheel_speed_commands(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_IGRF_MODELLED_MAGNETIC_FIELD_VECTOR)
-/** Requests IGRF Modelled Magnetic Field Vector, as icd_client_request(). */
+/** Request IGRF Modelled Magnetic Field Vector. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_igrf_modelled_magnetic_field_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_IGRF_MODELLED_MAGNETIC_FIELD_VECTOR_ID);
 }
 
-/** Reads IGRF Modelled Magnetic Field Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode IGRF Modelled Magnetic Field Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_igrf_modelled_magnetic_field_vector(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     const icd_event_t *event)
@@ -2678,13 +2681,13 @@ static inline icd_status_t cubeacp_receive_igrf_modelled_magnetic_field_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MODELLED_SUN_VECTOR)
-/** Requests Modelled Sun Vector, as icd_client_request(). */
+/** Request Modelled Sun Vector. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_modelled_sun_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_MODELLED_SUN_VECTOR_ID);
 }
 
-/** Reads Modelled Sun Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Modelled Sun Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_modelled_sun_vector(
     cubeacp_modelled_sun_vector_t *message,
     const icd_event_t *event)
@@ -2697,13 +2700,13 @@ static inline icd_status_t cubeacp_receive_modelled_sun_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATED_GYRO_BIAS)
-/** Requests Estimated Gyro Bias, as icd_client_request(). */
+/** Request Estimated Gyro Bias. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimated_gyro_bias(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATED_GYRO_BIAS_ID);
 }
 
-/** Reads Estimated Gyro Bias from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Estimated Gyro Bias from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_estimated_gyro_bias(
     cubeacp_estimated_gyro_bias_t *message,
     const icd_event_t *event)
@@ -2716,13 +2719,13 @@ static inline icd_status_t cubeacp_receive_estimated_gyro_bias(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATION_INNOVATION_VECTOR)
-/** Requests Estimation Innovation Vector, as icd_client_request(). */
+/** Request Estimation Innovation Vector. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimation_innovation_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATION_INNOVATION_VECTOR_ID);
 }
 
-/** Reads Estimation Innovation Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Estimation Innovation Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_estimation_innovation_vector(
     cubeacp_estimation_innovation_vector_t *message,
     const icd_event_t *event)
@@ -2735,13 +2738,13 @@ static inline icd_status_t cubeacp_receive_estimation_innovation_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_QUATERNION_ERROR_VECTOR)
-/** Requests Quaternion Error Vector, as icd_client_request(). */
+/** Request Quaternion Error Vector. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_quaternion_error_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_QUATERNION_ERROR_VECTOR_ID);
 }
 
-/** Reads Quaternion Error Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Quaternion Error Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_quaternion_error_vector(
     cubeacp_quaternion_error_vector_t *message,
     const icd_event_t *event)
@@ -2754,13 +2757,13 @@ static inline icd_status_t cubeacp_receive_quaternion_error_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_QUATERNION_COVARIANCE)
-/** Requests Quaternion Covariance, as icd_client_request(). */
+/** Request Quaternion Covariance. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_quaternion_covariance(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_QUATERNION_COVARIANCE_ID);
 }
 
-/** Reads Quaternion Covariance from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Quaternion Covariance from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_quaternion_covariance(
     cubeacp_quaternion_covariance_t *message,
     const icd_event_t *event)
@@ -2773,13 +2776,13 @@ static inline icd_status_t cubeacp_receive_quaternion_covariance(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ANGULAR_RATE_COVARIANCE)
-/** Requests Angular Rate Covariance, as icd_client_request(). */
+/** Request Angular Rate Covariance. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_angular_rate_covariance(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ANGULAR_RATE_COVARIANCE_ID);
 }
 
-/** Reads Angular Rate Covariance from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Angular Rate Covariance from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_angular_rate_covariance(
     cubeacp_angular_rate_covariance_t *message,
     const icd_event_t *event)
@@ -2792,13 +2795,13 @@ static inline icd_status_t cubeacp_receive_angular_rate_covariance(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_CAM2_SENSOR)
-/** Requests Raw Cam2 Sensor, as icd_client_request(). */
+/** Request Raw Cam2 Sensor. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_cam2_sensor(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_CAM2_SENSOR_ID);
 }
 
-/** Reads Raw Cam2 Sensor from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Raw Cam2 Sensor from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_cam2_sensor(cubeacp_raw_cam2_sensor_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_CAM2_SENSOR_ID)) {
@@ -2809,13 +2812,13 @@ static inline icd_status_t cubeacp_receive_raw_cam2_sensor(cubeacp_raw_cam2_sens
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_CAM1_SENSOR)
-/** Requests Raw Cam1 Sensor, as icd_client_request(). */
+/** Request Raw Cam1 Sensor. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_cam1_sensor(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_CAM1_SENSOR_ID);
 }
 
-/** Reads Raw Cam1 Sensor from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Raw Cam1 Sensor from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_cam1_sensor(cubeacp_raw_cam1_sensor_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_CAM1_SENSOR_ID)) {
@@ -2826,13 +2829,13 @@ static inline icd_status_t cubeacp_receive_raw_cam1_sensor(cubeacp_raw_cam1_sens
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_CSS_1_TO_6)
-/** Requests Raw CSS 1 to 6, as icd_client_request(). */
+/** Request Raw CSS 1 to 6. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_css_1_to_6(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_CSS_1_TO_6_ID);
 }
 
-/** Reads Raw CSS 1 to 6 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Raw CSS 1 to 6 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_css_1_to_6(cubeacp_raw_css_1_to_6_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_CSS_1_TO_6_ID)) {
@@ -2843,13 +2846,13 @@ static inline icd_status_t cubeacp_receive_raw_css_1_to_6(cubeacp_raw_css_1_to_6
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_CSS_7_TO_10)
-/** Requests Raw CSS 7 to 10, as icd_client_request(). */
+/** Request Raw CSS 7 to 10. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_css_7_to_10(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_CSS_7_TO_10_ID);
 }
 
-/** Reads Raw CSS 7 to 10 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Raw CSS 7 to 10 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_css_7_to_10(cubeacp_raw_css_7_to_10_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_CSS_7_TO_10_ID)) {
@@ -2860,13 +2863,13 @@ static inline icd_status_t cubeacp_receive_raw_css_7_to_10(cubeacp_raw_css_7_to_
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_MAGNETOMETER)
-/** Requests Raw Magnetometer, as icd_client_request(). */
+/** Request Raw Magnetometer. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_magnetometer(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_MAGNETOMETER_ID);
 }
 
-/** Reads Raw Magnetometer from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Raw Magnetometer from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_magnetometer(
     cubeacp_raw_magnetometer_t *message,
     const icd_event_t *event)
@@ -2879,13 +2882,13 @@ static inline icd_status_t cubeacp_receive_raw_magnetometer(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESENSE1_CURRENTS)
-/** Requests CubeSense1 Current Measurements, as icd_client_request(). */
+/** Request CubeSense1 Current Measurements. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubesense1_currents(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CUBESENSE1_CURRENTS_ID);
 }
 
-/** Reads CubeSense1 Current Measurements from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode CubeSense1 Current Measurements from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_cubesense1_currents(
     cubeacp_cubesense1_currents_t *message,
     const icd_event_t *event)
@@ -2898,13 +2901,13 @@ static inline icd_status_t cubeacp_receive_cubesense1_currents(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBECONTROL_CURRENTS)
-/** Requests CubeControl Current Measurements, as icd_client_request(). */
+/** Request CubeControl Current Measurements. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubecontrol_currents(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CUBECONTROL_CURRENTS_ID);
 }
 
-/** Reads CubeControl Current Measurements from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode CubeControl Current Measurements from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_cubecontrol_currents(
     cubeacp_cubecontrol_currents_t *message,
     const icd_event_t *event)
@@ -2917,13 +2920,13 @@ static inline icd_status_t cubeacp_receive_cubecontrol_currents(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_WHEEL_CURRENTS)
-/** Requests Wheel Currents, as icd_client_request(). */
+/** Request Wheel Currents. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_wheel_currents(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_WHEEL_CURRENTS_ID);
 }
 
-/** Reads Wheel Currents from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Wheel Currents from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_wheel_currents(cubeacp_wheel_currents_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_WHEEL_CURRENTS_ID)) {
@@ -2934,13 +2937,13 @@ static inline icd_status_t cubeacp_receive_wheel_currents(cubeacp_wheel_currents
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_TEMPERATURES)
-/** Requests ADCS Temperatures, as icd_client_request(). */
+/** Request ADCS Temperatures. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_temperatures(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_TEMPERATURES_ID);
 }
 
-/** Reads ADCS Temperatures from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode ADCS Temperatures from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_adcs_temperatures(
     cubeacp_adcs_temperatures_t *message,
     const icd_event_t *event)
@@ -2953,13 +2956,13 @@ static inline icd_status_t cubeacp_receive_adcs_temperatures(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RATE_SENSOR_TEMPERATURES)
-/** Requests Rate sensor temperatures, as icd_client_request(). */
+/** Request Rate sensor temperatures. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_rate_sensor_temperatures(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RATE_SENSOR_TEMPERATURES_ID);
 }
 
-/** Reads Rate sensor temperatures from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Rate sensor temperatures from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_rate_sensor_temperatures(
     cubeacp_rate_sensor_temperatures_t *message,
     const icd_event_t *event)
@@ -2972,13 +2975,13 @@ static inline icd_status_t cubeacp_receive_rate_sensor_temperatures(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_STATUS)
-/** Requests Raw GPS Status, as icd_client_request(). */
+/** Request Raw GPS Status. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_status(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_STATUS_ID);
 }
 
-/** Reads Raw GPS Status from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Raw GPS Status from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_gps_status(cubeacp_raw_gps_status_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_GPS_STATUS_ID)) {
@@ -2989,13 +2992,13 @@ static inline icd_status_t cubeacp_receive_raw_gps_status(cubeacp_raw_gps_status
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_TIME)
-/** Requests Raw GPS Time, as icd_client_request(). */
+/** Request Raw GPS Time. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_time(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_TIME_ID);
 }
 
-/** Reads Raw GPS Time from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Raw GPS Time from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_gps_time(cubeacp_raw_gps_time_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_GPS_TIME_ID)) {
@@ -3006,13 +3009,13 @@ static inline icd_status_t cubeacp_receive_raw_gps_time(cubeacp_raw_gps_time_t *
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_X)
-/** Requests Raw GPS X, as icd_client_request(). */
+/** Request Raw GPS X. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_x(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_X_ID);
 }
 
-/** Reads Raw GPS X from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Raw GPS X from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_gps_x(cubeacp_raw_gps_x_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_GPS_X_ID)) {
@@ -3023,13 +3026,13 @@ static inline icd_status_t cubeacp_receive_raw_gps_x(cubeacp_raw_gps_x_t *messag
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_Y)
-/** Requests Raw GPS Y, as icd_client_request(). */
+/** Request Raw GPS Y. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_y(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_Y_ID);
 }
 
-/** Reads Raw GPS Y from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Raw GPS Y from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_gps_y(cubeacp_raw_gps_y_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_GPS_Y_ID)) {
@@ -3040,13 +3043,13 @@ static inline icd_status_t cubeacp_receive_raw_gps_y(cubeacp_raw_gps_y_t *messag
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_Z)
-/** Requests Raw GPS Z, as icd_client_request(). */
+/** Request Raw GPS Z. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_z(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_Z_ID);
 }
 
-/** Reads Raw GPS Z from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Raw GPS Z from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_gps_z(cubeacp_raw_gps_z_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_GPS_Z_ID)) {
@@ -3057,13 +3060,13 @@ static inline icd_status_t cubeacp_receive_raw_gps_z(cubeacp_raw_gps_z_t *messag
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_1_BODY_VECTOR)
-/** Requests Star 1 Body Vector, as icd_client_request(). */
+/** Request Star 1 Body Vector. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_1_body_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_1_BODY_VECTOR_ID);
 }
 
-/** Reads Star 1 Body Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Star 1 Body Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_1_body_vector(
     cubeacp_star_1_body_vector_t *message,
     const icd_event_t *event)
@@ -3076,13 +3079,13 @@ static inline icd_status_t cubeacp_receive_star_1_body_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_2_BODY_VECTOR)
-/** Requests Star 2 Body Vector, as icd_client_request(). */
+/** Request Star 2 Body Vector. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_2_body_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_2_BODY_VECTOR_ID);
 }
 
-/** Reads Star 2 Body Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Star 2 Body Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_2_body_vector(
     cubeacp_star_2_body_vector_t *message,
     const icd_event_t *event)
@@ -3095,13 +3098,13 @@ static inline icd_status_t cubeacp_receive_star_2_body_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_3_BODY_VECTOR)
-/** Requests Star 3 Body Vector, as icd_client_request(). */
+/** Request Star 3 Body Vector. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_3_body_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_3_BODY_VECTOR_ID);
 }
 
-/** Reads Star 3 Body Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Star 3 Body Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_3_body_vector(
     cubeacp_star_3_body_vector_t *message,
     const icd_event_t *event)
@@ -3114,13 +3117,13 @@ static inline icd_status_t cubeacp_receive_star_3_body_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_1_ORBIT_VECTOR)
-/** Requests Star 1 Orbit Vector, as icd_client_request(). */
+/** Request Star 1 Orbit Vector. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_1_orbit_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_1_ORBIT_VECTOR_ID);
 }
 
-/** Reads Star 1 Orbit Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Star 1 Orbit Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_1_orbit_vector(
     cubeacp_star_1_orbit_vector_t *message,
     const icd_event_t *event)
@@ -3133,13 +3136,13 @@ static inline icd_status_t cubeacp_receive_star_1_orbit_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_2_ORBIT_VECTOR)
-/** Requests Star 2 Orbit Vector, as icd_client_request(). */
+/** Request Star 2 Orbit Vector. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_2_orbit_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_2_ORBIT_VECTOR_ID);
 }
 
-/** Reads Star 2 Orbit Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Star 2 Orbit Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_2_orbit_vector(
     cubeacp_star_2_orbit_vector_t *message,
     const icd_event_t *event)
@@ -3152,13 +3155,13 @@ static inline icd_status_t cubeacp_receive_star_2_orbit_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_3_ORBIT_VECTOR)
-/** Requests Star 3 Orbit Vector, as icd_client_request(). */
+/** Request Star 3 Orbit Vector. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_3_orbit_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_3_ORBIT_VECTOR_ID);
 }
 
-/** Reads Star 3 Orbit Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Star 3 Orbit Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_3_orbit_vector(
     cubeacp_star_3_orbit_vector_t *message,
     const icd_event_t *event)
@@ -3171,13 +3174,13 @@ static inline icd_status_t cubeacp_receive_star_3_orbit_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_MAGNITUDE)
-/** Requests Star Magnitude, as icd_client_request(). */
+/** Request Star Magnitude. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_magnitude(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_MAGNITUDE_ID);
 }
 
-/** Reads Star Magnitude from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Star Magnitude from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_magnitude(cubeacp_star_magnitude_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STAR_MAGNITUDE_ID)) {
@@ -3188,13 +3191,13 @@ static inline icd_status_t cubeacp_receive_star_magnitude(cubeacp_star_magnitude
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_PERFORMANCE1)
-/** Requests Star Performance1, as icd_client_request(). */
+/** Request Star Performance1. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_performance1(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_PERFORMANCE1_ID);
 }
 
-/** Reads Star Performance1 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Star Performance1 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_performance1(
     cubeacp_star_performance1_t *message,
     const icd_event_t *event)
@@ -3207,13 +3210,13 @@ static inline icd_status_t cubeacp_receive_star_performance1(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_TIMING)
-/** Requests Star Timing, as icd_client_request(). */
+/** Request Star Timing. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_timing(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_TIMING_ID);
 }
 
-/** Reads Star Timing from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Star Timing from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_timing(cubeacp_star_timing_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STAR_TIMING_ID)) {
@@ -3224,13 +3227,13 @@ static inline icd_status_t cubeacp_receive_star_timing(cubeacp_star_timing_t *me
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_STATE)
-/** Requests ADCS State, as icd_client_request(). */
+/** Request ADCS State. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_state(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_STATE_ID);
 }
 
-/** Reads ADCS State from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode ADCS State from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_adcs_state(cubeacp_adcs_state_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ADCS_STATE_ID)) {
@@ -3241,13 +3244,13 @@ static inline icd_status_t cubeacp_receive_adcs_state(cubeacp_adcs_state_t *mess
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_MEASUREMENTS)
-/** Requests ADCS Measurements, as icd_client_request(). */
+/** Request ADCS Measurements. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_measurements(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_MEASUREMENTS_ID);
 }
 
-/** Reads ADCS Measurements from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode ADCS Measurements from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_adcs_measurements(
     cubeacp_adcs_measurements_t *message,
     const icd_event_t *event)
@@ -3260,13 +3263,13 @@ static inline icd_status_t cubeacp_receive_adcs_measurements(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ACTUATOR_COMMANDS)
-/** Requests Actuator Commands, as icd_client_request(). */
+/** Request Actuator Commands. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_actuator_commands(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ACTUATOR_COMMANDS_ID);
 }
 
-/** Reads Actuator Commands from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Actuator Commands from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_actuator_commands(
     cubeacp_actuator_commands_t *message,
     const icd_event_t *event)
@@ -3279,13 +3282,13 @@ static inline icd_status_t cubeacp_receive_actuator_commands(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATION_DATA)
-/** Requests Estimation Data, as icd_client_request(). */
+/** Request Estimation Data. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimation_data(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATION_DATA_ID);
 }
 
-/** Reads Estimation Data from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Estimation Data from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_estimation_data(cubeacp_estimation_data_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ESTIMATION_DATA_ID)) {
@@ -3296,13 +3299,13 @@ static inline icd_status_t cubeacp_receive_estimation_data(cubeacp_estimation_da
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_SENSOR_MEASUREMENTS)
-/** Requests Raw Sensor Measurements, as icd_client_request(). */
+/** Request Raw Sensor Measurements. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_sensor_measurements(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_SENSOR_MEASUREMENTS_ID);
 }
 
-/** Reads Raw Sensor Measurements from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Raw Sensor Measurements from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_sensor_measurements(
     cubeacp_raw_sensor_measurements_t *message,
     const icd_event_t *event)
@@ -3315,13 +3318,13 @@ static inline icd_status_t cubeacp_receive_raw_sensor_measurements(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_POWER_AND_TEMPERATURE)
-/** Requests Power and Temperature Measurements, as icd_client_request(). */
+/** Request Power and Temperature Measurements. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_power_and_temperature(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_POWER_AND_TEMPERATURE_ID);
 }
 
-/** Reads Power and Temperature Measurements from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Power and Temperature Measurements from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_power_and_temperature(
     cubeacp_power_and_temperature_t *message,
     const icd_event_t *event)
@@ -3334,13 +3337,13 @@ static inline icd_status_t cubeacp_receive_power_and_temperature(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_EXECUTION_TIMES)
-/** Requests Adcs Execution Times, as icd_client_request(). */
+/** Request Adcs Execution Times. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_execution_times(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_EXECUTION_TIMES_ID);
 }
 
-/** Reads Adcs Execution Times from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Adcs Execution Times from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_adcs_execution_times(
     cubeacp_adcs_execution_times_t *message,
     const icd_event_t *event)
@@ -3353,13 +3356,13 @@ static inline icd_status_t cubeacp_receive_adcs_execution_times(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_MISC_CURRENTS)
-/** Requests ADCS Misc Current Measurements, as icd_client_request(). */
+/** Request ADCS Misc Current Measurements. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_misc_currents(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_MISC_CURRENTS_ID);
 }
 
-/** Reads ADCS Misc Current Measurements from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode ADCS Misc Current Measurements from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_adcs_misc_currents(
     cubeacp_adcs_misc_currents_t *message,
     const icd_event_t *event)
@@ -3372,13 +3375,13 @@ static inline icd_status_t cubeacp_receive_adcs_misc_currents(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FINE_ANGULAR_RATES)
-/** Requests Fine Estimated Angular Rates, as icd_client_request(). */
+/** Request Fine Estimated Angular Rates. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_fine_angular_rates(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_FINE_ANGULAR_RATES_ID);
 }
 
-/** Reads Fine Estimated Angular Rates from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Fine Estimated Angular Rates from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_fine_angular_rates(
     cubeacp_fine_angular_rates_t *message,
     const icd_event_t *event)
@@ -3391,13 +3394,13 @@ static inline icd_status_t cubeacp_receive_fine_angular_rates(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_MEASUREMENTS)
-/** Requests Raw GPS Measurements, as icd_client_request(). */
+/** Request Raw GPS Measurements. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_measurements(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_MEASUREMENTS_ID);
 }
 
-/** Reads Raw GPS Measurements from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Raw GPS Measurements from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_gps_measurements(
     cubeacp_raw_gps_measurements_t *message,
     const icd_event_t *event)
@@ -3410,13 +3413,13 @@ static inline icd_status_t cubeacp_receive_raw_gps_measurements(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_STAR_TRACKER)
-/** Requests Raw Star Tracker, as icd_client_request(). */
+/** Request Raw Star Tracker. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_star_tracker(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_STAR_TRACKER_ID);
 }
 
-/** Reads Raw Star Tracker from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Raw Star Tracker from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_star_tracker(
     cubeacp_raw_star_tracker_t *message,
     const icd_event_t *event)
@@ -3429,13 +3432,13 @@ static inline icd_status_t cubeacp_receive_raw_star_tracker(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_1_RAW_DATA)
-/** Requests Star 1 Raw Data, as icd_client_request(). */
+/** Request Star 1 Raw Data. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_1_raw_data(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_1_RAW_DATA_ID);
 }
 
-/** Reads Star 1 Raw Data from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Star 1 Raw Data from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_1_raw_data(cubeacp_star_1_raw_data_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STAR_1_RAW_DATA_ID)) {
@@ -3446,13 +3449,13 @@ static inline icd_status_t cubeacp_receive_star_1_raw_data(cubeacp_star_1_raw_da
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_2_RAW_DATA)
-/** Requests Star 2 Raw Data, as icd_client_request(). */
+/** Request Star 2 Raw Data. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_2_raw_data(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_2_RAW_DATA_ID);
 }
 
-/** Reads Star 2 Raw Data from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Star 2 Raw Data from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_2_raw_data(cubeacp_star_2_raw_data_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STAR_2_RAW_DATA_ID)) {
@@ -3463,13 +3466,13 @@ static inline icd_status_t cubeacp_receive_star_2_raw_data(cubeacp_star_2_raw_da
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_3_RAW_DATA)
-/** Requests Star 3 Raw Data, as icd_client_request(). */
+/** Request Star 3 Raw Data. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_3_raw_data(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_3_RAW_DATA_ID);
 }
 
-/** Reads Star 3 Raw Data from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Star 3 Raw Data from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_3_raw_data(cubeacp_star_3_raw_data_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_STAR_3_RAW_DATA_ID)) {
@@ -3480,7 +3483,7 @@ static inline icd_status_t cubeacp_receive_star_3_raw_data(cubeacp_star_3_raw_da
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SECONDARY_MAGNETOMETER_RAW_MEASUREMENTS)
-/** Requests Secondary Magnetometer Raw Measurements, as icd_client_request(). */
+/** Request Secondary Magnetometer Raw Measurements. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_secondary_magnetometer_raw_measurements(
     cubeacp_client_t *client,
     uint32_t now)
@@ -3488,7 +3491,7 @@ static inline icd_status_t cubeacp_request_secondary_magnetometer_raw_measuremen
     return icd_client_request(&client->client, now, CUBEACP_SECONDARY_MAGNETOMETER_RAW_MEASUREMENTS_ID);
 }
 
-/** Reads Secondary Magnetometer Raw Measurements from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Secondary Magnetometer Raw Measurements from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_secondary_magnetometer_raw_measurements(
     cubeacp_secondary_magnetometer_raw_measurements_t *message,
     const icd_event_t *event)
@@ -3501,13 +3504,13 @@ static inline icd_status_t cubeacp_receive_secondary_magnetometer_raw_measuremen
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_RATE_SENSOR)
-/** Requests Raw Rate Sensor, as icd_client_request(). */
+/** Request Raw Rate Sensor. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_rate_sensor(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_RATE_SENSOR_ID);
 }
 
-/** Reads Raw Rate Sensor from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Raw Rate Sensor from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_raw_rate_sensor(cubeacp_raw_rate_sensor_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_RAW_RATE_SENSOR_ID)) {
@@ -3518,13 +3521,13 @@ static inline icd_status_t cubeacp_receive_raw_rate_sensor(cubeacp_raw_rate_sens
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATED_QUATERNION)
-/** Requests Estimated Quaternion, as icd_client_request(). */
+/** Request Estimated Quaternion. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimated_quaternion(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATED_QUATERNION_ID);
 }
 
-/** Reads Estimated Quaternion from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Estimated Quaternion from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_estimated_quaternion(
     cubeacp_estimated_quaternion_t *message,
     const icd_event_t *event)
@@ -3537,13 +3540,13 @@ static inline icd_status_t cubeacp_receive_estimated_quaternion(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ECEF_POSITION)
-/** Requests ECEF Position, as icd_client_request(). */
+/** Request ECEF Position. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_ecef_position(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ECEF_POSITION_ID);
 }
 
-/** Reads ECEF Position from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode ECEF Position from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_ecef_position(cubeacp_ecef_position_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ECEF_POSITION_ID)) {
@@ -3554,13 +3557,13 @@ static inline icd_status_t cubeacp_receive_ecef_position(cubeacp_ecef_position_t
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ACP_EXECUTION_STATE)
-/** Requests ACP Execution State, as icd_client_request(). */
+/** Request ACP Execution State. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_acp_execution_state(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ACP_EXECUTION_STATE_ID);
 }
 
-/** Reads ACP Execution State from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode ACP Execution State from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_acp_execution_state(
     cubeacp_acp_execution_state_t *message,
     const icd_event_t *event)
@@ -3573,13 +3576,13 @@ static inline icd_status_t cubeacp_receive_acp_execution_state(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CURRENT_ADCS_STATE_2)
-/** Requests Current ADCS State 2, as icd_client_request(). */
+/** Request Current ADCS State 2. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_current_adcs_state_2(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CURRENT_ADCS_STATE_2_ID);
 }
 
-/** Reads Current ADCS State 2 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Current ADCS State 2 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_current_adcs_state_2(
     cubeacp_current_adcs_state_2_t *message,
     const icd_event_t *event)
@@ -3592,13 +3595,13 @@ static inline icd_status_t cubeacp_receive_current_adcs_state_2(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ASGP4_TLES)
-/** Requests ASGP4 TLEs, as icd_client_request(). */
+/** Request ASGP4 TLEs. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_asgp4_tles(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ASGP4_TLES_ID);
 }
 
-/** Reads ASGP4 TLEs from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode ASGP4 TLEs from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_asgp4_tles(cubeacp_asgp4_tles_t *message, const icd_event_t *event)
 {
     if (!icd_is_reply(event, CUBEACP_NODE, CUBEACP_ASGP4_TLES_ID)) {
@@ -3609,13 +3612,13 @@ static inline icd_status_t cubeacp_receive_asgp4_tles(cubeacp_asgp4_tles_t *mess
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESTAR_ESTIMATED_RATES)
-/** Requests CubeStar Estimated Rates, as icd_client_request(). */
+/** Request CubeStar Estimated Rates. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubestar_estimated_rates(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CUBESTAR_ESTIMATED_RATES_ID);
 }
 
-/** Reads CubeStar Estimated Rates from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode CubeStar Estimated Rates from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_cubestar_estimated_rates(
     cubeacp_cubestar_estimated_rates_t *message,
     const icd_event_t *event)
@@ -3628,13 +3631,13 @@ static inline icd_status_t cubeacp_receive_cubestar_estimated_rates(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESTAR_ESTIMATED_QUATERNION)
-/** Requests CubeStar Estimated Quaternion, as icd_client_request(). */
+/** Request CubeStar Estimated Quaternion. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubestar_estimated_quaternion(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CUBESTAR_ESTIMATED_QUATERNION_ID);
 }
 
-/** Reads CubeStar Estimated Quaternion from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode CubeStar Estimated Quaternion from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_cubestar_estimated_quaternion(
     cubeacp_cubestar_estimated_quaternion_t *message,
     const icd_event_t *event)
@@ -3647,13 +3650,13 @@ static inline icd_status_t cubeacp_receive_cubestar_estimated_quaternion(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_PERFORMANCE2)
-/** Requests Star Performance2, as icd_client_request(). */
+/** Request Star Performance2. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_performance2(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_PERFORMANCE2_ID);
 }
 
-/** Reads Star Performance2 from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Star Performance2 from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_star_performance2(
     cubeacp_star_performance2_t *message,
     const icd_event_t *event)
@@ -3666,13 +3669,13 @@ static inline icd_status_t cubeacp_receive_star_performance2(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESENSE2_CURRENTS)
-/** Requests CubeSense2 Current Measurements, as icd_client_request(). */
+/** Request CubeSense2 Current Measurements. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubesense2_currents(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CUBESENSE2_CURRENTS_ID);
 }
 
-/** Reads CubeSense2 Current Measurements from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode CubeSense2 Current Measurements from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_cubesense2_currents(
     cubeacp_cubesense2_currents_t *message,
     const icd_event_t *event)
@@ -3685,7 +3688,7 @@ static inline icd_status_t cubeacp_receive_cubesense2_currents(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STATUS_OF_IMAGE_CAPTURE_AND_SAVE_OPERATION)
-/** Requests Status of Image Capture and Save Operation, as icd_client_request(). */
+/** Request Status of Image Capture and Save Operation. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_status_of_image_capture_and_save_operation(
     cubeacp_client_t *client,
     uint32_t now)
@@ -3693,7 +3696,7 @@ static inline icd_status_t cubeacp_request_status_of_image_capture_and_save_oper
     return icd_client_request(&client->client, now, CUBEACP_STATUS_OF_IMAGE_CAPTURE_AND_SAVE_OPERATION_ID);
 }
 
-/** Reads Status of Image Capture and Save Operation from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Status of Image Capture and Save Operation from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_status_of_image_capture_and_save_operation(
     cubeacp_status_of_image_capture_and_save_operation_t *message,
     const icd_event_t *event)
@@ -3706,13 +3709,13 @@ static inline icd_status_t cubeacp_receive_status_of_image_capture_and_save_oper
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_MAGNETORQUER_CONFIGURATION)
-/** Requests Set Magnetorquer Configuration, as icd_client_request(). */
+/** Request Set Magnetorquer Configuration. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_magnetorquer_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_MAGNETORQUER_CONFIGURATION_GET_ID);
 }
 
-/** Reads Set Magnetorquer Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Set Magnetorquer Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_set_magnetorquer_configuration(
     cubeacp_set_magnetorquer_configuration_t *message,
     const icd_event_t *event)
@@ -3725,13 +3728,13 @@ static inline icd_status_t cubeacp_receive_set_magnetorquer_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_WHEEL_CONFIGURATION)
-/** Requests Set Wheel Configuration, as icd_client_request(). */
+/** Request Set Wheel Configuration. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_wheel_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_WHEEL_CONFIGURATION_GET_ID);
 }
 
-/** Reads Set Wheel Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Set Wheel Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_set_wheel_configuration(
     cubeacp_set_wheel_configuration_t *message,
     const icd_event_t *event)
@@ -3744,13 +3747,13 @@ static inline icd_status_t cubeacp_receive_set_wheel_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_RATE_GYRO_CONFIGURATION)
-/** Requests Set Rate Gyro Configuration, as icd_client_request(). */
+/** Request Set Rate Gyro Configuration. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_rate_gyro_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_RATE_GYRO_CONFIGURATION_GET_ID);
 }
 
-/** Reads Set Rate Gyro Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Set Rate Gyro Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_set_rate_gyro_configuration(
     cubeacp_set_rate_gyro_configuration_t *message,
     const icd_event_t *event)
@@ -3763,13 +3766,13 @@ static inline icd_status_t cubeacp_receive_set_rate_gyro_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CSS_CONFIGURATION)
-/** Requests CSS Configuration, as icd_client_request(). */
+/** Request CSS Configuration. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_css_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CSS_CONFIGURATION_GET_ID);
 }
 
-/** Reads CSS Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode CSS Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_css_configuration(
     cubeacp_css_configuration_t *message,
     const icd_event_t *event)
@@ -3782,13 +3785,13 @@ static inline icd_status_t cubeacp_receive_css_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_POWER_CONTROL)
-/** Requests ADCS Power Control, as icd_client_request(). */
+/** Request ADCS Power Control. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_power_control(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_POWER_CONTROL_GET_ID);
 }
 
-/** Reads ADCS Power Control from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode ADCS Power Control from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_adcs_power_control(
     cubeacp_adcs_power_control_t *message,
     const icd_event_t *event)
@@ -3801,13 +3804,13 @@ static inline icd_status_t cubeacp_receive_adcs_power_control(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_COMMANDED_ATTITUDE_ANGLES)
-/** Requests Commanded Attitude Angles, as icd_client_request(). */
+/** Request Commanded Attitude Angles. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_commanded_attitude_angles(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_COMMANDED_ATTITUDE_ANGLES_GET_ID);
 }
 
-/** Reads Commanded Attitude Angles from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Commanded Attitude Angles from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_commanded_attitude_angles(
     cubeacp_commanded_attitude_angles_t *message,
     const icd_event_t *event)
@@ -3820,13 +3823,13 @@ static inline icd_status_t cubeacp_receive_commanded_attitude_angles(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_TRACKING_CONTROLLER_TARGET_REFERENCE)
-/** Requests Tracking Controller Target Reference, as icd_client_request(). */
+/** Request Tracking Controller Target Reference. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_tracking_controller_target_reference(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_TRACKING_CONTROLLER_TARGET_REFERENCE_GET_ID);
 }
 
-/** Reads Tracking Controller Target Reference from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Tracking Controller Target Reference from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_tracking_controller_target_reference(
     cubeacp_tracking_controller_target_reference_t *message,
     const icd_event_t *event)
@@ -3839,13 +3842,13 @@ static inline icd_status_t cubeacp_receive_tracking_controller_target_reference(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_STAR_TRACKER_CONFIGURATION)
-/** Requests Set Star Tracker Configuration, as icd_client_request(). */
+/** Request Set Star Tracker Configuration. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_star_tracker_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_STAR_TRACKER_CONFIGURATION_GET_ID);
 }
 
-/** Reads Set Star Tracker Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Set Star Tracker Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_set_star_tracker_configuration(
     cubeacp_set_star_tracker_configuration_t *message,
     const icd_event_t *event)
@@ -3858,13 +3861,13 @@ static inline icd_status_t cubeacp_receive_set_star_tracker_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESENSE_CONFIGURATION)
-/** Requests CubeSense Configuration, as icd_client_request(). */
+/** Request CubeSense Configuration. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubesense_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CUBESENSE_CONFIGURATION_GET_ID);
 }
 
-/** Reads CubeSense Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode CubeSense Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_cubesense_configuration(
     cubeacp_cubesense_configuration_t *message,
     const icd_event_t *event)
@@ -3877,13 +3880,13 @@ static inline icd_status_t cubeacp_receive_cubesense_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MAGNETOMETER_CONFIGURATION)
-/** Requests Magnetometer Configuration, as icd_client_request(). */
+/** Request Magnetometer Configuration. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_magnetometer_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_MAGNETOMETER_CONFIGURATION_GET_ID);
 }
 
-/** Reads Magnetometer Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Magnetometer Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_magnetometer_configuration(
     cubeacp_magnetometer_configuration_t *message,
     const icd_event_t *event)
@@ -3896,13 +3899,13 @@ static inline icd_status_t cubeacp_receive_magnetometer_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_REDUNDANT_MAG_CONFIGURATION)
-/** Requests Redundant Magnetometer Configuration, as icd_client_request(). */
+/** Request Redundant Magnetometer Configuration. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_redundant_mag_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_REDUNDANT_MAG_CONFIGURATION_GET_ID);
 }
 
-/** Reads Redundant Magnetometer Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Redundant Magnetometer Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_redundant_mag_configuration(
     cubeacp_redundant_mag_configuration_t *message,
     const icd_event_t *event)
@@ -3915,13 +3918,13 @@ static inline icd_status_t cubeacp_receive_redundant_mag_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_CONFIGURATION)
-/** Requests ADCS Configuration, as icd_client_request(). */
+/** Request ADCS Configuration. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_CONFIGURATION_GET_ID);
 }
 
-/** Reads ADCS Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode ADCS Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_adcs_configuration(
     cubeacp_adcs_configuration_t *message,
     const icd_event_t *event)
@@ -3934,13 +3937,13 @@ static inline icd_status_t cubeacp_receive_adcs_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SGP4_ORBIT_PARAMETERS)
-/** Requests SGP4 Orbit Parameters, as icd_client_request(). */
+/** Request SGP4 Orbit Parameters. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_sgp4_orbit_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SGP4_ORBIT_PARAMETERS_GET_ID);
 }
 
-/** Reads SGP4 Orbit Parameters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode SGP4 Orbit Parameters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_sgp4_orbit_parameters(
     cubeacp_sgp4_orbit_parameters_t *message,
     const icd_event_t *event)
@@ -3953,13 +3956,13 @@ static inline icd_status_t cubeacp_receive_sgp4_orbit_parameters(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_DETUMBLING_CONTROL_PARAMETERS)
-/** Requests Set Detumbling Control Parameters, as icd_client_request(). */
+/** Request Set Detumbling Control Parameters. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_detumbling_control_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_GET_ID);
 }
 
-/** Reads Set Detumbling Control Parameters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Set Detumbling Control Parameters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_set_detumbling_control_parameters(
     cubeacp_set_detumbling_control_parameters_t *message,
     const icd_event_t *event)
@@ -3972,13 +3975,13 @@ static inline icd_status_t cubeacp_receive_set_detumbling_control_parameters(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_Y_WHEEL_CONTROL_PARAMETERS)
-/** Requests Set Y-Wheel Control Parameters, as icd_client_request(). */
+/** Request Set Y-Wheel Control Parameters. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_y_wheel_control_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_Y_WHEEL_CONTROL_PARAMETERS_GET_ID);
 }
 
-/** Reads Set Y-Wheel Control Parameters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Set Y-Wheel Control Parameters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_set_y_wheel_control_parameters(
     cubeacp_set_y_wheel_control_parameters_t *message,
     const icd_event_t *event)
@@ -3991,13 +3994,13 @@ static inline icd_status_t cubeacp_receive_set_y_wheel_control_parameters(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_REACTION_WHEEL_CONTROL_PARAMETERS)
-/** Requests Set Reaction Wheel Control Parameters, as icd_client_request(). */
+/** Request Set Reaction Wheel Control Parameters. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_reaction_wheel_control_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_REACTION_WHEEL_CONTROL_PARAMETERS_GET_ID);
 }
 
-/** Reads Set Reaction Wheel Control Parameters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Set Reaction Wheel Control Parameters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_set_reaction_wheel_control_parameters(
     cubeacp_set_reaction_wheel_control_parameters_t *message,
     const icd_event_t *event)
@@ -4010,7 +4013,7 @@ static inline icd_status_t cubeacp_receive_set_reaction_wheel_control_parameters
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS)
-/** Requests Set Tracking Controller Gain Parameters, as icd_client_request(). */
+/** Request Set Tracking Controller Gain Parameters. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_tracking_controller_gain_parameters(
     cubeacp_client_t *client,
     uint32_t now)
@@ -4018,7 +4021,7 @@ static inline icd_status_t cubeacp_request_set_tracking_controller_gain_paramete
     return icd_client_request(&client->client, now, CUBEACP_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS_GET_ID);
 }
 
-/** Reads Set Tracking Controller Gain Parameters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Set Tracking Controller Gain Parameters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_set_tracking_controller_gain_parameters(
     cubeacp_set_tracking_controller_gain_parameters_t *message,
     const icd_event_t *event)
@@ -4031,13 +4034,13 @@ static inline icd_status_t cubeacp_receive_set_tracking_controller_gain_paramete
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MOMENT_OF_INERTIA_MATRIX)
-/** Requests Moment of Inertia Matrix, as icd_client_request(). */
+/** Request Moment of Inertia Matrix. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_moment_of_inertia_matrix(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_MOMENT_OF_INERTIA_MATRIX_GET_ID);
 }
 
-/** Reads Moment of Inertia Matrix from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Moment of Inertia Matrix from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_moment_of_inertia_matrix(
     cubeacp_moment_of_inertia_matrix_t *message,
     const icd_event_t *event)
@@ -4050,13 +4053,13 @@ static inline icd_status_t cubeacp_receive_moment_of_inertia_matrix(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATION_PARAMETERS)
-/** Requests Estimation Parameters, as icd_client_request(). */
+/** Request Estimation Parameters. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimation_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATION_PARAMETERS_GET_ID);
 }
 
-/** Reads Estimation Parameters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Estimation Parameters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_estimation_parameters(
     cubeacp_estimation_parameters_t *message,
     const icd_event_t *event)
@@ -4069,13 +4072,13 @@ static inline icd_status_t cubeacp_receive_estimation_parameters(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_SYSTEM_CONFIGURATION)
-/** Requests ADCS System Configuration, as icd_client_request(). */
+/** Request ADCS System Configuration. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_system_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_SYSTEM_CONFIGURATION_GET_ID);
 }
 
-/** Reads ADCS System Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode ADCS System Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_adcs_system_configuration(
     cubeacp_adcs_system_configuration_t *message,
     const icd_event_t *event)
@@ -4088,7 +4091,7 @@ static inline icd_status_t cubeacp_receive_adcs_system_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS)
-/** Requests User-coded Controller and Estimator Parameters, as icd_client_request(). */
+/** Request User-coded Controller and Estimator Parameters. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_user_coded_controller_and_estimator_parameters(
     cubeacp_client_t *client,
     uint32_t now)
@@ -4096,7 +4099,9 @@ static inline icd_status_t cubeacp_request_user_coded_controller_and_estimator_p
     return icd_client_request(&client->client, now, CUBEACP_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS_GET_ID);
 }
 
-/** Reads User-coded Controller and Estimator Parameters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/**
+ * Decode User-coded Controller and Estimator Parameters from an event. Return ICD_ERROR_UNKNOWN_ID for other events.
+ */
 static inline icd_status_t cubeacp_receive_user_coded_controller_and_estimator_parameters(
     cubeacp_user_coded_controller_and_estimator_parameters_t *message,
     const icd_event_t *event)
@@ -4109,13 +4114,13 @@ static inline icd_status_t cubeacp_receive_user_coded_controller_and_estimator_p
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_AUGMENTED_SGP4_PARAMETERS)
-/** Requests Augmented-SGP4 Parameters, as icd_client_request(). */
+/** Request Augmented-SGP4 Parameters. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_augmented_sgp4_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_AUGMENTED_SGP4_PARAMETERS_GET_ID);
 }
 
-/** Reads Augmented-SGP4 Parameters from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Augmented-SGP4 Parameters from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_augmented_sgp4_parameters(
     cubeacp_augmented_sgp4_parameters_t *message,
     const icd_event_t *event)
@@ -4128,13 +4133,13 @@ static inline icd_status_t cubeacp_receive_augmented_sgp4_parameters(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SD_LOG1_CONFIGURATION)
-/** Requests SD Log1 Configuration, as icd_client_request(). */
+/** Request SD Log1 Configuration. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_sd_log1_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SD_LOG1_CONFIGURATION_GET_ID);
 }
 
-/** Reads SD Log1 Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode SD Log1 Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_sd_log1_configuration(
     cubeacp_sd_log1_configuration_t *message,
     const icd_event_t *event)
@@ -4147,13 +4152,13 @@ static inline icd_status_t cubeacp_receive_sd_log1_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SD_LOG2_CONFIGURATION)
-/** Requests SD Log2 Configuration, as icd_client_request(). */
+/** Request SD Log2 Configuration. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_sd_log2_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SD_LOG2_CONFIGURATION_GET_ID);
 }
 
-/** Reads SD Log2 Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode SD Log2 Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_sd_log2_configuration(
     cubeacp_sd_log2_configuration_t *message,
     const icd_event_t *event)
@@ -4166,13 +4171,13 @@ static inline icd_status_t cubeacp_receive_sd_log2_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_UART_LOG_CONFIGURATION)
-/** Requests UART Log Configuration, as icd_client_request(). */
+/** Request UART Log Configuration. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_uart_log_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_UART_LOG_CONFIGURATION_GET_ID);
 }
 
-/** Reads UART Log Configuration from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode UART Log Configuration from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_uart_log_configuration(
     cubeacp_uart_log_configuration_t *message,
     const icd_event_t *event)
@@ -4185,13 +4190,13 @@ static inline icd_status_t cubeacp_receive_uart_log_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_INERTIAL_POINTING_REFERENCE_VECTOR)
-/** Requests Inertial Pointing Reference Vector, as icd_client_request(). */
+/** Request Inertial Pointing Reference Vector. See icd_client_request(). */
 static inline icd_status_t cubeacp_request_inertial_pointing_reference_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_INERTIAL_POINTING_REFERENCE_VECTOR_GET_ID);
 }
 
-/** Reads Inertial Pointing Reference Vector from its event; ICD_ERROR_UNKNOWN_ID for other events. */
+/** Decode Inertial Pointing Reference Vector from an event. Return ICD_ERROR_UNKNOWN_ID for other events. */
 static inline icd_status_t cubeacp_receive_inertial_pointing_reference_vector(
     cubeacp_inertial_pointing_reference_vector_t *message,
     const icd_event_t *event)

@@ -17,7 +17,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_COARSE_SUN_VECTOR_ID 152u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_COARSE_SUN_VECTOR_LENGTH 6u
 
 /** Raw values. */
@@ -30,13 +30,13 @@ typedef struct {
     int16_t coarse_sun_z;
 } cubeacp_coarse_sun_vector_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_coarse_sun_vector_init(cubeacp_coarse_sun_vector_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_coarse_sun_vector_decode(
     cubeacp_coarse_sun_vector_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -51,7 +51,7 @@ static inline icd_status_t cubeacp_coarse_sun_vector_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_coarse_sun_vector_encode(
     const cubeacp_coarse_sun_vector_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -66,7 +66,7 @@ static inline icd_status_t cubeacp_coarse_sun_vector_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_coarse_sun_vector_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -84,7 +84,7 @@ static inline int32_t cubeacp_coarse_sun_vector_coarse_sun_x_micro(const cubeacp
     return message->coarse_sun_x * INT32_C(100);
 }
 
-/** Sets Coarse Sun X in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Coarse Sun X in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_coarse_sun_vector_set_coarse_sun_x_micro(
     cubeacp_coarse_sun_vector_t *message,
     int32_t value)
@@ -102,7 +102,7 @@ static inline int32_t cubeacp_coarse_sun_vector_coarse_sun_y_micro(const cubeacp
     return message->coarse_sun_y * INT32_C(100);
 }
 
-/** Sets Coarse Sun Y in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Coarse Sun Y in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_coarse_sun_vector_set_coarse_sun_y_micro(
     cubeacp_coarse_sun_vector_t *message,
     int32_t value)
@@ -120,7 +120,7 @@ static inline int32_t cubeacp_coarse_sun_vector_coarse_sun_z_micro(const cubeacp
     return message->coarse_sun_z * INT32_C(100);
 }
 
-/** Sets Coarse Sun Z in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Coarse Sun Z in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_coarse_sun_vector_set_coarse_sun_z_micro(
     cubeacp_coarse_sun_vector_t *message,
     int32_t value)
@@ -140,7 +140,7 @@ static inline double cubeacp_coarse_sun_vector_coarse_sun_x_physical(const cubea
     return icdgen_quotient(message->coarse_sun_x, 10000);
 }
 
-/** Sets Coarse Sun X, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Coarse Sun X, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_coarse_sun_vector_set_coarse_sun_x_physical(
     cubeacp_coarse_sun_vector_t *message,
     double value)
@@ -154,7 +154,7 @@ static inline double cubeacp_coarse_sun_vector_coarse_sun_y_physical(const cubea
     return icdgen_quotient(message->coarse_sun_y, 10000);
 }
 
-/** Sets Coarse Sun Y, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Coarse Sun Y, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_coarse_sun_vector_set_coarse_sun_y_physical(
     cubeacp_coarse_sun_vector_t *message,
     double value)
@@ -168,7 +168,7 @@ static inline double cubeacp_coarse_sun_vector_coarse_sun_z_physical(const cubea
     return icdgen_quotient(message->coarse_sun_z, 10000);
 }
 
-/** Sets Coarse Sun Z, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Coarse Sun Z, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_coarse_sun_vector_set_coarse_sun_z_physical(
     cubeacp_coarse_sun_vector_t *message,
     double value)

@@ -5,7 +5,7 @@
 
 /**
  * @file
- * Commanded Attitude Angles: configuration, set by telecommand 15, got by telemetry 199, 6 bytes. Table 186.
+ * Commanded Attitude Angles: configuration, set by telecommand 15, read by telemetry 199, 6 bytes. Table 186.
  * @note ACP-066 (open): Attitude angles: order of rotation and frame. Roll, pitch and yaw need a sequence and a
  * reference. Neither is given, for estimated or for commanded angles.
  */
@@ -16,7 +16,7 @@
 #define CUBEACP_COMMANDED_ATTITUDE_ANGLES_SET_ID 15u
 /** Id of the telemetry that gets it. */
 #define CUBEACP_COMMANDED_ATTITUDE_ANGLES_GET_ID 199u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_COMMANDED_ATTITUDE_ANGLES_LENGTH 6u
 
 /** Raw values. */
@@ -29,13 +29,13 @@ typedef struct {
     int16_t commanded_yaw_angle;
 } cubeacp_commanded_attitude_angles_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_commanded_attitude_angles_init(cubeacp_commanded_attitude_angles_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_commanded_attitude_angles_decode(
     cubeacp_commanded_attitude_angles_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -50,7 +50,7 @@ static inline icd_status_t cubeacp_commanded_attitude_angles_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_commanded_attitude_angles_encode(
     const cubeacp_commanded_attitude_angles_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -65,7 +65,7 @@ static inline icd_status_t cubeacp_commanded_attitude_angles_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_commanded_attitude_angles_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -84,7 +84,10 @@ static inline int32_t cubeacp_commanded_attitude_angles_commanded_roll_angle_mde
     return message->commanded_roll_angle * INT32_C(10);
 }
 
-/** Sets Commanded Roll Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Commanded Roll Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_commanded_attitude_angles_set_commanded_roll_angle_mdeg(
     cubeacp_commanded_attitude_angles_t *message,
     int32_t value)
@@ -103,7 +106,10 @@ static inline int32_t cubeacp_commanded_attitude_angles_commanded_pitch_angle_md
     return message->commanded_pitch_angle * INT32_C(10);
 }
 
-/** Sets Commanded Pitch Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Commanded Pitch Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_commanded_attitude_angles_set_commanded_pitch_angle_mdeg(
     cubeacp_commanded_attitude_angles_t *message,
     int32_t value)
@@ -122,7 +128,9 @@ static inline int32_t cubeacp_commanded_attitude_angles_commanded_yaw_angle_mdeg
     return message->commanded_yaw_angle * INT32_C(10);
 }
 
-/** Sets Commanded Yaw Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Commanded Yaw Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_commanded_attitude_angles_set_commanded_yaw_angle_mdeg(
     cubeacp_commanded_attitude_angles_t *message,
     int32_t value)
@@ -143,7 +151,7 @@ static inline double cubeacp_commanded_attitude_angles_commanded_roll_angle_deg(
     return icdgen_quotient(message->commanded_roll_angle, 100);
 }
 
-/** Sets Commanded Roll Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Commanded Roll Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_commanded_attitude_angles_set_commanded_roll_angle_deg(
     cubeacp_commanded_attitude_angles_t *message,
     double value)
@@ -158,7 +166,7 @@ static inline double cubeacp_commanded_attitude_angles_commanded_pitch_angle_deg
     return icdgen_quotient(message->commanded_pitch_angle, 100);
 }
 
-/** Sets Commanded Pitch Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Commanded Pitch Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_commanded_attitude_angles_set_commanded_pitch_angle_deg(
     cubeacp_commanded_attitude_angles_t *message,
     double value)
@@ -173,7 +181,7 @@ static inline double cubeacp_commanded_attitude_angles_commanded_yaw_angle_deg(
     return icdgen_quotient(message->commanded_yaw_angle, 100);
 }
 
-/** Sets Commanded Yaw Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Commanded Yaw Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_commanded_attitude_angles_set_commanded_yaw_angle_deg(
     cubeacp_commanded_attitude_angles_t *message,
     double value)

@@ -13,7 +13,7 @@
 
 /** Id of the telecommand. */
 #define CUBEACP_CONVERT_TO_JPG_FILE_ID 57u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_CONVERT_TO_JPG_FILE_LENGTH 3u
 
 /** Raw values. */
@@ -37,13 +37,13 @@ typedef struct {
     uint8_t white_balance;
 } cubeacp_convert_to_jpg_file_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_convert_to_jpg_file_init(cubeacp_convert_to_jpg_file_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 3 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 3 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_convert_to_jpg_file_decode(
     cubeacp_convert_to_jpg_file_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -58,7 +58,7 @@ static inline icd_status_t cubeacp_convert_to_jpg_file_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 3 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 3 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_convert_to_jpg_file_encode(
     const cubeacp_convert_to_jpg_file_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -73,7 +73,7 @@ static inline icd_status_t cubeacp_convert_to_jpg_file_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_convert_to_jpg_file_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -5,7 +5,7 @@
 
 /**
  * @file
- * CSS Configuration: configuration, set by telecommand 24, got by telemetry 139, 21 bytes. Table 183.
+ * CSS Configuration: configuration, set by telecommand 24, read by telemetry 139, 21 bytes. Table 183.
  * Pointing direction and scale of each photodiode.
  */
 
@@ -16,7 +16,7 @@
 #define CUBEACP_CSS_CONFIGURATION_SET_ID 24u
 /** Id of the telemetry that gets it. */
 #define CUBEACP_CSS_CONFIGURATION_GET_ID 139u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_CSS_CONFIGURATION_LENGTH 21u
 
 /** Raw values. */
@@ -69,13 +69,13 @@ typedef struct {
     uint8_t css_threshold;
 } cubeacp_css_configuration_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_css_configuration_init(cubeacp_css_configuration_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 21 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 21 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_css_configuration_decode(
     cubeacp_css_configuration_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -88,7 +88,7 @@ static inline icd_status_t cubeacp_css_configuration_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 21 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 21 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_css_configuration_encode(
     const cubeacp_css_configuration_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -101,7 +101,7 @@ static inline icd_status_t cubeacp_css_configuration_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_css_configuration_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -137,7 +137,7 @@ static inline int32_t cubeacp_css_configuration_css1_relative_scale_milli(const 
     return message->css1_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS1 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CSS1 Relative Scale in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_css_configuration_set_css1_relative_scale_milli(
     cubeacp_css_configuration_t *message,
     int32_t value)
@@ -155,7 +155,7 @@ static inline int32_t cubeacp_css_configuration_css2_relative_scale_milli(const 
     return message->css2_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS2 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CSS2 Relative Scale in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_css_configuration_set_css2_relative_scale_milli(
     cubeacp_css_configuration_t *message,
     int32_t value)
@@ -173,7 +173,7 @@ static inline int32_t cubeacp_css_configuration_css3_relative_scale_milli(const 
     return message->css3_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS3 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CSS3 Relative Scale in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_css_configuration_set_css3_relative_scale_milli(
     cubeacp_css_configuration_t *message,
     int32_t value)
@@ -191,7 +191,7 @@ static inline int32_t cubeacp_css_configuration_css4_relative_scale_milli(const 
     return message->css4_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS4 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CSS4 Relative Scale in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_css_configuration_set_css4_relative_scale_milli(
     cubeacp_css_configuration_t *message,
     int32_t value)
@@ -209,7 +209,7 @@ static inline int32_t cubeacp_css_configuration_css5_relative_scale_milli(const 
     return message->css5_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS5 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CSS5 Relative Scale in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_css_configuration_set_css5_relative_scale_milli(
     cubeacp_css_configuration_t *message,
     int32_t value)
@@ -227,7 +227,7 @@ static inline int32_t cubeacp_css_configuration_css6_relative_scale_milli(const 
     return message->css6_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS6 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CSS6 Relative Scale in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_css_configuration_set_css6_relative_scale_milli(
     cubeacp_css_configuration_t *message,
     int32_t value)
@@ -245,7 +245,7 @@ static inline int32_t cubeacp_css_configuration_css7_relative_scale_milli(const 
     return message->css7_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS7 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CSS7 Relative Scale in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_css_configuration_set_css7_relative_scale_milli(
     cubeacp_css_configuration_t *message,
     int32_t value)
@@ -263,7 +263,7 @@ static inline int32_t cubeacp_css_configuration_css8_relative_scale_milli(const 
     return message->css8_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS8 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CSS8 Relative Scale in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_css_configuration_set_css8_relative_scale_milli(
     cubeacp_css_configuration_t *message,
     int32_t value)
@@ -281,7 +281,7 @@ static inline int32_t cubeacp_css_configuration_css9_relative_scale_milli(const 
     return message->css9_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS9 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CSS9 Relative Scale in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_css_configuration_set_css9_relative_scale_milli(
     cubeacp_css_configuration_t *message,
     int32_t value)
@@ -299,7 +299,7 @@ static inline int32_t cubeacp_css_configuration_css10_relative_scale_milli(const
     return message->css10_relative_scale * INT32_C(10);
 }
 
-/** Sets CSS10 Relative Scale in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CSS10 Relative Scale in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_css_configuration_set_css10_relative_scale_milli(
     cubeacp_css_configuration_t *message,
     int32_t value)
@@ -319,7 +319,9 @@ static inline double cubeacp_css_configuration_css1_relative_scale_physical(cons
     return icdgen_quotient(message->css1_relative_scale, 100);
 }
 
-/** Sets CSS1 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set CSS1 Relative Scale, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_css_configuration_set_css1_relative_scale_physical(
     cubeacp_css_configuration_t *message,
     double value)
@@ -333,7 +335,9 @@ static inline double cubeacp_css_configuration_css2_relative_scale_physical(cons
     return icdgen_quotient(message->css2_relative_scale, 100);
 }
 
-/** Sets CSS2 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set CSS2 Relative Scale, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_css_configuration_set_css2_relative_scale_physical(
     cubeacp_css_configuration_t *message,
     double value)
@@ -347,7 +351,9 @@ static inline double cubeacp_css_configuration_css3_relative_scale_physical(cons
     return icdgen_quotient(message->css3_relative_scale, 100);
 }
 
-/** Sets CSS3 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set CSS3 Relative Scale, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_css_configuration_set_css3_relative_scale_physical(
     cubeacp_css_configuration_t *message,
     double value)
@@ -361,7 +367,9 @@ static inline double cubeacp_css_configuration_css4_relative_scale_physical(cons
     return icdgen_quotient(message->css4_relative_scale, 100);
 }
 
-/** Sets CSS4 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set CSS4 Relative Scale, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_css_configuration_set_css4_relative_scale_physical(
     cubeacp_css_configuration_t *message,
     double value)
@@ -375,7 +383,9 @@ static inline double cubeacp_css_configuration_css5_relative_scale_physical(cons
     return icdgen_quotient(message->css5_relative_scale, 100);
 }
 
-/** Sets CSS5 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set CSS5 Relative Scale, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_css_configuration_set_css5_relative_scale_physical(
     cubeacp_css_configuration_t *message,
     double value)
@@ -389,7 +399,9 @@ static inline double cubeacp_css_configuration_css6_relative_scale_physical(cons
     return icdgen_quotient(message->css6_relative_scale, 100);
 }
 
-/** Sets CSS6 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set CSS6 Relative Scale, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_css_configuration_set_css6_relative_scale_physical(
     cubeacp_css_configuration_t *message,
     double value)
@@ -403,7 +415,9 @@ static inline double cubeacp_css_configuration_css7_relative_scale_physical(cons
     return icdgen_quotient(message->css7_relative_scale, 100);
 }
 
-/** Sets CSS7 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set CSS7 Relative Scale, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_css_configuration_set_css7_relative_scale_physical(
     cubeacp_css_configuration_t *message,
     double value)
@@ -417,7 +431,9 @@ static inline double cubeacp_css_configuration_css8_relative_scale_physical(cons
     return icdgen_quotient(message->css8_relative_scale, 100);
 }
 
-/** Sets CSS8 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set CSS8 Relative Scale, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_css_configuration_set_css8_relative_scale_physical(
     cubeacp_css_configuration_t *message,
     double value)
@@ -431,7 +447,9 @@ static inline double cubeacp_css_configuration_css9_relative_scale_physical(cons
     return icdgen_quotient(message->css9_relative_scale, 100);
 }
 
-/** Sets CSS9 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set CSS9 Relative Scale, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_css_configuration_set_css9_relative_scale_physical(
     cubeacp_css_configuration_t *message,
     double value)
@@ -445,7 +463,9 @@ static inline double cubeacp_css_configuration_css10_relative_scale_physical(con
     return icdgen_quotient(message->css10_relative_scale, 100);
 }
 
-/** Sets CSS10 Relative Scale, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set CSS10 Relative Scale, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_css_configuration_set_css10_relative_scale_physical(
     cubeacp_css_configuration_t *message,
     double value)

@@ -13,7 +13,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_CUBECONTROL_CURRENTS_ID 172u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_CUBECONTROL_CURRENTS_LENGTH 6u
 
 /** Raw values. */
@@ -26,13 +26,13 @@ typedef struct {
     uint16_t cubecontrol_vbat_current;
 } cubeacp_cubecontrol_currents_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_cubecontrol_currents_init(cubeacp_cubecontrol_currents_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_cubecontrol_currents_decode(
     cubeacp_cubecontrol_currents_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -47,7 +47,7 @@ static inline icd_status_t cubeacp_cubecontrol_currents_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_cubecontrol_currents_encode(
     const cubeacp_cubecontrol_currents_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -62,7 +62,7 @@ static inline icd_status_t cubeacp_cubecontrol_currents_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_cubecontrol_currents_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -83,7 +83,7 @@ static inline double cubeacp_cubecontrol_currents_cubecontrol_3v3_current_ma(
     return icdgen_quotient(message->cubecontrol_3v3_current * INT64_C(125), 256);
 }
 
-/** Sets CubeControl 3V3 Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CubeControl 3V3 Current in mA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_cubecontrol_currents_set_cubecontrol_3v3_current_ma(
     cubeacp_cubecontrol_currents_t *message,
     double value)
@@ -98,7 +98,7 @@ static inline double cubeacp_cubecontrol_currents_cubecontrol_5v_current_ma(
     return icdgen_quotient(message->cubecontrol_5v_current * INT64_C(125), 256);
 }
 
-/** Sets CubeControl 5V Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CubeControl 5V Current in mA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_cubecontrol_currents_set_cubecontrol_5v_current_ma(
     cubeacp_cubecontrol_currents_t *message,
     double value)
@@ -113,7 +113,7 @@ static inline double cubeacp_cubecontrol_currents_cubecontrol_vbat_current_ma(
     return icdgen_quotient(message->cubecontrol_vbat_current * INT64_C(125), 256);
 }
 
-/** Sets CubeControl Vbat Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CubeControl Vbat Current in mA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_cubecontrol_currents_set_cubecontrol_vbat_current_ma(
     cubeacp_cubecontrol_currents_t *message,
     double value)

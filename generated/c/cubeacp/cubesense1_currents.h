@@ -15,7 +15,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_CUBESENSE1_CURRENTS_ID 171u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_CUBESENSE1_CURRENTS_LENGTH 4u
 
 /** Raw values. */
@@ -26,13 +26,13 @@ typedef struct {
     uint16_t cubesense1_cam_sram_current;
 } cubeacp_cubesense1_currents_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_cubesense1_currents_init(cubeacp_cubesense1_currents_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 4 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 4 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_cubesense1_currents_decode(
     cubeacp_cubesense1_currents_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -46,7 +46,7 @@ static inline icd_status_t cubeacp_cubesense1_currents_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 4 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 4 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_cubesense1_currents_encode(
     const cubeacp_cubesense1_currents_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -60,7 +60,7 @@ static inline icd_status_t cubeacp_cubesense1_currents_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_cubesense1_currents_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -78,7 +78,7 @@ static inline int32_t cubeacp_cubesense1_currents_cubesense1_3v3_current_ua(
     return message->cubesense1_3v3_current * INT32_C(100);
 }
 
-/** Sets CubeSense1 3V3 Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CubeSense1 3V3 Current in uA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_cubesense1_currents_set_cubesense1_3v3_current_ua(
     cubeacp_cubesense1_currents_t *message,
     int32_t value)
@@ -97,7 +97,7 @@ static inline int32_t cubeacp_cubesense1_currents_cubesense1_cam_sram_current_ua
     return message->cubesense1_cam_sram_current * INT32_C(100);
 }
 
-/** Sets CubeSense1 Cam SRAM Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CubeSense1 Cam SRAM Current in uA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_cubesense1_currents_set_cubesense1_cam_sram_current_ua(
     cubeacp_cubesense1_currents_t *message,
     int32_t value)
@@ -117,7 +117,7 @@ static inline double cubeacp_cubesense1_currents_cubesense1_3v3_current_ma(const
     return icdgen_quotient(message->cubesense1_3v3_current, 10);
 }
 
-/** Sets CubeSense1 3V3 Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CubeSense1 3V3 Current in mA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_cubesense1_currents_set_cubesense1_3v3_current_ma(
     cubeacp_cubesense1_currents_t *message,
     double value)
@@ -132,7 +132,7 @@ static inline double cubeacp_cubesense1_currents_cubesense1_cam_sram_current_ma(
     return icdgen_quotient(message->cubesense1_cam_sram_current, 10);
 }
 
-/** Sets CubeSense1 Cam SRAM Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CubeSense1 Cam SRAM Current in mA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_cubesense1_currents_set_cubesense1_cam_sram_current_ma(
     cubeacp_cubesense1_currents_t *message,
     double value)

@@ -5,7 +5,7 @@
 
 /**
  * @file
- * CubeSense Configuration: configuration, set by telecommand 25, got by telemetry 203, 112 bytes. Table 189.
+ * CubeSense Configuration: configuration, set by telecommand 25, read by telemetry 203, 112 bytes. Table 189.
  * @note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained. They are written 0 and
  * ignored.
  */
@@ -16,7 +16,7 @@
 #define CUBEACP_CUBESENSE_CONFIGURATION_SET_ID 25u
 /** Id of the telemetry that gets it. */
 #define CUBEACP_CUBESENSE_CONFIGURATION_GET_ID 203u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_CUBESENSE_CONFIGURATION_LENGTH 112u
 
 /** Raw values. */
@@ -331,13 +331,13 @@ typedef struct {
     uint16_t cam_2_maximum_y_of_area_5;
 } cubeacp_cubesense_configuration_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_cubesense_configuration_init(cubeacp_cubesense_configuration_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 112 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 112 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_cubesense_configuration_decode(
     cubeacp_cubesense_configuration_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -376,7 +376,7 @@ static inline icd_status_t cubeacp_cubesense_configuration_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 112 bytes, reserved bits 0; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 112 bytes, reserved bits 0. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_cubesense_configuration_encode(
     const cubeacp_cubesense_configuration_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -415,7 +415,7 @@ static inline icd_status_t cubeacp_cubesense_configuration_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_cubesense_configuration_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -492,8 +492,8 @@ static inline int32_t cubeacp_cubesense_configuration_cam1_mounting_alpha_mdeg(
 }
 
 /**
- * Sets Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE
+ * if it is out of range.
  */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_mounting_alpha_mdeg(
     cubeacp_cubesense_configuration_t *message,
@@ -514,8 +514,8 @@ static inline int32_t cubeacp_cubesense_configuration_cam1_mounting_beta_mdeg(
 }
 
 /**
- * Sets Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE
+ * if it is out of range.
  */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_mounting_beta_mdeg(
     cubeacp_cubesense_configuration_t *message,
@@ -536,8 +536,8 @@ static inline int32_t cubeacp_cubesense_configuration_cam1_mounting_gamma_mdeg(
 }
 
 /**
- * Sets Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE
+ * if it is out of range.
  */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_mounting_gamma_mdeg(
     cubeacp_cubesense_configuration_t *message,
@@ -557,7 +557,9 @@ static inline int32_t cubeacp_cubesense_configuration_cam1_boresight_x_milli_pix
     return message->cam1_boresight_x * INT32_C(10);
 }
 
-/** Sets Cam1 Boresight X in thousandths of pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Cam1 Boresight X in thousandths of pixels to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_boresight_x_milli_pixels(
     cubeacp_cubesense_configuration_t *message,
     int32_t value)
@@ -576,7 +578,9 @@ static inline int32_t cubeacp_cubesense_configuration_cam1_boresight_y_milli_pix
     return message->cam1_boresight_y * INT32_C(10);
 }
 
-/** Sets Cam1 Boresight Y in thousandths of pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Cam1 Boresight Y in thousandths of pixels to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_boresight_y_milli_pixels(
     cubeacp_cubesense_configuration_t *message,
     int32_t value)
@@ -596,8 +600,8 @@ static inline int32_t cubeacp_cubesense_configuration_cam2_mounting_alpha_mdeg(
 }
 
 /**
- * Sets Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE
+ * if it is out of range.
  */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_mounting_alpha_mdeg(
     cubeacp_cubesense_configuration_t *message,
@@ -618,8 +622,8 @@ static inline int32_t cubeacp_cubesense_configuration_cam2_mounting_beta_mdeg(
 }
 
 /**
- * Sets Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE
+ * if it is out of range.
  */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_mounting_beta_mdeg(
     cubeacp_cubesense_configuration_t *message,
@@ -640,8 +644,8 @@ static inline int32_t cubeacp_cubesense_configuration_cam2_mounting_gamma_mdeg(
 }
 
 /**
- * Sets Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE
+ * if it is out of range.
  */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_mounting_gamma_mdeg(
     cubeacp_cubesense_configuration_t *message,
@@ -661,7 +665,9 @@ static inline int32_t cubeacp_cubesense_configuration_cam2_boresight_x_milli_pix
     return message->cam2_boresight_x * INT32_C(10);
 }
 
-/** Sets Cam2 Boresight X in thousandths of pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Cam2 Boresight X in thousandths of pixels to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_boresight_x_milli_pixels(
     cubeacp_cubesense_configuration_t *message,
     int32_t value)
@@ -680,7 +686,9 @@ static inline int32_t cubeacp_cubesense_configuration_cam2_boresight_y_milli_pix
     return message->cam2_boresight_y * INT32_C(10);
 }
 
-/** Sets Cam2 Boresight Y in thousandths of pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Cam2 Boresight Y in thousandths of pixels to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_boresight_y_milli_pixels(
     cubeacp_cubesense_configuration_t *message,
     int32_t value)
@@ -702,7 +710,8 @@ static inline double cubeacp_cubesense_configuration_cam1_mounting_alpha_deg(
 }
 
 /**
- * Sets Cam1 Sensor Mounting Transform Alpha Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Cam1 Sensor Mounting Transform Alpha Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_mounting_alpha_deg(
     cubeacp_cubesense_configuration_t *message,
@@ -719,7 +728,8 @@ static inline double cubeacp_cubesense_configuration_cam1_mounting_beta_deg(
 }
 
 /**
- * Sets Cam1 Sensor Mounting Transform Beta Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Cam1 Sensor Mounting Transform Beta Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
  */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_mounting_beta_deg(
     cubeacp_cubesense_configuration_t *message,
@@ -736,7 +746,8 @@ static inline double cubeacp_cubesense_configuration_cam1_mounting_gamma_deg(
 }
 
 /**
- * Sets Cam1 Sensor Mounting Transform Gamma Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Cam1 Sensor Mounting Transform Gamma Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_mounting_gamma_deg(
     cubeacp_cubesense_configuration_t *message,
@@ -752,7 +763,7 @@ static inline double cubeacp_cubesense_configuration_cam1_boresight_x_pixels(
     return icdgen_quotient(message->cam1_boresight_x, 100);
 }
 
-/** Sets Cam1 Boresight X in pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Cam1 Boresight X in pixels to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_boresight_x_pixels(
     cubeacp_cubesense_configuration_t *message,
     double value)
@@ -767,7 +778,7 @@ static inline double cubeacp_cubesense_configuration_cam1_boresight_y_pixels(
     return icdgen_quotient(message->cam1_boresight_y, 100);
 }
 
-/** Sets Cam1 Boresight Y in pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Cam1 Boresight Y in pixels to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_boresight_y_pixels(
     cubeacp_cubesense_configuration_t *message,
     double value)
@@ -783,7 +794,8 @@ static inline double cubeacp_cubesense_configuration_cam2_mounting_alpha_deg(
 }
 
 /**
- * Sets Cam2 Sensor Mounting Transform Alpha Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Cam2 Sensor Mounting Transform Alpha Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_mounting_alpha_deg(
     cubeacp_cubesense_configuration_t *message,
@@ -800,7 +812,8 @@ static inline double cubeacp_cubesense_configuration_cam2_mounting_beta_deg(
 }
 
 /**
- * Sets Cam2 Sensor Mounting Transform Beta Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Cam2 Sensor Mounting Transform Beta Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
  */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_mounting_beta_deg(
     cubeacp_cubesense_configuration_t *message,
@@ -817,7 +830,8 @@ static inline double cubeacp_cubesense_configuration_cam2_mounting_gamma_deg(
 }
 
 /**
- * Sets Cam2 Sensor Mounting Transform Gamma Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Cam2 Sensor Mounting Transform Gamma Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_mounting_gamma_deg(
     cubeacp_cubesense_configuration_t *message,
@@ -833,7 +847,7 @@ static inline double cubeacp_cubesense_configuration_cam2_boresight_x_pixels(
     return icdgen_quotient(message->cam2_boresight_x, 100);
 }
 
-/** Sets Cam2 Boresight X in pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Cam2 Boresight X in pixels to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_boresight_x_pixels(
     cubeacp_cubesense_configuration_t *message,
     double value)
@@ -848,7 +862,7 @@ static inline double cubeacp_cubesense_configuration_cam2_boresight_y_pixels(
     return icdgen_quotient(message->cam2_boresight_y, 100);
 }
 
-/** Sets Cam2 Boresight Y in pixels, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Cam2 Boresight Y in pixels to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_boresight_y_pixels(
     cubeacp_cubesense_configuration_t *message,
     double value)

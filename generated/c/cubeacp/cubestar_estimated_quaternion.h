@@ -15,7 +15,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_CUBESTAR_ESTIMATED_QUATERNION_ID 230u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_CUBESTAR_ESTIMATED_QUATERNION_LENGTH 6u
 
 /** Raw values. */
@@ -42,13 +42,13 @@ typedef struct {
     int16_t q2;
 } cubeacp_cubestar_estimated_quaternion_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_cubestar_estimated_quaternion_init(cubeacp_cubestar_estimated_quaternion_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_cubestar_estimated_quaternion_decode(
     cubeacp_cubestar_estimated_quaternion_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -63,7 +63,7 @@ static inline icd_status_t cubeacp_cubestar_estimated_quaternion_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_cubestar_estimated_quaternion_encode(
     const cubeacp_cubestar_estimated_quaternion_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -78,7 +78,7 @@ static inline icd_status_t cubeacp_cubestar_estimated_quaternion_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_cubestar_estimated_quaternion_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -97,7 +97,7 @@ static inline int32_t cubeacp_cubestar_estimated_quaternion_q0_micro(
     return message->q0 * INT32_C(100);
 }
 
-/** Sets Q0 in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Q0 in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_cubestar_estimated_quaternion_set_q0_micro(
     cubeacp_cubestar_estimated_quaternion_t *message,
     int32_t value)
@@ -116,7 +116,7 @@ static inline int32_t cubeacp_cubestar_estimated_quaternion_q1_micro(
     return message->q1 * INT32_C(100);
 }
 
-/** Sets Q1 in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Q1 in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_cubestar_estimated_quaternion_set_q1_micro(
     cubeacp_cubestar_estimated_quaternion_t *message,
     int32_t value)
@@ -135,7 +135,7 @@ static inline int32_t cubeacp_cubestar_estimated_quaternion_q2_micro(
     return message->q2 * INT32_C(100);
 }
 
-/** Sets Q2 in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Q2 in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_cubestar_estimated_quaternion_set_q2_micro(
     cubeacp_cubestar_estimated_quaternion_t *message,
     int32_t value)
@@ -156,7 +156,7 @@ static inline double cubeacp_cubestar_estimated_quaternion_q0_physical(
     return icdgen_quotient(message->q0, 10000);
 }
 
-/** Sets Q0, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Q0, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_cubestar_estimated_quaternion_set_q0_physical(
     cubeacp_cubestar_estimated_quaternion_t *message,
     double value)
@@ -171,7 +171,7 @@ static inline double cubeacp_cubestar_estimated_quaternion_q1_physical(
     return icdgen_quotient(message->q1, 10000);
 }
 
-/** Sets Q1, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Q1, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_cubestar_estimated_quaternion_set_q1_physical(
     cubeacp_cubestar_estimated_quaternion_t *message,
     double value)
@@ -186,7 +186,7 @@ static inline double cubeacp_cubestar_estimated_quaternion_q2_physical(
     return icdgen_quotient(message->q2, 10000);
 }
 
-/** Sets Q2, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Q2, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_cubestar_estimated_quaternion_set_q2_physical(
     cubeacp_cubestar_estimated_quaternion_t *message,
     double value)

@@ -13,7 +13,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_CUBESTAR_ESTIMATED_RATES_ID 229u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_CUBESTAR_ESTIMATED_RATES_LENGTH 6u
 
 /** Raw values. */
@@ -39,13 +39,13 @@ typedef struct {
     int16_t z_axis_rate;
 } cubeacp_cubestar_estimated_rates_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_cubestar_estimated_rates_init(cubeacp_cubestar_estimated_rates_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_cubestar_estimated_rates_decode(
     cubeacp_cubestar_estimated_rates_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -60,7 +60,7 @@ static inline icd_status_t cubeacp_cubestar_estimated_rates_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_cubestar_estimated_rates_encode(
     const cubeacp_cubestar_estimated_rates_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -75,7 +75,7 @@ static inline icd_status_t cubeacp_cubestar_estimated_rates_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_cubestar_estimated_rates_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -94,7 +94,7 @@ static inline int32_t cubeacp_cubestar_estimated_rates_x_axis_rate_micro(
     return message->x_axis_rate * INT32_C(100);
 }
 
-/** Sets x-Axis rate in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set x-Axis rate in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_cubestar_estimated_rates_set_x_axis_rate_micro(
     cubeacp_cubestar_estimated_rates_t *message,
     int32_t value)
@@ -113,7 +113,7 @@ static inline int32_t cubeacp_cubestar_estimated_rates_y_axis_rate_micro(
     return message->y_axis_rate * INT32_C(100);
 }
 
-/** Sets y-Axis rate in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set y-Axis rate in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_cubestar_estimated_rates_set_y_axis_rate_micro(
     cubeacp_cubestar_estimated_rates_t *message,
     int32_t value)
@@ -132,7 +132,7 @@ static inline int32_t cubeacp_cubestar_estimated_rates_z_axis_rate_micro(
     return message->z_axis_rate * INT32_C(100);
 }
 
-/** Sets z-Axis rate in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set z-Axis rate in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_cubestar_estimated_rates_set_z_axis_rate_micro(
     cubeacp_cubestar_estimated_rates_t *message,
     int32_t value)
@@ -153,7 +153,7 @@ static inline double cubeacp_cubestar_estimated_rates_x_axis_rate_physical(
     return icdgen_quotient(message->x_axis_rate, 10000);
 }
 
-/** Sets x-Axis rate, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set x-Axis rate, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_cubestar_estimated_rates_set_x_axis_rate_physical(
     cubeacp_cubestar_estimated_rates_t *message,
     double value)
@@ -168,7 +168,7 @@ static inline double cubeacp_cubestar_estimated_rates_y_axis_rate_physical(
     return icdgen_quotient(message->y_axis_rate, 10000);
 }
 
-/** Sets y-Axis rate, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set y-Axis rate, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_cubestar_estimated_rates_set_y_axis_rate_physical(
     cubeacp_cubestar_estimated_rates_t *message,
     double value)
@@ -183,7 +183,7 @@ static inline double cubeacp_cubestar_estimated_rates_z_axis_rate_physical(
     return icdgen_quotient(message->z_axis_rate, 10000);
 }
 
-/** Sets z-Axis rate, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set z-Axis rate, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_cubestar_estimated_rates_set_z_axis_rate_physical(
     cubeacp_cubestar_estimated_rates_t *message,
     double value)

@@ -23,7 +23,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_CURRENT_ADCS_STATE_ID 132u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_CURRENT_ADCS_STATE_LENGTH 6u
 
 /** Raw values. */
@@ -147,13 +147,13 @@ typedef struct {
     bool star_tracker_overcurrent_detected;
 } cubeacp_current_adcs_state_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_current_adcs_state_init(cubeacp_current_adcs_state_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_current_adcs_state_decode(
     cubeacp_current_adcs_state_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -225,7 +225,7 @@ static inline icd_status_t cubeacp_current_adcs_state_decode(
     return ICD_OK;
 }
 
-/** Name of the first field whose raw value has more bits than the field; NULL if all fit. */
+/** Return the name of the first field whose raw value has more bits than the field; NULL if all fit. */
 static inline const char *cubeacp_current_adcs_state_misfit(const cubeacp_current_adcs_state_t *message)
 {
     if ((message->attitude_estimation_mode & 0xF0u) != 0u) {
@@ -244,8 +244,8 @@ static inline const char *cubeacp_current_adcs_state_misfit(const cubeacp_curren
 }
 
 /**
- * Writes a frame of 6 bytes. ICD_ERROR_LENGTH if the buffer is smaller, ICD_ERROR_RANGE if a raw
- * value does not fit its field; nothing is written then.
+ * Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small, and ICD_ERROR_RANGE
+ * if a raw value does not fit into its field. Nothing is written in case of an error.
  */
 static inline icd_status_t cubeacp_current_adcs_state_encode(
     const cubeacp_current_adcs_state_t *ICDGEN_RESTRICT message,
@@ -319,7 +319,7 @@ static inline icd_status_t cubeacp_current_adcs_state_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_current_adcs_state_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

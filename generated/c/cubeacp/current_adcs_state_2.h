@@ -21,7 +21,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_CURRENT_ADCS_STATE_2_ID 224u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_CURRENT_ADCS_STATE_2_LENGTH 6u
 
 /** Raw values. */
@@ -75,13 +75,13 @@ typedef struct {
     bool rate_sensor_failure;
 } cubeacp_current_adcs_state_2_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_current_adcs_state_2_init(cubeacp_current_adcs_state_2_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_current_adcs_state_2_decode(
     cubeacp_current_adcs_state_2_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -118,7 +118,7 @@ static inline icd_status_t cubeacp_current_adcs_state_2_decode(
     return ICD_OK;
 }
 
-/** Name of the first field whose raw value has more bits than the field; NULL if all fit. */
+/** Return the name of the first field whose raw value has more bits than the field; NULL if all fit. */
 static inline const char *cubeacp_current_adcs_state_2_misfit(const cubeacp_current_adcs_state_2_t *message)
 {
     if ((message->current_magnetometer_sampling_mode & 0xFCu) != 0u) {
@@ -128,8 +128,8 @@ static inline const char *cubeacp_current_adcs_state_2_misfit(const cubeacp_curr
 }
 
 /**
- * Writes a frame of 6 bytes, reserved bits 0. ICD_ERROR_LENGTH if the buffer is smaller, ICD_ERROR_RANGE if a raw
- * value does not fit its field; nothing is written then.
+ * Encode a frame of 6 bytes, reserved bits 0. Return ICD_ERROR_LENGTH if the buffer is too small, and ICD_ERROR_RANGE
+ * if a raw value does not fit into its field. Nothing is written in case of an error.
  */
 static inline icd_status_t cubeacp_current_adcs_state_2_encode(
     const cubeacp_current_adcs_state_2_t *ICDGEN_RESTRICT message,
@@ -172,7 +172,7 @@ static inline icd_status_t cubeacp_current_adcs_state_2_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_current_adcs_state_2_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

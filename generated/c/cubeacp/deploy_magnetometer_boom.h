@@ -15,7 +15,7 @@
 
 /** Id of the telecommand. */
 #define CUBEACP_DEPLOY_MAGNETOMETER_BOOM_ID 7u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_DEPLOY_MAGNETOMETER_BOOM_LENGTH 1u
 
 /** Raw values. */
@@ -28,13 +28,13 @@ typedef struct {
     uint8_t timeout;
 } cubeacp_deploy_magnetometer_boom_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_deploy_magnetometer_boom_init(cubeacp_deploy_magnetometer_boom_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 1 byte; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 1 byte. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_deploy_magnetometer_boom_decode(
     cubeacp_deploy_magnetometer_boom_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -47,7 +47,7 @@ static inline icd_status_t cubeacp_deploy_magnetometer_boom_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 1 byte; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 1 byte. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_deploy_magnetometer_boom_encode(
     const cubeacp_deploy_magnetometer_boom_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -60,7 +60,7 @@ static inline icd_status_t cubeacp_deploy_magnetometer_boom_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_deploy_magnetometer_boom_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -5,14 +5,15 @@
 
 /**
  * @file
- * Enumerations of CubeACP. A variable of such a type may hold any value: what a node sends is kept as it is.
+ * Enumerations of CubeACP.
+ * A variable of these types can store any value: unknown values from a node are kept unchanged.
  */
 
 #include <stddef.h>
 #include <stdint.h>
 
 /**
- * AdcsRunMode: an enumeration. Table 75. Held by Enabled in ADCS Run Mode; ADCS Run Mode in Current ADCS State and ADCS
+ * AdcsRunMode: an enumeration. Table 75. Used by Enabled in ADCS Run Mode; ADCS Run Mode in Current ADCS State and ADCS
  * State.
  */
 typedef uint8_t cubeacp_adcs_run_mode_t;
@@ -37,7 +38,7 @@ enum {
     CUBEACP_ADCS_RUN_MODE_SIMULATION = 3
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubeacp_adcs_run_mode_name(cubeacp_adcs_run_mode_t value)
 {
     switch (value) {
@@ -55,7 +56,7 @@ static inline const char *cubeacp_adcs_run_mode_name(cubeacp_adcs_run_mode_t val
 }
 
 /**
- * ConModeSelect: an enumeration. Table 78. Held by Control Mode in Set Attitude Control Mode, Current ADCS State and
+ * ConModeSelect: an enumeration. Table 78. Used by Control Mode in Set Attitude Control Mode, Current ADCS State and
  * ADCS State.
  * @note ACP-024 (open): Control modes that are named and not listed. An inertial pointing control mode has a reference
  * vector, and GEO tracking, inertial and two sun pointing modes are special selections. The list of control modes has
@@ -148,7 +149,7 @@ enum {
     CUBEACP_CON_MODE_SELECT_TARGET_TRACKING_YAW_ONLY = 15
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubeacp_con_mode_select_name(cubeacp_con_mode_select_t value)
 {
     switch (value) {
@@ -190,7 +191,7 @@ static inline const char *cubeacp_con_mode_select_name(cubeacp_con_mode_select_t
 }
 
 /**
- * EstimModeSelect: an enumeration. Table 80. Held by Attitude Estimation Mode in Set Attitude Estimation Mode, Current
+ * EstimModeSelect: an enumeration. Table 80. Used by Attitude Estimation Mode in Set Attitude Estimation Mode, Current
  * ADCS State and ADCS State.
  */
 typedef uint8_t cubeacp_estim_mode_select_t;
@@ -221,7 +222,7 @@ enum {
     CUBEACP_ESTIM_MODE_SELECT_USER_CODED_ESTIMATION_MODE = 7
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubeacp_estim_mode_select_name(cubeacp_estim_mode_select_t value)
 {
     switch (value) {
@@ -247,7 +248,7 @@ static inline const char *cubeacp_estim_mode_select_name(cubeacp_estim_mode_sele
 }
 
 /**
- * GpsSolutionStatus: an enumeration. Table 85. Held by Gps Solution Status in Trigger ADCS Loop with Simulated Sensor
+ * GpsSolutionStatus: an enumeration. Table 85. Used by Gps Solution Status in Trigger ADCS Loop with Simulated Sensor
  * Data, Raw GPS Status and Raw GPS Measurements.
  * @note ACP-045 (open): One GPS status for different receivers. The enumeration is used whatever receiver is fitted;
  * three types are listed, among them none. Whether the values are those of the receiver or of the control program is
@@ -282,7 +283,7 @@ enum {
     CUBEACP_GPS_SOLUTION_STATUS_POSITION_TYPE_IS_UNAUTHORIZED = 11
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubeacp_gps_solution_status_name(cubeacp_gps_solution_status_t value)
 {
     switch (value) {
@@ -316,7 +317,7 @@ static inline const char *cubeacp_gps_solution_status_name(cubeacp_gps_solution_
 }
 
 /**
- * Asgp4ModeSelect: an enumeration. Table 87. Held by ASGP4 Mode in ASGP4 Run Mode, Current ADCS State and ADCS State.
+ * Asgp4ModeSelect: an enumeration. Table 87. Used by ASGP4 Mode in ASGP4 Run Mode, Current ADCS State and ADCS State.
  * @note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one module are spelt in
  * four ways.
  */
@@ -333,7 +334,7 @@ enum {
     CUBEACP_ASGP4_MODE_SELECT_AUGMENT = 3
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubeacp_asgp4_mode_select_name(cubeacp_asgp4_mode_select_t value)
 {
     switch (value) {
@@ -352,7 +353,7 @@ static inline const char *cubeacp_asgp4_mode_select_name(cubeacp_asgp4_mode_sele
 
 /**
  * MagModeVal: an enumeration. Table 90. MTM is the magnetometer, Signal and Motor are the microcontrollers that sample
- * it. Held by Magnetometer Mode in Set Mode of Magnetometer Operation, ADCS Configuration and Estimation Parameters;
+ * it. Used by Magnetometer Mode in Set Mode of Magnetometer Operation, ADCS Configuration and Estimation Parameters;
  * Current Magnetometer Sampling Mode in ADCS State and Current ADCS State 2; Magnetometer Selection for RAW MTM TLM in
  * ADCS Configuration and Estimation Parameters.
  * @note ACP-050 (open): MagModeVal: one combination is missing, and None is not explained. The redundant magnetometer
@@ -377,7 +378,7 @@ enum {
     CUBEACP_MAG_MODE_VAL_NONE = 3
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubeacp_mag_mode_val_name(cubeacp_mag_mode_val_t value)
 {
     switch (value) {
@@ -395,7 +396,7 @@ static inline const char *cubeacp_mag_mode_val_name(cubeacp_mag_mode_val_t value
 }
 
 /**
- * CamSelect: an enumeration. Table 95. Held by Camera Select in Save Image.
+ * CamSelect: an enumeration. Table 95. Used by Camera Select in Save Image.
  * @note ACP-056 (likely): Cameras: Cam, CubeSense, and star. Cam1 and Cam2 appear beside CubeSense1 and CubeSense2,
  * once as Cam 1; the third camera is Star, CubeStar or star tracker. That CamN is the camera of CubeSenseN is only
  * likely.
@@ -411,7 +412,7 @@ enum {
     CUBEACP_CAM_SELECT_STAR = 2
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubeacp_cam_select_name(cubeacp_cam_select_t value)
 {
     switch (value) {
@@ -426,7 +427,7 @@ static inline const char *cubeacp_cam_select_name(cubeacp_cam_select_t value)
     }
 }
 
-/** ImSize: an enumeration. Table 96. Held by Image Size in Save Image. */
+/** ImSize: an enumeration. Table 96. Used by Image Size in Save Image. */
 typedef uint8_t cubeacp_im_size_t;
 
 enum {
@@ -442,7 +443,7 @@ enum {
     CUBEACP_IM_SIZE_SIZE_4 = 4
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubeacp_im_size_name(cubeacp_im_size_t value)
 {
     switch (value) {
@@ -461,7 +462,7 @@ static inline const char *cubeacp_im_size_name(cubeacp_im_size_t value)
     }
 }
 
-/** JpgConvertResult: an enumeration. Table 100. Held by Conversion Result in JPG Conversion Progress. */
+/** JpgConvertResult: an enumeration. Table 100. Used by Conversion Result in JPG Conversion Progress. */
 typedef uint8_t cubeacp_jpg_convert_result_t;
 
 enum {
@@ -475,7 +476,7 @@ enum {
     CUBEACP_JPG_CONVERT_RESULT_BUSY = 3
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubeacp_jpg_convert_result_name(cubeacp_jpg_convert_result_t value)
 {
     switch (value) {
@@ -493,7 +494,7 @@ static inline const char *cubeacp_jpg_convert_result_name(cubeacp_jpg_convert_re
 }
 
 /**
- * CaptureResult: an enumeration. Table 123. Held by Cam2 Capture status in Raw Cam2 Sensor and Raw Sensor Measurements;
+ * CaptureResult: an enumeration. Table 123. Used by Cam2 Capture status in Raw Cam2 Sensor and Raw Sensor Measurements;
  * Cam1 Capture status in Raw Cam1 Sensor and Raw Sensor Measurements.
  */
 typedef uint8_t cubeacp_capture_result_t;
@@ -513,7 +514,7 @@ enum {
     CUBEACP_CAPTURE_RESULT_SRAM_ERROR = 5
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubeacp_capture_result_name(cubeacp_capture_result_t value)
 {
     switch (value) {
@@ -535,7 +536,7 @@ static inline const char *cubeacp_capture_result_name(cubeacp_capture_result_t v
 }
 
 /**
- * DetectResult: an enumeration. Table 124. Held by Cam2 Detection result in Raw Cam2 Sensor and Raw Sensor
+ * DetectResult: an enumeration. Table 124. Used by Cam2 Detection result in Raw Cam2 Sensor and Raw Sensor
  * Measurements; Cam1 Detection result in Raw Cam1 Sensor and Raw Sensor Measurements.
  */
 typedef uint8_t cubeacp_detect_result_t;
@@ -559,7 +560,7 @@ enum {
     CUBEACP_DETECT_RESULT_SUCCESS = 7
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubeacp_detect_result_name(cubeacp_detect_result_t value)
 {
     switch (value) {
@@ -585,7 +586,7 @@ static inline const char *cubeacp_detect_result_name(cubeacp_detect_result_t val
 }
 
 /**
- * StarIDModeVal: an enumeration. Table 147. Held by Identification mode in Star Performance1 and Raw Star Tracker.
+ * StarIDModeVal: an enumeration. Table 147. Used by Identification mode in Star Performance1 and Raw Star Tracker.
  * @note ACP-097 (open): StarIDModeVal is not described. The members of the identification mode have no descriptions;
  * Lost Mode may be the lost-in-space search or a lost track.
  */
@@ -598,7 +599,7 @@ enum {
     CUBEACP_STAR_ID_MODE_VAL_LOST_MODE = 1
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubeacp_star_id_mode_val_name(cubeacp_star_id_mode_val_t value)
 {
     switch (value) {
@@ -611,7 +612,7 @@ static inline const char *cubeacp_star_id_mode_val_name(cubeacp_star_id_mode_val
     }
 }
 
-/** ExecutionWaypoints: an enumeration. Table 168. Held by Current Execution Point in ACP Execution State. */
+/** ExecutionWaypoints: an enumeration. Table 168. Used by Current Execution Point in ACP Execution State. */
 typedef uint8_t cubeacp_execution_waypoints_t;
 
 enum {
@@ -647,7 +648,7 @@ enum {
     CUBEACP_EXECUTION_WAYPOINTS_WRITING_TO_FLASH = 12
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubeacp_execution_waypoints_name(cubeacp_execution_waypoints_t value)
 {
     switch (value) {
@@ -683,7 +684,7 @@ static inline const char *cubeacp_execution_waypoints_name(cubeacp_execution_way
 }
 
 /**
- * AsgpError: an enumeration. Table 171. Held by ASGP4 error in ASGP4 TLEs.
+ * AsgpError: an enumeration. Table 171. Used by ASGP4 error in ASGP4 TLEs.
  * @note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one module are spelt in
  * four ways.
  */
@@ -704,7 +705,7 @@ enum {
     CUBEACP_ASGP_ERROR_OVERFLOW = 3
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubeacp_asgp_error_name(cubeacp_asgp_error_t value)
 {
     switch (value) {
@@ -721,7 +722,7 @@ static inline const char *cubeacp_asgp_error_name(cubeacp_asgp_error_t value)
     }
 }
 
-/** ImSaveStatus: an enumeration. Table 177. Held by Status in Status of Image Capture and Save Operation. */
+/** ImSaveStatus: an enumeration. Table 177. Used by Status in Status of Image Capture and Save Operation. */
 typedef uint8_t cubeacp_im_save_status_t;
 
 enum {
@@ -737,7 +738,7 @@ enum {
     CUBEACP_IM_SAVE_STATUS_ERROR_WRITING_TO_SD_CARD = 4
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubeacp_im_save_status_name(cubeacp_im_save_status_t value)
 {
     switch (value) {
@@ -757,7 +758,7 @@ static inline const char *cubeacp_im_save_status_name(cubeacp_im_save_status_t v
 }
 
 /**
- * AxisSelect: an enumeration. Table 180. Held by Magnetorquer 1 Configuration in Set Magnetorquer Configuration and
+ * AxisSelect: an enumeration. Table 180. Used by Magnetorquer 1 Configuration in Set Magnetorquer Configuration and
  * ADCS Configuration; Magnetorquer 2 Configuration in Set Magnetorquer Configuration and ADCS Configuration;
  * Magnetorquer 3 Configuration in Set Magnetorquer Configuration and ADCS Configuration; RW1 Configuration in Set Wheel
  * Configuration and ADCS Configuration; RW2 Configuration in Set Wheel Configuration and ADCS Configuration; 17 other
@@ -786,7 +787,7 @@ enum {
     CUBEACP_AXIS_SELECT_NOT_USED = 6
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubeacp_axis_select_name(cubeacp_axis_select_t value)
 {
     switch (value) {
@@ -810,7 +811,7 @@ static inline const char *cubeacp_axis_select_name(cubeacp_axis_select_t value)
 }
 
 /**
- * PowerSelect: an enumeration. Table 185. Held by CubeControl Signal Power Selection in ADCS Power Control; CubeControl
+ * PowerSelect: an enumeration. Table 185. Used by CubeControl Signal Power Selection in ADCS Power Control; CubeControl
  * Motor Power Selection in ADCS Power Control; CubeSense1 Power Selection in ADCS Power Control; CubeSense2 Power
  * Selection in ADCS Power Control; CubeStarPower Power Selection in ADCS Power Control; 5 other fields.
  */
@@ -829,7 +830,7 @@ enum {
     CUBEACP_POWER_SELECT_POWER_STATE_KEPT_THE_SAME = 2
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubeacp_power_select_name(cubeacp_power_select_t value)
 {
     switch (value) {
@@ -845,7 +846,7 @@ static inline const char *cubeacp_power_select_name(cubeacp_power_select_t value
 }
 
 /**
- * AsgpFilter: an enumeration. Table 193. Held by ASGP4 filter in ADCS Configuration and Augmented-SGP4 Parameters.
+ * AsgpFilter: an enumeration. Table 193. Used by ASGP4 filter in ADCS Configuration and Augmented-SGP4 Parameters.
  * @note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one module are spelt in
  * four ways.
  */
@@ -858,7 +859,7 @@ enum {
     CUBEACP_ASGP_FILTER_AVERAGE = 1
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubeacp_asgp_filter_name(cubeacp_asgp_filter_t value)
 {
     switch (value) {
@@ -871,7 +872,7 @@ static inline const char *cubeacp_asgp_filter_name(cubeacp_asgp_filter_t value)
     }
 }
 
-/** AcpProgramType: an enumeration. Table 202. Held by ACP Type in ADCS System Configuration. */
+/** AcpProgramType: an enumeration. Table 202. Used by ACP Type in ADCS System Configuration. */
 typedef uint8_t cubeacp_acp_program_type_t;
 
 enum {
@@ -881,7 +882,7 @@ enum {
     CUBEACP_ACP_PROGRAM_TYPE_Y_MOMENTUM_ACP = 1
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubeacp_acp_program_type_name(cubeacp_acp_program_type_t value)
 {
     switch (value) {
@@ -895,7 +896,7 @@ static inline const char *cubeacp_acp_program_type_name(cubeacp_acp_program_type
 }
 
 /**
- * SpecialConSelect: an enumeration. Table 203. Held by Special Control Selection in ADCS System Configuration.
+ * SpecialConSelect: an enumeration. Table 203. Used by Special Control Selection in ADCS System Configuration.
  * @note ACP-024 (open): Control modes that are named and not listed. An inertial pointing control mode has a reference
  * vector, and GEO tracking, inertial and two sun pointing modes are special selections. The list of control modes has
  * none of them.
@@ -926,7 +927,7 @@ enum {
     CUBEACP_SPECIAL_CON_SELECT_Y_AXIS_SUN_POINTING = 4
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubeacp_special_con_select_name(cubeacp_special_con_select_t value)
 {
     switch (value) {
@@ -946,7 +947,7 @@ static inline const char *cubeacp_special_con_select_name(cubeacp_special_con_se
 }
 
 /**
- * CsCamType: an enumeration. Table 204. Held by CubeSense1 Camera Type in ADCS System Configuration; CubeSense2 Camera
+ * CsCamType: an enumeration. Table 204. Used by CubeSense1 Camera Type in ADCS System Configuration; CubeSense2 Camera
  * Type in ADCS System Configuration.
  */
 typedef uint8_t cubeacp_cs_cam_type_t;
@@ -958,7 +959,7 @@ enum {
     CUBEACP_CS_CAM_TYPE_NADIR_SENSOR = 1
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubeacp_cs_cam_type_name(cubeacp_cs_cam_type_t value)
 {
     switch (value) {
@@ -971,7 +972,7 @@ static inline const char *cubeacp_cs_cam_type_name(cubeacp_cs_cam_type_t value)
     }
 }
 
-/** GpsSelect: an enumeration. Table 205. Held by GPS Type in ADCS System Configuration. */
+/** GpsSelect: an enumeration. Table 205. Used by GPS Type in ADCS System Configuration. */
 typedef uint8_t cubeacp_gps_select_t;
 
 enum {
@@ -983,7 +984,7 @@ enum {
     CUBEACP_GPS_SELECT_SKYFOX_GPS = 2
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubeacp_gps_select_name(cubeacp_gps_select_t value)
 {
     switch (value) {
@@ -999,7 +1000,7 @@ static inline const char *cubeacp_gps_select_name(cubeacp_gps_select_t value)
 }
 
 /**
- * GpioPort: an enumeration. Table 206. Held by CC Signal Enable Port in ADCS System Configuration; CC Motor Enable Port
+ * GpioPort: an enumeration. Table 206. Used by CC Signal Enable Port in ADCS System Configuration; CC Motor Enable Port
  * in ADCS System Configuration; CC Common Enable Port in ADCS System Configuration; CubeSense1 Enable Port in ADCS
  * System Configuration; CubeSense2 Enable Port in ADCS System Configuration; 4 other fields.
  */
@@ -1020,7 +1021,7 @@ enum {
     CUBEACP_GPIO_PORT_PORT_F = 5
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubeacp_gpio_port_name(cubeacp_gpio_port_t value)
 {
     switch (value) {
@@ -1042,7 +1043,7 @@ static inline const char *cubeacp_gpio_port_name(cubeacp_gpio_port_t value)
 }
 
 /**
- * GpioPortPin: an enumeration. Table 207. Held by CC Signal Enable Pin in ADCS System Configuration; CC Motor Enable
+ * GpioPortPin: an enumeration. Table 207. Used by CC Signal Enable Pin in ADCS System Configuration; CC Motor Enable
  * Pin in ADCS System Configuration; CC Common Enable Pin in ADCS System Configuration; CubeSense1 Enable Pin in ADCS
  * System Configuration; CubeSense2 Enable Pin in ADCS System Configuration; 4 other fields.
  */
@@ -1083,7 +1084,7 @@ enum {
     CUBEACP_GPIO_PORT_PIN_PIN_15 = 15
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubeacp_gpio_port_pin_name(cubeacp_gpio_port_pin_t value)
 {
     switch (value) {
@@ -1125,7 +1126,7 @@ static inline const char *cubeacp_gpio_port_pin_name(cubeacp_gpio_port_pin_t val
 }
 
 /**
- * SdLogSelect: an enumeration. Table 211. Held by Log Destination in SD Log1 Configuration and SD Log2 Configuration.
+ * SdLogSelect: an enumeration. Table 211. Used by Log Destination in SD Log1 Configuration and SD Log2 Configuration.
  */
 typedef uint8_t cubeacp_sd_log_select_t;
 
@@ -1140,7 +1141,7 @@ enum {
     CUBEACP_SD_LOG_SELECT_SECONDARY_SD_CARD = 1
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubeacp_sd_log_select_name(cubeacp_sd_log_select_t value)
 {
     switch (value) {

@@ -14,7 +14,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_ESTIMATED_ANGULAR_RATES_ID 147u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_ESTIMATED_ANGULAR_RATES_LENGTH 6u
 
 /** Raw values. */
@@ -27,13 +27,13 @@ typedef struct {
     int16_t estimated_z_angular_rate;
 } cubeacp_estimated_angular_rates_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_estimated_angular_rates_init(cubeacp_estimated_angular_rates_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_estimated_angular_rates_decode(
     cubeacp_estimated_angular_rates_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -48,7 +48,7 @@ static inline icd_status_t cubeacp_estimated_angular_rates_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_estimated_angular_rates_encode(
     const cubeacp_estimated_angular_rates_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -63,7 +63,7 @@ static inline icd_status_t cubeacp_estimated_angular_rates_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_estimated_angular_rates_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -83,7 +83,8 @@ static inline int32_t cubeacp_estimated_angular_rates_estimated_x_angular_rate_m
 }
 
 /**
- * Sets Estimated X Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Estimated X Angular Rate in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
  */
 static inline icd_status_t cubeacp_estimated_angular_rates_set_estimated_x_angular_rate_mdeg_per_s(
     cubeacp_estimated_angular_rates_t *message,
@@ -104,7 +105,8 @@ static inline int32_t cubeacp_estimated_angular_rates_estimated_y_angular_rate_m
 }
 
 /**
- * Sets Estimated Y Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Estimated Y Angular Rate in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
  */
 static inline icd_status_t cubeacp_estimated_angular_rates_set_estimated_y_angular_rate_mdeg_per_s(
     cubeacp_estimated_angular_rates_t *message,
@@ -125,7 +127,8 @@ static inline int32_t cubeacp_estimated_angular_rates_estimated_z_angular_rate_m
 }
 
 /**
- * Sets Estimated Z Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Estimated Z Angular Rate in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
  */
 static inline icd_status_t cubeacp_estimated_angular_rates_set_estimated_z_angular_rate_mdeg_per_s(
     cubeacp_estimated_angular_rates_t *message,
@@ -147,7 +150,7 @@ static inline double cubeacp_estimated_angular_rates_estimated_x_angular_rate_de
     return icdgen_quotient(message->estimated_x_angular_rate, 100);
 }
 
-/** Sets Estimated X Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Estimated X Angular Rate in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimated_angular_rates_set_estimated_x_angular_rate_deg_per_s(
     cubeacp_estimated_angular_rates_t *message,
     double value)
@@ -162,7 +165,7 @@ static inline double cubeacp_estimated_angular_rates_estimated_y_angular_rate_de
     return icdgen_quotient(message->estimated_y_angular_rate, 100);
 }
 
-/** Sets Estimated Y Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Estimated Y Angular Rate in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimated_angular_rates_set_estimated_y_angular_rate_deg_per_s(
     cubeacp_estimated_angular_rates_t *message,
     double value)
@@ -177,7 +180,7 @@ static inline double cubeacp_estimated_angular_rates_estimated_z_angular_rate_de
     return icdgen_quotient(message->estimated_z_angular_rate, 100);
 }
 
-/** Sets Estimated Z Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Estimated Z Angular Rate in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimated_angular_rates_set_estimated_z_angular_rate_deg_per_s(
     cubeacp_estimated_angular_rates_t *message,
     double value)

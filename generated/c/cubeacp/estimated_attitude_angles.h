@@ -15,7 +15,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_ESTIMATED_ATTITUDE_ANGLES_ID 146u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_ESTIMATED_ATTITUDE_ANGLES_LENGTH 6u
 
 /** Raw values. */
@@ -28,13 +28,13 @@ typedef struct {
     int16_t estimated_yaw_angle;
 } cubeacp_estimated_attitude_angles_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_estimated_attitude_angles_init(cubeacp_estimated_attitude_angles_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_estimated_attitude_angles_decode(
     cubeacp_estimated_attitude_angles_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -49,7 +49,7 @@ static inline icd_status_t cubeacp_estimated_attitude_angles_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_estimated_attitude_angles_encode(
     const cubeacp_estimated_attitude_angles_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -64,7 +64,7 @@ static inline icd_status_t cubeacp_estimated_attitude_angles_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_estimated_attitude_angles_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -83,7 +83,10 @@ static inline int32_t cubeacp_estimated_attitude_angles_estimated_roll_angle_mde
     return message->estimated_roll_angle * INT32_C(10);
 }
 
-/** Sets Estimated Roll Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Estimated Roll Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_estimated_attitude_angles_set_estimated_roll_angle_mdeg(
     cubeacp_estimated_attitude_angles_t *message,
     int32_t value)
@@ -102,7 +105,10 @@ static inline int32_t cubeacp_estimated_attitude_angles_estimated_pitch_angle_md
     return message->estimated_pitch_angle * INT32_C(10);
 }
 
-/** Sets Estimated Pitch Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Estimated Pitch Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_estimated_attitude_angles_set_estimated_pitch_angle_mdeg(
     cubeacp_estimated_attitude_angles_t *message,
     int32_t value)
@@ -121,7 +127,9 @@ static inline int32_t cubeacp_estimated_attitude_angles_estimated_yaw_angle_mdeg
     return message->estimated_yaw_angle * INT32_C(10);
 }
 
-/** Sets Estimated Yaw Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Estimated Yaw Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_estimated_attitude_angles_set_estimated_yaw_angle_mdeg(
     cubeacp_estimated_attitude_angles_t *message,
     int32_t value)
@@ -142,7 +150,7 @@ static inline double cubeacp_estimated_attitude_angles_estimated_roll_angle_deg(
     return icdgen_quotient(message->estimated_roll_angle, 100);
 }
 
-/** Sets Estimated Roll Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Estimated Roll Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimated_attitude_angles_set_estimated_roll_angle_deg(
     cubeacp_estimated_attitude_angles_t *message,
     double value)
@@ -157,7 +165,7 @@ static inline double cubeacp_estimated_attitude_angles_estimated_pitch_angle_deg
     return icdgen_quotient(message->estimated_pitch_angle, 100);
 }
 
-/** Sets Estimated Pitch Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Estimated Pitch Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimated_attitude_angles_set_estimated_pitch_angle_deg(
     cubeacp_estimated_attitude_angles_t *message,
     double value)
@@ -172,7 +180,7 @@ static inline double cubeacp_estimated_attitude_angles_estimated_yaw_angle_deg(
     return icdgen_quotient(message->estimated_yaw_angle, 100);
 }
 
-/** Sets Estimated Yaw Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Estimated Yaw Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimated_attitude_angles_set_estimated_yaw_angle_deg(
     cubeacp_estimated_attitude_angles_t *message,
     double value)

@@ -14,7 +14,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_ESTIMATED_GYRO_BIAS_ID 161u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_ESTIMATED_GYRO_BIAS_LENGTH 6u
 
 /** Raw values. */
@@ -27,13 +27,13 @@ typedef struct {
     int16_t estimated_z_gyro_bias;
 } cubeacp_estimated_gyro_bias_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_estimated_gyro_bias_init(cubeacp_estimated_gyro_bias_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_estimated_gyro_bias_decode(
     cubeacp_estimated_gyro_bias_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -48,7 +48,7 @@ static inline icd_status_t cubeacp_estimated_gyro_bias_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_estimated_gyro_bias_encode(
     const cubeacp_estimated_gyro_bias_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -63,7 +63,7 @@ static inline icd_status_t cubeacp_estimated_gyro_bias_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_estimated_gyro_bias_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -82,7 +82,10 @@ static inline int32_t cubeacp_estimated_gyro_bias_estimated_x_gyro_bias_mdeg_per
     return message->estimated_x_gyro_bias;
 }
 
-/** Sets Estimated X-gyro Bias in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Estimated X-gyro Bias in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_estimated_gyro_bias_set_estimated_x_gyro_bias_mdeg_per_s(
     cubeacp_estimated_gyro_bias_t *message,
     int32_t value)
@@ -101,7 +104,10 @@ static inline int32_t cubeacp_estimated_gyro_bias_estimated_y_gyro_bias_mdeg_per
     return message->estimated_y_gyro_bias;
 }
 
-/** Sets Estimated Y-gyro Bias in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Estimated Y-gyro Bias in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_estimated_gyro_bias_set_estimated_y_gyro_bias_mdeg_per_s(
     cubeacp_estimated_gyro_bias_t *message,
     int32_t value)
@@ -120,7 +126,10 @@ static inline int32_t cubeacp_estimated_gyro_bias_estimated_z_gyro_bias_mdeg_per
     return message->estimated_z_gyro_bias;
 }
 
-/** Sets Estimated Z-gyro Bias in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Estimated Z-gyro Bias in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_estimated_gyro_bias_set_estimated_z_gyro_bias_mdeg_per_s(
     cubeacp_estimated_gyro_bias_t *message,
     int32_t value)
@@ -141,7 +150,7 @@ static inline double cubeacp_estimated_gyro_bias_estimated_x_gyro_bias_deg_per_s
     return icdgen_quotient(message->estimated_x_gyro_bias, 1000);
 }
 
-/** Sets Estimated X-gyro Bias in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Estimated X-gyro Bias in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimated_gyro_bias_set_estimated_x_gyro_bias_deg_per_s(
     cubeacp_estimated_gyro_bias_t *message,
     double value)
@@ -156,7 +165,7 @@ static inline double cubeacp_estimated_gyro_bias_estimated_y_gyro_bias_deg_per_s
     return icdgen_quotient(message->estimated_y_gyro_bias, 1000);
 }
 
-/** Sets Estimated Y-gyro Bias in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Estimated Y-gyro Bias in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimated_gyro_bias_set_estimated_y_gyro_bias_deg_per_s(
     cubeacp_estimated_gyro_bias_t *message,
     double value)
@@ -171,7 +180,7 @@ static inline double cubeacp_estimated_gyro_bias_estimated_z_gyro_bias_deg_per_s
     return icdgen_quotient(message->estimated_z_gyro_bias, 1000);
 }
 
-/** Sets Estimated Z-gyro Bias in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Estimated Z-gyro Bias in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimated_gyro_bias_set_estimated_z_gyro_bias_deg_per_s(
     cubeacp_estimated_gyro_bias_t *message,
     double value)

@@ -23,7 +23,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_ESTIMATION_DATA_ID 193u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_ESTIMATION_DATA_LENGTH 42u
 
 /** Raw values. */
@@ -106,13 +106,13 @@ typedef struct {
     int16_t z_angular_rate_covariance;
 } cubeacp_estimation_data_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_estimation_data_init(cubeacp_estimation_data_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 42 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 42 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_estimation_data_decode(
     cubeacp_estimation_data_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -131,7 +131,7 @@ static inline icd_status_t cubeacp_estimation_data_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 42 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 42 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_estimation_data_encode(
     const cubeacp_estimation_data_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -150,7 +150,7 @@ static inline icd_status_t cubeacp_estimation_data_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_estimation_data_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -257,7 +257,7 @@ static inline int32_t cubeacp_estimation_data_igrf_modelled_magnetic_field_x_nt(
     return message->igrf_modelled_magnetic_field_x * INT32_C(10);
 }
 
-/** Sets IGRF Modelled Magnetic Field X in nT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set IGRF Modelled Magnetic Field X in nT to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimation_data_set_igrf_modelled_magnetic_field_x_nt(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -276,7 +276,7 @@ static inline int32_t cubeacp_estimation_data_igrf_modelled_magnetic_field_y_nt(
     return message->igrf_modelled_magnetic_field_y * INT32_C(10);
 }
 
-/** Sets IGRF Modelled Magnetic Field Y in nT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set IGRF Modelled Magnetic Field Y in nT to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimation_data_set_igrf_modelled_magnetic_field_y_nt(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -295,7 +295,7 @@ static inline int32_t cubeacp_estimation_data_igrf_modelled_magnetic_field_z_nt(
     return message->igrf_modelled_magnetic_field_z * INT32_C(10);
 }
 
-/** Sets IGRF Modelled Magnetic Field Z in nT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set IGRF Modelled Magnetic Field Z in nT to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimation_data_set_igrf_modelled_magnetic_field_z_nt(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -313,7 +313,7 @@ static inline int32_t cubeacp_estimation_data_modelled_sun_vector_x_micro(const 
     return message->modelled_sun_vector_x * INT32_C(100);
 }
 
-/** Sets Modelled Sun Vector X in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Modelled Sun Vector X in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimation_data_set_modelled_sun_vector_x_micro(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -331,7 +331,7 @@ static inline int32_t cubeacp_estimation_data_modelled_sun_vector_y_micro(const 
     return message->modelled_sun_vector_y * INT32_C(100);
 }
 
-/** Sets Modelled Sun Vector Y in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Modelled Sun Vector Y in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimation_data_set_modelled_sun_vector_y_micro(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -349,7 +349,7 @@ static inline int32_t cubeacp_estimation_data_modelled_sun_vector_z_micro(const 
     return message->modelled_sun_vector_z * INT32_C(100);
 }
 
-/** Sets Modelled Sun Vector Z in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Modelled Sun Vector Z in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimation_data_set_modelled_sun_vector_z_micro(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -367,7 +367,10 @@ static inline int32_t cubeacp_estimation_data_estimated_x_gyro_bias_mdeg_per_s(c
     return message->estimated_x_gyro_bias;
 }
 
-/** Sets Estimated X-gyro Bias in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Estimated X-gyro Bias in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_estimation_data_set_estimated_x_gyro_bias_mdeg_per_s(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -385,7 +388,10 @@ static inline int32_t cubeacp_estimation_data_estimated_y_gyro_bias_mdeg_per_s(c
     return message->estimated_y_gyro_bias;
 }
 
-/** Sets Estimated Y-gyro Bias in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Estimated Y-gyro Bias in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_estimation_data_set_estimated_y_gyro_bias_mdeg_per_s(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -403,7 +409,10 @@ static inline int32_t cubeacp_estimation_data_estimated_z_gyro_bias_mdeg_per_s(c
     return message->estimated_z_gyro_bias;
 }
 
-/** Sets Estimated Z-gyro Bias in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Estimated Z-gyro Bias in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_estimation_data_set_estimated_z_gyro_bias_mdeg_per_s(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -421,7 +430,7 @@ static inline int32_t cubeacp_estimation_data_innovation_vector_x_micro(const cu
     return message->innovation_vector_x * INT32_C(100);
 }
 
-/** Sets Innovation Vector X in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Innovation Vector X in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimation_data_set_innovation_vector_x_micro(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -439,7 +448,7 @@ static inline int32_t cubeacp_estimation_data_innovation_vector_y_micro(const cu
     return message->innovation_vector_y * INT32_C(100);
 }
 
-/** Sets Innovation Vector Y in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Innovation Vector Y in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimation_data_set_innovation_vector_y_micro(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -457,7 +466,7 @@ static inline int32_t cubeacp_estimation_data_innovation_vector_z_micro(const cu
     return message->innovation_vector_z * INT32_C(100);
 }
 
-/** Sets Innovation Vector Z in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Innovation Vector Z in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimation_data_set_innovation_vector_z_micro(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -475,7 +484,7 @@ static inline int32_t cubeacp_estimation_data_quaternion_error_q1_micro(const cu
     return message->quaternion_error_q1 * INT32_C(100);
 }
 
-/** Sets Quaternion Error - Q1 in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Quaternion Error - Q1 in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimation_data_set_quaternion_error_q1_micro(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -493,7 +502,7 @@ static inline int32_t cubeacp_estimation_data_quaternion_error_q2_micro(const cu
     return message->quaternion_error_q2 * INT32_C(100);
 }
 
-/** Sets Quaternion Error - Q2 in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Quaternion Error - Q2 in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimation_data_set_quaternion_error_q2_micro(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -511,7 +520,7 @@ static inline int32_t cubeacp_estimation_data_quaternion_error_q3_micro(const cu
     return message->quaternion_error_q3 * INT32_C(100);
 }
 
-/** Sets Quaternion Error - Q3 in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Quaternion Error - Q3 in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimation_data_set_quaternion_error_q3_micro(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -530,7 +539,10 @@ static inline int32_t cubeacp_estimation_data_quaternion_covariance_q1_rms_milli
     return message->quaternion_covariance_q1_rms;
 }
 
-/** Sets Quaternion Covariance - Q1 RMS in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Quaternion Covariance - Q1 RMS in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_estimation_data_set_quaternion_covariance_q1_rms_milli(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -549,7 +561,10 @@ static inline int32_t cubeacp_estimation_data_quaternion_covariance_q2_rms_milli
     return message->quaternion_covariance_q2_rms;
 }
 
-/** Sets Quaternion Covariance - Q2 RMS in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Quaternion Covariance - Q2 RMS in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_estimation_data_set_quaternion_covariance_q2_rms_milli(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -568,7 +583,10 @@ static inline int32_t cubeacp_estimation_data_quaternion_covariance_q3_rms_milli
     return message->quaternion_covariance_q3_rms;
 }
 
-/** Sets Quaternion Covariance - Q3 RMS in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Quaternion Covariance - Q3 RMS in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_estimation_data_set_quaternion_covariance_q3_rms_milli(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -586,7 +604,9 @@ static inline int32_t cubeacp_estimation_data_x_angular_rate_covariance_milli(co
     return message->x_angular_rate_covariance;
 }
 
-/** Sets X Angular Rate Covariance in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set X Angular Rate Covariance in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_estimation_data_set_x_angular_rate_covariance_milli(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -604,7 +624,9 @@ static inline int32_t cubeacp_estimation_data_y_angular_rate_covariance_milli(co
     return message->y_angular_rate_covariance;
 }
 
-/** Sets Y Angular Rate Covariance in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Y Angular Rate Covariance in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_estimation_data_set_y_angular_rate_covariance_milli(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -622,7 +644,9 @@ static inline int32_t cubeacp_estimation_data_z_angular_rate_covariance_milli(co
     return message->z_angular_rate_covariance;
 }
 
-/** Sets Z Angular Rate Covariance in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Z Angular Rate Covariance in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_estimation_data_set_z_angular_rate_covariance_milli(
     cubeacp_estimation_data_t *message,
     int32_t value)
@@ -642,7 +666,7 @@ static inline double cubeacp_estimation_data_igrf_modelled_magnetic_field_x_ut(c
     return icdgen_quotient(message->igrf_modelled_magnetic_field_x, 100);
 }
 
-/** Sets IGRF Modelled Magnetic Field X in uT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set IGRF Modelled Magnetic Field X in uT to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimation_data_set_igrf_modelled_magnetic_field_x_ut(
     cubeacp_estimation_data_t *message,
     double value)
@@ -656,7 +680,7 @@ static inline double cubeacp_estimation_data_igrf_modelled_magnetic_field_y_ut(c
     return icdgen_quotient(message->igrf_modelled_magnetic_field_y, 100);
 }
 
-/** Sets IGRF Modelled Magnetic Field Y in uT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set IGRF Modelled Magnetic Field Y in uT to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimation_data_set_igrf_modelled_magnetic_field_y_ut(
     cubeacp_estimation_data_t *message,
     double value)
@@ -670,7 +694,7 @@ static inline double cubeacp_estimation_data_igrf_modelled_magnetic_field_z_ut(c
     return icdgen_quotient(message->igrf_modelled_magnetic_field_z, 100);
 }
 
-/** Sets IGRF Modelled Magnetic Field Z in uT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set IGRF Modelled Magnetic Field Z in uT to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimation_data_set_igrf_modelled_magnetic_field_z_ut(
     cubeacp_estimation_data_t *message,
     double value)
@@ -684,7 +708,10 @@ static inline double cubeacp_estimation_data_modelled_sun_vector_x_physical(cons
     return icdgen_quotient(message->modelled_sun_vector_x, 10000);
 }
 
-/** Sets Modelled Sun Vector X, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Modelled Sun Vector X, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_estimation_data_set_modelled_sun_vector_x_physical(
     cubeacp_estimation_data_t *message,
     double value)
@@ -698,7 +725,10 @@ static inline double cubeacp_estimation_data_modelled_sun_vector_y_physical(cons
     return icdgen_quotient(message->modelled_sun_vector_y, 10000);
 }
 
-/** Sets Modelled Sun Vector Y, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Modelled Sun Vector Y, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_estimation_data_set_modelled_sun_vector_y_physical(
     cubeacp_estimation_data_t *message,
     double value)
@@ -712,7 +742,10 @@ static inline double cubeacp_estimation_data_modelled_sun_vector_z_physical(cons
     return icdgen_quotient(message->modelled_sun_vector_z, 10000);
 }
 
-/** Sets Modelled Sun Vector Z, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Modelled Sun Vector Z, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_estimation_data_set_modelled_sun_vector_z_physical(
     cubeacp_estimation_data_t *message,
     double value)
@@ -726,7 +759,7 @@ static inline double cubeacp_estimation_data_estimated_x_gyro_bias_deg_per_s(con
     return icdgen_quotient(message->estimated_x_gyro_bias, 1000);
 }
 
-/** Sets Estimated X-gyro Bias in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Estimated X-gyro Bias in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimation_data_set_estimated_x_gyro_bias_deg_per_s(
     cubeacp_estimation_data_t *message,
     double value)
@@ -740,7 +773,7 @@ static inline double cubeacp_estimation_data_estimated_y_gyro_bias_deg_per_s(con
     return icdgen_quotient(message->estimated_y_gyro_bias, 1000);
 }
 
-/** Sets Estimated Y-gyro Bias in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Estimated Y-gyro Bias in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimation_data_set_estimated_y_gyro_bias_deg_per_s(
     cubeacp_estimation_data_t *message,
     double value)
@@ -754,7 +787,7 @@ static inline double cubeacp_estimation_data_estimated_z_gyro_bias_deg_per_s(con
     return icdgen_quotient(message->estimated_z_gyro_bias, 1000);
 }
 
-/** Sets Estimated Z-gyro Bias in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Estimated Z-gyro Bias in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimation_data_set_estimated_z_gyro_bias_deg_per_s(
     cubeacp_estimation_data_t *message,
     double value)
@@ -768,7 +801,9 @@ static inline double cubeacp_estimation_data_innovation_vector_x_physical(const 
     return icdgen_quotient(message->innovation_vector_x, 10000);
 }
 
-/** Sets Innovation Vector X, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Innovation Vector X, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_estimation_data_set_innovation_vector_x_physical(
     cubeacp_estimation_data_t *message,
     double value)
@@ -782,7 +817,9 @@ static inline double cubeacp_estimation_data_innovation_vector_y_physical(const 
     return icdgen_quotient(message->innovation_vector_y, 10000);
 }
 
-/** Sets Innovation Vector Y, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Innovation Vector Y, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_estimation_data_set_innovation_vector_y_physical(
     cubeacp_estimation_data_t *message,
     double value)
@@ -796,7 +833,9 @@ static inline double cubeacp_estimation_data_innovation_vector_z_physical(const 
     return icdgen_quotient(message->innovation_vector_z, 10000);
 }
 
-/** Sets Innovation Vector Z, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Innovation Vector Z, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_estimation_data_set_innovation_vector_z_physical(
     cubeacp_estimation_data_t *message,
     double value)
@@ -810,7 +849,10 @@ static inline double cubeacp_estimation_data_quaternion_error_q1_physical(const 
     return icdgen_quotient(message->quaternion_error_q1, 10000);
 }
 
-/** Sets Quaternion Error - Q1, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Quaternion Error - Q1, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_estimation_data_set_quaternion_error_q1_physical(
     cubeacp_estimation_data_t *message,
     double value)
@@ -824,7 +866,10 @@ static inline double cubeacp_estimation_data_quaternion_error_q2_physical(const 
     return icdgen_quotient(message->quaternion_error_q2, 10000);
 }
 
-/** Sets Quaternion Error - Q2, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Quaternion Error - Q2, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_estimation_data_set_quaternion_error_q2_physical(
     cubeacp_estimation_data_t *message,
     double value)
@@ -838,7 +883,10 @@ static inline double cubeacp_estimation_data_quaternion_error_q3_physical(const 
     return icdgen_quotient(message->quaternion_error_q3, 10000);
 }
 
-/** Sets Quaternion Error - Q3, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Quaternion Error - Q3, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_estimation_data_set_quaternion_error_q3_physical(
     cubeacp_estimation_data_t *message,
     double value)
@@ -854,7 +902,8 @@ static inline double cubeacp_estimation_data_quaternion_covariance_q1_rms_physic
 }
 
 /**
- * Sets Quaternion Covariance - Q1 RMS, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Quaternion Covariance - Q1 RMS, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_estimation_data_set_quaternion_covariance_q1_rms_physical(
     cubeacp_estimation_data_t *message,
@@ -871,7 +920,8 @@ static inline double cubeacp_estimation_data_quaternion_covariance_q2_rms_physic
 }
 
 /**
- * Sets Quaternion Covariance - Q2 RMS, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Quaternion Covariance - Q2 RMS, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_estimation_data_set_quaternion_covariance_q2_rms_physical(
     cubeacp_estimation_data_t *message,
@@ -888,7 +938,8 @@ static inline double cubeacp_estimation_data_quaternion_covariance_q3_rms_physic
 }
 
 /**
- * Sets Quaternion Covariance - Q3 RMS, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Quaternion Covariance - Q3 RMS, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_estimation_data_set_quaternion_covariance_q3_rms_physical(
     cubeacp_estimation_data_t *message,
@@ -904,7 +955,10 @@ static inline double cubeacp_estimation_data_x_angular_rate_covariance_physical(
     return icdgen_quotient(message->x_angular_rate_covariance, 1000);
 }
 
-/** Sets X Angular Rate Covariance, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set X Angular Rate Covariance, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_estimation_data_set_x_angular_rate_covariance_physical(
     cubeacp_estimation_data_t *message,
     double value)
@@ -919,7 +973,10 @@ static inline double cubeacp_estimation_data_y_angular_rate_covariance_physical(
     return icdgen_quotient(message->y_angular_rate_covariance, 1000);
 }
 
-/** Sets Y Angular Rate Covariance, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Y Angular Rate Covariance, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_estimation_data_set_y_angular_rate_covariance_physical(
     cubeacp_estimation_data_t *message,
     double value)
@@ -934,7 +991,10 @@ static inline double cubeacp_estimation_data_z_angular_rate_covariance_physical(
     return icdgen_quotient(message->z_angular_rate_covariance, 1000);
 }
 
-/** Sets Z Angular Rate Covariance, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Z Angular Rate Covariance, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_estimation_data_set_z_angular_rate_covariance_physical(
     cubeacp_estimation_data_t *message,
     double value)

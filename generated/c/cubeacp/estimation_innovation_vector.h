@@ -13,7 +13,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_ESTIMATION_INNOVATION_VECTOR_ID 162u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_ESTIMATION_INNOVATION_VECTOR_LENGTH 6u
 
 /** Raw values. */
@@ -36,13 +36,13 @@ typedef struct {
     int16_t innovation_vector_z;
 } cubeacp_estimation_innovation_vector_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_estimation_innovation_vector_init(cubeacp_estimation_innovation_vector_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_estimation_innovation_vector_decode(
     cubeacp_estimation_innovation_vector_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -57,7 +57,7 @@ static inline icd_status_t cubeacp_estimation_innovation_vector_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_estimation_innovation_vector_encode(
     const cubeacp_estimation_innovation_vector_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -72,7 +72,7 @@ static inline icd_status_t cubeacp_estimation_innovation_vector_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_estimation_innovation_vector_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -91,7 +91,7 @@ static inline int32_t cubeacp_estimation_innovation_vector_innovation_vector_x_m
     return message->innovation_vector_x * INT32_C(100);
 }
 
-/** Sets Innovation Vector X in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Innovation Vector X in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimation_innovation_vector_set_innovation_vector_x_micro(
     cubeacp_estimation_innovation_vector_t *message,
     int32_t value)
@@ -110,7 +110,7 @@ static inline int32_t cubeacp_estimation_innovation_vector_innovation_vector_y_m
     return message->innovation_vector_y * INT32_C(100);
 }
 
-/** Sets Innovation Vector Y in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Innovation Vector Y in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimation_innovation_vector_set_innovation_vector_y_micro(
     cubeacp_estimation_innovation_vector_t *message,
     int32_t value)
@@ -129,7 +129,7 @@ static inline int32_t cubeacp_estimation_innovation_vector_innovation_vector_z_m
     return message->innovation_vector_z * INT32_C(100);
 }
 
-/** Sets Innovation Vector Z in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Innovation Vector Z in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_estimation_innovation_vector_set_innovation_vector_z_micro(
     cubeacp_estimation_innovation_vector_t *message,
     int32_t value)
@@ -150,7 +150,9 @@ static inline double cubeacp_estimation_innovation_vector_innovation_vector_x_ph
     return icdgen_quotient(message->innovation_vector_x, 10000);
 }
 
-/** Sets Innovation Vector X, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Innovation Vector X, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_estimation_innovation_vector_set_innovation_vector_x_physical(
     cubeacp_estimation_innovation_vector_t *message,
     double value)
@@ -165,7 +167,9 @@ static inline double cubeacp_estimation_innovation_vector_innovation_vector_y_ph
     return icdgen_quotient(message->innovation_vector_y, 10000);
 }
 
-/** Sets Innovation Vector Y, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Innovation Vector Y, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_estimation_innovation_vector_set_innovation_vector_y_physical(
     cubeacp_estimation_innovation_vector_t *message,
     double value)
@@ -180,7 +184,9 @@ static inline double cubeacp_estimation_innovation_vector_innovation_vector_z_ph
     return icdgen_quotient(message->innovation_vector_z, 10000);
 }
 
-/** Sets Innovation Vector Z, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Innovation Vector Z, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_estimation_innovation_vector_set_innovation_vector_z_physical(
     cubeacp_estimation_innovation_vector_t *message,
     double value)

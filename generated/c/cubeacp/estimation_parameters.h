@@ -5,7 +5,7 @@
 
 /**
  * @file
- * Estimation Parameters: configuration, set by telecommand 27, got by telemetry 223, 31 bytes. Table 200.
+ * Estimation Parameters: configuration, set by telecommand 27, read by telemetry 223, 31 bytes. Table 200.
  * Noise covariances, and which sensors the estimator uses.
  * @note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained. They are written 0 and
  * ignored.
@@ -20,7 +20,7 @@
 #define CUBEACP_ESTIMATION_PARAMETERS_SET_ID 27u
 /** Id of the telemetry that gets it. */
 #define CUBEACP_ESTIMATION_PARAMETERS_GET_ID 223u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_ESTIMATION_PARAMETERS_LENGTH 31u
 
 /** Raw values. */
@@ -109,13 +109,13 @@ typedef struct {
     uint8_t cam2_period;
 } cubeacp_estimation_parameters_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_estimation_parameters_init(cubeacp_estimation_parameters_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 31 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 31 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_estimation_parameters_decode(
     cubeacp_estimation_parameters_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -149,7 +149,7 @@ static inline icd_status_t cubeacp_estimation_parameters_decode(
     return ICD_OK;
 }
 
-/** Name of the first field whose raw value has more bits than the field; NULL if all fit. */
+/** Return the name of the first field whose raw value has more bits than the field; NULL if all fit. */
 static inline const char *cubeacp_estimation_parameters_misfit(const cubeacp_estimation_parameters_t *message)
 {
     if ((message->magnetometer_mode & 0xFCu) != 0u) {
@@ -168,8 +168,8 @@ static inline const char *cubeacp_estimation_parameters_misfit(const cubeacp_est
 }
 
 /**
- * Writes a frame of 31 bytes, reserved bits 0. ICD_ERROR_LENGTH if the buffer is smaller, ICD_ERROR_RANGE if a raw
- * value does not fit its field; nothing is written then.
+ * Encode a frame of 31 bytes, reserved bits 0. Return ICD_ERROR_LENGTH if the buffer is too small, and ICD_ERROR_RANGE
+ * if a raw value does not fit into its field. Nothing is written in case of an error.
  */
 static inline icd_status_t cubeacp_estimation_parameters_encode(
     const cubeacp_estimation_parameters_t *ICDGEN_RESTRICT message,
@@ -213,7 +213,7 @@ static inline icd_status_t cubeacp_estimation_parameters_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_estimation_parameters_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

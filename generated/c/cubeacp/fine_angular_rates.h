@@ -14,7 +14,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_FINE_ANGULAR_RATES_ID 201u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_FINE_ANGULAR_RATES_LENGTH 6u
 
 /** Raw values. */
@@ -41,13 +41,13 @@ typedef struct {
     int16_t estimated_z_angular_rate;
 } cubeacp_fine_angular_rates_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_fine_angular_rates_init(cubeacp_fine_angular_rates_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_fine_angular_rates_decode(
     cubeacp_fine_angular_rates_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -62,7 +62,7 @@ static inline icd_status_t cubeacp_fine_angular_rates_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_fine_angular_rates_encode(
     const cubeacp_fine_angular_rates_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -77,7 +77,7 @@ static inline icd_status_t cubeacp_fine_angular_rates_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_fine_angular_rates_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -97,7 +97,8 @@ static inline int32_t cubeacp_fine_angular_rates_estimated_x_angular_rate_mdeg_p
 }
 
 /**
- * Sets Estimated X Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Estimated X Angular Rate in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
  */
 static inline icd_status_t cubeacp_fine_angular_rates_set_estimated_x_angular_rate_mdeg_per_s(
     cubeacp_fine_angular_rates_t *message,
@@ -118,7 +119,8 @@ static inline int32_t cubeacp_fine_angular_rates_estimated_y_angular_rate_mdeg_p
 }
 
 /**
- * Sets Estimated Y Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Estimated Y Angular Rate in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
  */
 static inline icd_status_t cubeacp_fine_angular_rates_set_estimated_y_angular_rate_mdeg_per_s(
     cubeacp_fine_angular_rates_t *message,
@@ -139,7 +141,8 @@ static inline int32_t cubeacp_fine_angular_rates_estimated_z_angular_rate_mdeg_p
 }
 
 /**
- * Sets Estimated Z Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Estimated Z Angular Rate in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
  */
 static inline icd_status_t cubeacp_fine_angular_rates_set_estimated_z_angular_rate_mdeg_per_s(
     cubeacp_fine_angular_rates_t *message,
@@ -161,7 +164,7 @@ static inline double cubeacp_fine_angular_rates_estimated_x_angular_rate_deg_per
     return icdgen_quotient(message->estimated_x_angular_rate, 1000);
 }
 
-/** Sets Estimated X Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Estimated X Angular Rate in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_fine_angular_rates_set_estimated_x_angular_rate_deg_per_s(
     cubeacp_fine_angular_rates_t *message,
     double value)
@@ -176,7 +179,7 @@ static inline double cubeacp_fine_angular_rates_estimated_y_angular_rate_deg_per
     return icdgen_quotient(message->estimated_y_angular_rate, 1000);
 }
 
-/** Sets Estimated Y Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Estimated Y Angular Rate in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_fine_angular_rates_set_estimated_y_angular_rate_deg_per_s(
     cubeacp_fine_angular_rates_t *message,
     double value)
@@ -191,7 +194,7 @@ static inline double cubeacp_fine_angular_rates_estimated_z_angular_rate_deg_per
     return icdgen_quotient(message->estimated_z_angular_rate, 1000);
 }
 
-/** Sets Estimated Z Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Estimated Z Angular Rate in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_fine_angular_rates_set_estimated_z_angular_rate_deg_per_s(
     cubeacp_fine_angular_rates_t *message,
     double value)

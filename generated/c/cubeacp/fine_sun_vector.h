@@ -17,7 +17,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_FINE_SUN_VECTOR_ID 153u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_FINE_SUN_VECTOR_LENGTH 6u
 
 /** Raw values. */
@@ -30,13 +30,13 @@ typedef struct {
     int16_t sun_z;
 } cubeacp_fine_sun_vector_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_fine_sun_vector_init(cubeacp_fine_sun_vector_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_fine_sun_vector_decode(
     cubeacp_fine_sun_vector_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -51,7 +51,7 @@ static inline icd_status_t cubeacp_fine_sun_vector_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_fine_sun_vector_encode(
     const cubeacp_fine_sun_vector_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -66,7 +66,7 @@ static inline icd_status_t cubeacp_fine_sun_vector_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_fine_sun_vector_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -84,7 +84,7 @@ static inline int32_t cubeacp_fine_sun_vector_sun_x_micro(const cubeacp_fine_sun
     return message->sun_x * INT32_C(100);
 }
 
-/** Sets Sun X in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Sun X in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_fine_sun_vector_set_sun_x_micro(cubeacp_fine_sun_vector_t *message, int32_t value)
 {
     if ((value < -3276850) || (value > 3276749)) {
@@ -100,7 +100,7 @@ static inline int32_t cubeacp_fine_sun_vector_sun_y_micro(const cubeacp_fine_sun
     return message->sun_y * INT32_C(100);
 }
 
-/** Sets Sun Y in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Sun Y in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_fine_sun_vector_set_sun_y_micro(cubeacp_fine_sun_vector_t *message, int32_t value)
 {
     if ((value < -3276850) || (value > 3276749)) {
@@ -116,7 +116,7 @@ static inline int32_t cubeacp_fine_sun_vector_sun_z_micro(const cubeacp_fine_sun
     return message->sun_z * INT32_C(100);
 }
 
-/** Sets Sun Z in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Sun Z in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_fine_sun_vector_set_sun_z_micro(cubeacp_fine_sun_vector_t *message, int32_t value)
 {
     if ((value < -3276850) || (value > 3276749)) {
@@ -134,7 +134,7 @@ static inline double cubeacp_fine_sun_vector_sun_x_physical(const cubeacp_fine_s
     return icdgen_quotient(message->sun_x, 10000);
 }
 
-/** Sets Sun X, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Sun X, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_fine_sun_vector_set_sun_x_physical(cubeacp_fine_sun_vector_t *message, double value)
 {
     return icdgen_set_i16(&message->sun_x, value, 1, 0, 10000, INT16_MIN, INT16_MAX);
@@ -146,7 +146,7 @@ static inline double cubeacp_fine_sun_vector_sun_y_physical(const cubeacp_fine_s
     return icdgen_quotient(message->sun_y, 10000);
 }
 
-/** Sets Sun Y, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Sun Y, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_fine_sun_vector_set_sun_y_physical(cubeacp_fine_sun_vector_t *message, double value)
 {
     return icdgen_set_i16(&message->sun_y, value, 1, 0, 10000, INT16_MIN, INT16_MAX);
@@ -158,7 +158,7 @@ static inline double cubeacp_fine_sun_vector_sun_z_physical(const cubeacp_fine_s
     return icdgen_quotient(message->sun_z, 10000);
 }
 
-/** Sets Sun Z, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Sun Z, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_fine_sun_vector_set_sun_z_physical(cubeacp_fine_sun_vector_t *message, double value)
 {
     return icdgen_set_i16(&message->sun_z, value, 1, 0, 10000, INT16_MIN, INT16_MAX);

@@ -14,7 +14,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_IGRF_MODELLED_MAGNETIC_FIELD_VECTOR_ID 159u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_IGRF_MODELLED_MAGNETIC_FIELD_VECTOR_LENGTH 6u
 
 /** Raw values. */
@@ -31,14 +31,14 @@ typedef struct {
     int16_t field_z;
 } cubeacp_igrf_modelled_magnetic_field_vector_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_igrf_modelled_magnetic_field_vector_init(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_decode(
     cubeacp_igrf_modelled_magnetic_field_vector_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -53,7 +53,7 @@ static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_encode(
     const cubeacp_igrf_modelled_magnetic_field_vector_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -68,7 +68,7 @@ static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_igrf_modelled_magnetic_field_vector_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -87,7 +87,7 @@ static inline int32_t cubeacp_igrf_modelled_magnetic_field_vector_field_x_nt(
     return message->field_x * INT32_C(10);
 }
 
-/** Sets IGRF Modelled Magnetic Field X in nT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set IGRF Modelled Magnetic Field X in nT to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field_x_nt(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     int32_t value)
@@ -106,7 +106,7 @@ static inline int32_t cubeacp_igrf_modelled_magnetic_field_vector_field_y_nt(
     return message->field_y * INT32_C(10);
 }
 
-/** Sets IGRF Modelled Magnetic Field Y in nT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set IGRF Modelled Magnetic Field Y in nT to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field_y_nt(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     int32_t value)
@@ -125,7 +125,7 @@ static inline int32_t cubeacp_igrf_modelled_magnetic_field_vector_field_z_nt(
     return message->field_z * INT32_C(10);
 }
 
-/** Sets IGRF Modelled Magnetic Field Z in nT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set IGRF Modelled Magnetic Field Z in nT to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field_z_nt(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     int32_t value)
@@ -146,7 +146,7 @@ static inline double cubeacp_igrf_modelled_magnetic_field_vector_field_x_ut(
     return icdgen_quotient(message->field_x, 100);
 }
 
-/** Sets IGRF Modelled Magnetic Field X in uT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set IGRF Modelled Magnetic Field X in uT to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field_x_ut(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     double value)
@@ -161,7 +161,7 @@ static inline double cubeacp_igrf_modelled_magnetic_field_vector_field_y_ut(
     return icdgen_quotient(message->field_y, 100);
 }
 
-/** Sets IGRF Modelled Magnetic Field Y in uT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set IGRF Modelled Magnetic Field Y in uT to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field_y_ut(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     double value)
@@ -176,7 +176,7 @@ static inline double cubeacp_igrf_modelled_magnetic_field_vector_field_z_ut(
     return icdgen_quotient(message->field_z, 100);
 }
 
-/** Sets IGRF Modelled Magnetic Field Z in uT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set IGRF Modelled Magnetic Field Z in uT to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field_z_ut(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     double value)

@@ -5,7 +5,7 @@
 
 /**
  * @file
- * Inertial Pointing Reference Vector: configuration, set by telecommand 34, got by telemetry 238, 6 bytes. Table 214.
+ * Inertial Pointing Reference Vector: configuration, set by telecommand 34, read by telemetry 238, 6 bytes. Table 214.
  * Unit vector for the inertial pointing mode.
  * @note ACP-024 (open): Control modes that are named and not listed. An inertial pointing control mode has a reference
  * vector, and GEO tracking, inertial and two sun pointing modes are special selections. The list of control modes has
@@ -18,7 +18,7 @@
 #define CUBEACP_INERTIAL_POINTING_REFERENCE_VECTOR_SET_ID 34u
 /** Id of the telemetry that gets it. */
 #define CUBEACP_INERTIAL_POINTING_REFERENCE_VECTOR_GET_ID 238u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_INERTIAL_POINTING_REFERENCE_VECTOR_LENGTH 6u
 
 /** Raw values. */
@@ -41,14 +41,14 @@ typedef struct {
     int16_t reference_z;
 } cubeacp_inertial_pointing_reference_vector_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_inertial_pointing_reference_vector_init(
     cubeacp_inertial_pointing_reference_vector_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_inertial_pointing_reference_vector_decode(
     cubeacp_inertial_pointing_reference_vector_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -63,7 +63,7 @@ static inline icd_status_t cubeacp_inertial_pointing_reference_vector_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_inertial_pointing_reference_vector_encode(
     const cubeacp_inertial_pointing_reference_vector_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -78,7 +78,7 @@ static inline icd_status_t cubeacp_inertial_pointing_reference_vector_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_inertial_pointing_reference_vector_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -97,7 +97,7 @@ static inline int32_t cubeacp_inertial_pointing_reference_vector_reference_x_mic
     return message->reference_x * INT32_C(100);
 }
 
-/** Sets Inertial Reference X in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Inertial Reference X in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_reference_x_micro(
     cubeacp_inertial_pointing_reference_vector_t *message,
     int32_t value)
@@ -116,7 +116,7 @@ static inline int32_t cubeacp_inertial_pointing_reference_vector_reference_y_mic
     return message->reference_y * INT32_C(100);
 }
 
-/** Sets Inertial Reference Y in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Inertial Reference Y in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_reference_y_micro(
     cubeacp_inertial_pointing_reference_vector_t *message,
     int32_t value)
@@ -135,7 +135,7 @@ static inline int32_t cubeacp_inertial_pointing_reference_vector_reference_z_mic
     return message->reference_z * INT32_C(100);
 }
 
-/** Sets Inertial Reference Z in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Inertial Reference Z in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_reference_z_micro(
     cubeacp_inertial_pointing_reference_vector_t *message,
     int32_t value)
@@ -156,7 +156,9 @@ static inline double cubeacp_inertial_pointing_reference_vector_reference_x_phys
     return icdgen_quotient(message->reference_x, 10000);
 }
 
-/** Sets Inertial Reference X, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Inertial Reference X, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_reference_x_physical(
     cubeacp_inertial_pointing_reference_vector_t *message,
     double value)
@@ -171,7 +173,9 @@ static inline double cubeacp_inertial_pointing_reference_vector_reference_y_phys
     return icdgen_quotient(message->reference_y, 10000);
 }
 
-/** Sets Inertial Reference Y, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Inertial Reference Y, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_reference_y_physical(
     cubeacp_inertial_pointing_reference_vector_t *message,
     double value)
@@ -186,7 +190,9 @@ static inline double cubeacp_inertial_pointing_reference_vector_reference_z_phys
     return icdgen_quotient(message->reference_z, 10000);
 }
 
-/** Sets Inertial Reference Z, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Inertial Reference Z, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_reference_z_physical(
     cubeacp_inertial_pointing_reference_vector_t *message,
     double value)

@@ -13,7 +13,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_JPG_CONVERSION_PROGRESS_ID 133u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_JPG_CONVERSION_PROGRESS_LENGTH 3u
 
 /** Raw values. */
@@ -30,13 +30,13 @@ typedef struct {
     uint8_t output_file_counter;
 } cubeacp_jpg_conversion_progress_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_jpg_conversion_progress_init(cubeacp_jpg_conversion_progress_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 3 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 3 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_jpg_conversion_progress_decode(
     cubeacp_jpg_conversion_progress_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -51,7 +51,7 @@ static inline icd_status_t cubeacp_jpg_conversion_progress_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 3 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 3 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_jpg_conversion_progress_encode(
     const cubeacp_jpg_conversion_progress_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -66,7 +66,7 @@ static inline icd_status_t cubeacp_jpg_conversion_progress_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_jpg_conversion_progress_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

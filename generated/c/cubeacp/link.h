@@ -5,27 +5,27 @@
 
 /**
  * @file
- * CubeACP: how its messages travel.
+ * CubeACP: description of its protocol and sizes of buffers.
  */
 
 #include "../icdgen_wire.h"
 
-/** The node whose messages these are. */
+/** Name of the node. */
 #define CUBEACP_NODE "cubeacp"
-/** Bytes of the longest message of either direction, with id and checksum. */
+/** Size in bytes of the longest message in either direction, with id and checksum. */
 #define CUBEACP_LONGEST 506u
-/** Bytes that joining CAN packets takes for each sender at once. */
+/** Buffer size in bytes of a CAN joiner, per slot. */
 #define CUBEACP_CAN_SLOT_BYTES 505u
-/** Bytes of a client's buffer. */
+/** Buffer size of a client in bytes. */
 #define CUBEACP_CLIENT_BYTES 1012u
-/** Bytes of a log reader's buffer. */
+/** Buffer size of a log reader in bytes. */
 #define CUBEACP_LOG_BYTES 496u
-/** Bytes of the largest block of a file. */
+/** Size in bytes of the largest block of a file. */
 #define CUBEACP_BLOCK_BYTES 20480u
-/** Bytes of a bit for each packet of such a block. */
+/** Size in bytes of a bitmap for the packets of this block. */
 #define CUBEACP_BLOCK_BITMAP_BYTES 128u
 
-/** Facts of the link of CubeACP. */
+/** Return the description of the protocol of CubeACP. */
 ICDGEN_API const icd_link_t *cubeacp_link(void);
 
 #ifndef ICDGEN_SHARED

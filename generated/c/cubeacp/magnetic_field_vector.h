@@ -17,7 +17,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_MAGNETIC_FIELD_VECTOR_ID 151u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_MAGNETIC_FIELD_VECTOR_LENGTH 6u
 
 /** Raw values. */
@@ -30,13 +30,13 @@ typedef struct {
     int16_t magnetic_field_z;
 } cubeacp_magnetic_field_vector_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_magnetic_field_vector_init(cubeacp_magnetic_field_vector_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_magnetic_field_vector_decode(
     cubeacp_magnetic_field_vector_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -51,7 +51,7 @@ static inline icd_status_t cubeacp_magnetic_field_vector_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_magnetic_field_vector_encode(
     const cubeacp_magnetic_field_vector_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -66,7 +66,7 @@ static inline icd_status_t cubeacp_magnetic_field_vector_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_magnetic_field_vector_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -84,7 +84,7 @@ static inline int32_t cubeacp_magnetic_field_vector_magnetic_field_x_nt(const cu
     return message->magnetic_field_x * INT32_C(10);
 }
 
-/** Sets Magnetic Field X in nT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Magnetic Field X in nT to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_magnetic_field_vector_set_magnetic_field_x_nt(
     cubeacp_magnetic_field_vector_t *message,
     int32_t value)
@@ -102,7 +102,7 @@ static inline int32_t cubeacp_magnetic_field_vector_magnetic_field_y_nt(const cu
     return message->magnetic_field_y * INT32_C(10);
 }
 
-/** Sets Magnetic Field Y in nT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Magnetic Field Y in nT to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_magnetic_field_vector_set_magnetic_field_y_nt(
     cubeacp_magnetic_field_vector_t *message,
     int32_t value)
@@ -120,7 +120,7 @@ static inline int32_t cubeacp_magnetic_field_vector_magnetic_field_z_nt(const cu
     return message->magnetic_field_z * INT32_C(10);
 }
 
-/** Sets Magnetic Field Z in nT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Magnetic Field Z in nT to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_magnetic_field_vector_set_magnetic_field_z_nt(
     cubeacp_magnetic_field_vector_t *message,
     int32_t value)
@@ -140,7 +140,7 @@ static inline double cubeacp_magnetic_field_vector_magnetic_field_x_ut(const cub
     return icdgen_quotient(message->magnetic_field_x, 100);
 }
 
-/** Sets Magnetic Field X in uT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Magnetic Field X in uT to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_magnetic_field_vector_set_magnetic_field_x_ut(
     cubeacp_magnetic_field_vector_t *message,
     double value)
@@ -154,7 +154,7 @@ static inline double cubeacp_magnetic_field_vector_magnetic_field_y_ut(const cub
     return icdgen_quotient(message->magnetic_field_y, 100);
 }
 
-/** Sets Magnetic Field Y in uT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Magnetic Field Y in uT to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_magnetic_field_vector_set_magnetic_field_y_ut(
     cubeacp_magnetic_field_vector_t *message,
     double value)
@@ -168,7 +168,7 @@ static inline double cubeacp_magnetic_field_vector_magnetic_field_z_ut(const cub
     return icdgen_quotient(message->magnetic_field_z, 100);
 }
 
-/** Sets Magnetic Field Z in uT, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Magnetic Field Z in uT to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_magnetic_field_vector_set_magnetic_field_z_ut(
     cubeacp_magnetic_field_vector_t *message,
     double value)

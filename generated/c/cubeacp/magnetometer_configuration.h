@@ -5,7 +5,7 @@
 
 /**
  * @file
- * Magnetometer Configuration: configuration, set by telecommand 26, got by telemetry 204, 30 bytes. Table 190.
+ * Magnetometer Configuration: configuration, set by telecommand 26, read by telemetry 204, 30 bytes. Table 190.
  * @note ACP-051 (certain): Magnetometers have four names for two. Main, primary and none stand for one; redundant,
  * secondary and 2nd for the other.
  */
@@ -16,7 +16,7 @@
 #define CUBEACP_MAGNETOMETER_CONFIGURATION_SET_ID 26u
 /** Id of the telemetry that gets it. */
 #define CUBEACP_MAGNETOMETER_CONFIGURATION_GET_ID 204u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_MAGNETOMETER_CONFIGURATION_LENGTH 30u
 
 /** Raw values. */
@@ -103,13 +103,13 @@ typedef struct {
     int16_t sensitivity_s32;
 } cubeacp_magnetometer_configuration_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_magnetometer_configuration_init(cubeacp_magnetometer_configuration_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 30 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 30 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_magnetometer_configuration_decode(
     cubeacp_magnetometer_configuration_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -122,7 +122,7 @@ static inline icd_status_t cubeacp_magnetometer_configuration_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 30 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 30 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_magnetometer_configuration_encode(
     const cubeacp_magnetometer_configuration_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -141,7 +141,7 @@ static inline icd_status_t cubeacp_magnetometer_configuration_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_magnetometer_configuration_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -173,8 +173,8 @@ static inline int32_t cubeacp_magnetometer_configuration_mounting_alpha_mdeg(
 }
 
 /**
- * Sets Magnetometer Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Magnetometer Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_mounting_alpha_mdeg(
     cubeacp_magnetometer_configuration_t *message,
@@ -195,8 +195,8 @@ static inline int32_t cubeacp_magnetometer_configuration_mounting_beta_mdeg(
 }
 
 /**
- * Sets Magnetometer Mounting Transform Beta Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Magnetometer Mounting Transform Beta Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE
+ * if it is out of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_mounting_beta_mdeg(
     cubeacp_magnetometer_configuration_t *message,
@@ -217,8 +217,8 @@ static inline int32_t cubeacp_magnetometer_configuration_mounting_gamma_mdeg(
 }
 
 /**
- * Sets Magnetometer Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Magnetometer Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_mounting_gamma_mdeg(
     cubeacp_magnetometer_configuration_t *message,
@@ -238,7 +238,10 @@ static inline int32_t cubeacp_magnetometer_configuration_channel_1_offset_milli(
     return message->channel_1_offset;
 }
 
-/** Sets Magnetometer Channel 1 Offset in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Magnetometer Channel 1 Offset in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_channel_1_offset_milli(
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
@@ -257,7 +260,10 @@ static inline int32_t cubeacp_magnetometer_configuration_channel_2_offset_milli(
     return message->channel_2_offset;
 }
 
-/** Sets Magnetometer Channel 2 Offset in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Magnetometer Channel 2 Offset in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_channel_2_offset_milli(
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
@@ -276,7 +282,10 @@ static inline int32_t cubeacp_magnetometer_configuration_channel_3_offset_milli(
     return message->channel_3_offset;
 }
 
-/** Sets Magnetometer Channel 3 Offset in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Magnetometer Channel 3 Offset in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_channel_3_offset_milli(
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
@@ -296,7 +305,8 @@ static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s11_milli(
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S11 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Sensitivity Matrix S11 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s11_milli(
     cubeacp_magnetometer_configuration_t *message,
@@ -317,7 +327,8 @@ static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s22_milli(
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S22 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Sensitivity Matrix S22 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s22_milli(
     cubeacp_magnetometer_configuration_t *message,
@@ -338,7 +349,8 @@ static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s33_milli(
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S33 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Sensitivity Matrix S33 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s33_milli(
     cubeacp_magnetometer_configuration_t *message,
@@ -359,7 +371,8 @@ static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s12_milli(
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S12 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Sensitivity Matrix S12 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s12_milli(
     cubeacp_magnetometer_configuration_t *message,
@@ -380,7 +393,8 @@ static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s13_milli(
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S13 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Sensitivity Matrix S13 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s13_milli(
     cubeacp_magnetometer_configuration_t *message,
@@ -401,7 +415,8 @@ static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s21_milli(
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S21 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Sensitivity Matrix S21 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s21_milli(
     cubeacp_magnetometer_configuration_t *message,
@@ -422,7 +437,8 @@ static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s23_milli(
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S23 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Sensitivity Matrix S23 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s23_milli(
     cubeacp_magnetometer_configuration_t *message,
@@ -443,7 +459,8 @@ static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s31_milli(
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S31 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Sensitivity Matrix S31 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s31_milli(
     cubeacp_magnetometer_configuration_t *message,
@@ -464,7 +481,8 @@ static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s32_milli(
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S32 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Sensitivity Matrix S32 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s32_milli(
     cubeacp_magnetometer_configuration_t *message,
@@ -487,7 +505,8 @@ static inline double cubeacp_magnetometer_configuration_mounting_alpha_deg(
 }
 
 /**
- * Sets Magnetometer Mounting Transform Alpha Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Mounting Transform Alpha Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_mounting_alpha_deg(
     cubeacp_magnetometer_configuration_t *message,
@@ -504,7 +523,8 @@ static inline double cubeacp_magnetometer_configuration_mounting_beta_deg(
 }
 
 /**
- * Sets Magnetometer Mounting Transform Beta Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Mounting Transform Beta Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_mounting_beta_deg(
     cubeacp_magnetometer_configuration_t *message,
@@ -521,7 +541,8 @@ static inline double cubeacp_magnetometer_configuration_mounting_gamma_deg(
 }
 
 /**
- * Sets Magnetometer Mounting Transform Gamma Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Mounting Transform Gamma Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_mounting_gamma_deg(
     cubeacp_magnetometer_configuration_t *message,
@@ -538,7 +559,8 @@ static inline double cubeacp_magnetometer_configuration_channel_1_offset_physica
 }
 
 /**
- * Sets Magnetometer Channel 1 Offset, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Channel 1 Offset, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_channel_1_offset_physical(
     cubeacp_magnetometer_configuration_t *message,
@@ -555,7 +577,8 @@ static inline double cubeacp_magnetometer_configuration_channel_2_offset_physica
 }
 
 /**
- * Sets Magnetometer Channel 2 Offset, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Channel 2 Offset, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_channel_2_offset_physical(
     cubeacp_magnetometer_configuration_t *message,
@@ -572,7 +595,8 @@ static inline double cubeacp_magnetometer_configuration_channel_3_offset_physica
 }
 
 /**
- * Sets Magnetometer Channel 3 Offset, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Magnetometer Channel 3 Offset, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_channel_3_offset_physical(
     cubeacp_magnetometer_configuration_t *message,
@@ -589,8 +613,8 @@ static inline double cubeacp_magnetometer_configuration_sensitivity_s11_physical
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S11, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Magnetometer Sensitivity Matrix S11, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it
+ * is out of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s11_physical(
     cubeacp_magnetometer_configuration_t *message,
@@ -607,8 +631,8 @@ static inline double cubeacp_magnetometer_configuration_sensitivity_s22_physical
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S22, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Magnetometer Sensitivity Matrix S22, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it
+ * is out of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s22_physical(
     cubeacp_magnetometer_configuration_t *message,
@@ -625,8 +649,8 @@ static inline double cubeacp_magnetometer_configuration_sensitivity_s33_physical
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S33, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Magnetometer Sensitivity Matrix S33, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it
+ * is out of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s33_physical(
     cubeacp_magnetometer_configuration_t *message,
@@ -643,8 +667,8 @@ static inline double cubeacp_magnetometer_configuration_sensitivity_s12_physical
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S12, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Magnetometer Sensitivity Matrix S12, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it
+ * is out of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s12_physical(
     cubeacp_magnetometer_configuration_t *message,
@@ -661,8 +685,8 @@ static inline double cubeacp_magnetometer_configuration_sensitivity_s13_physical
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S13, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Magnetometer Sensitivity Matrix S13, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it
+ * is out of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s13_physical(
     cubeacp_magnetometer_configuration_t *message,
@@ -679,8 +703,8 @@ static inline double cubeacp_magnetometer_configuration_sensitivity_s21_physical
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S21, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Magnetometer Sensitivity Matrix S21, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it
+ * is out of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s21_physical(
     cubeacp_magnetometer_configuration_t *message,
@@ -697,8 +721,8 @@ static inline double cubeacp_magnetometer_configuration_sensitivity_s23_physical
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S23, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Magnetometer Sensitivity Matrix S23, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it
+ * is out of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s23_physical(
     cubeacp_magnetometer_configuration_t *message,
@@ -715,8 +739,8 @@ static inline double cubeacp_magnetometer_configuration_sensitivity_s31_physical
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S31, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Magnetometer Sensitivity Matrix S31, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it
+ * is out of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s31_physical(
     cubeacp_magnetometer_configuration_t *message,
@@ -733,8 +757,8 @@ static inline double cubeacp_magnetometer_configuration_sensitivity_s32_physical
 }
 
 /**
- * Sets Magnetometer Sensitivity Matrix S32, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Magnetometer Sensitivity Matrix S32, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it
+ * is out of range.
  */
 static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s32_physical(
     cubeacp_magnetometer_configuration_t *message,

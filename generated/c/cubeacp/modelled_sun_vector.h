@@ -14,7 +14,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_MODELLED_SUN_VECTOR_ID 160u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_MODELLED_SUN_VECTOR_LENGTH 6u
 
 /** Raw values. */
@@ -27,13 +27,13 @@ typedef struct {
     int16_t modelled_sun_vector_z;
 } cubeacp_modelled_sun_vector_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_modelled_sun_vector_init(cubeacp_modelled_sun_vector_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_modelled_sun_vector_decode(
     cubeacp_modelled_sun_vector_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -48,7 +48,7 @@ static inline icd_status_t cubeacp_modelled_sun_vector_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_modelled_sun_vector_encode(
     const cubeacp_modelled_sun_vector_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -63,7 +63,7 @@ static inline icd_status_t cubeacp_modelled_sun_vector_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_modelled_sun_vector_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -82,7 +82,7 @@ static inline int32_t cubeacp_modelled_sun_vector_modelled_sun_vector_x_micro(
     return message->modelled_sun_vector_x * INT32_C(100);
 }
 
-/** Sets Modelled Sun Vector X in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Modelled Sun Vector X in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_modelled_sun_vector_set_modelled_sun_vector_x_micro(
     cubeacp_modelled_sun_vector_t *message,
     int32_t value)
@@ -101,7 +101,7 @@ static inline int32_t cubeacp_modelled_sun_vector_modelled_sun_vector_y_micro(
     return message->modelled_sun_vector_y * INT32_C(100);
 }
 
-/** Sets Modelled Sun Vector Y in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Modelled Sun Vector Y in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_modelled_sun_vector_set_modelled_sun_vector_y_micro(
     cubeacp_modelled_sun_vector_t *message,
     int32_t value)
@@ -120,7 +120,7 @@ static inline int32_t cubeacp_modelled_sun_vector_modelled_sun_vector_z_micro(
     return message->modelled_sun_vector_z * INT32_C(100);
 }
 
-/** Sets Modelled Sun Vector Z in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Modelled Sun Vector Z in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_modelled_sun_vector_set_modelled_sun_vector_z_micro(
     cubeacp_modelled_sun_vector_t *message,
     int32_t value)
@@ -141,7 +141,10 @@ static inline double cubeacp_modelled_sun_vector_modelled_sun_vector_x_physical(
     return icdgen_quotient(message->modelled_sun_vector_x, 10000);
 }
 
-/** Sets Modelled Sun Vector X, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Modelled Sun Vector X, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_modelled_sun_vector_set_modelled_sun_vector_x_physical(
     cubeacp_modelled_sun_vector_t *message,
     double value)
@@ -156,7 +159,10 @@ static inline double cubeacp_modelled_sun_vector_modelled_sun_vector_y_physical(
     return icdgen_quotient(message->modelled_sun_vector_y, 10000);
 }
 
-/** Sets Modelled Sun Vector Y, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Modelled Sun Vector Y, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_modelled_sun_vector_set_modelled_sun_vector_y_physical(
     cubeacp_modelled_sun_vector_t *message,
     double value)
@@ -171,7 +177,10 @@ static inline double cubeacp_modelled_sun_vector_modelled_sun_vector_z_physical(
     return icdgen_quotient(message->modelled_sun_vector_z, 10000);
 }
 
-/** Sets Modelled Sun Vector Z, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Modelled Sun Vector Z, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_modelled_sun_vector_set_modelled_sun_vector_z_physical(
     cubeacp_modelled_sun_vector_t *message,
     double value)

@@ -5,7 +5,7 @@
 
 /**
  * @file
- * Moment of Inertia Matrix: configuration, set by telecommand 41, got by telemetry 222, 24 bytes. Table 199.
+ * Moment of Inertia Matrix: configuration, set by telecommand 41, read by telemetry 222, 24 bytes. Table 199.
  * Of the satellite.
  */
 
@@ -15,7 +15,7 @@
 #define CUBEACP_MOMENT_OF_INERTIA_MATRIX_SET_ID 41u
 /** Id of the telemetry that gets it. */
 #define CUBEACP_MOMENT_OF_INERTIA_MATRIX_GET_ID 222u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_MOMENT_OF_INERTIA_MATRIX_LENGTH 24u
 
 /** Raw values. */
@@ -45,13 +45,13 @@ typedef struct {
     float product_of_inertia_iyz;
 } cubeacp_moment_of_inertia_matrix_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_moment_of_inertia_matrix_init(cubeacp_moment_of_inertia_matrix_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 24 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 24 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_moment_of_inertia_matrix_decode(
     cubeacp_moment_of_inertia_matrix_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -69,7 +69,7 @@ static inline icd_status_t cubeacp_moment_of_inertia_matrix_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 24 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 24 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_moment_of_inertia_matrix_encode(
     const cubeacp_moment_of_inertia_matrix_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -87,7 +87,7 @@ static inline icd_status_t cubeacp_moment_of_inertia_matrix_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_moment_of_inertia_matrix_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -17,7 +17,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_NADIR_VECTOR_ID 154u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_NADIR_VECTOR_LENGTH 6u
 
 /** Raw values. */
@@ -30,13 +30,13 @@ typedef struct {
     int16_t nadir_z;
 } cubeacp_nadir_vector_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_nadir_vector_init(cubeacp_nadir_vector_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_nadir_vector_decode(
     cubeacp_nadir_vector_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -51,7 +51,7 @@ static inline icd_status_t cubeacp_nadir_vector_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_nadir_vector_encode(
     const cubeacp_nadir_vector_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -66,7 +66,7 @@ static inline icd_status_t cubeacp_nadir_vector_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_nadir_vector_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -84,7 +84,7 @@ static inline int32_t cubeacp_nadir_vector_nadir_x_micro(const cubeacp_nadir_vec
     return message->nadir_x * INT32_C(100);
 }
 
-/** Sets Nadir X in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Nadir X in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_nadir_vector_set_nadir_x_micro(cubeacp_nadir_vector_t *message, int32_t value)
 {
     if ((value < -3276850) || (value > 3276749)) {
@@ -100,7 +100,7 @@ static inline int32_t cubeacp_nadir_vector_nadir_y_micro(const cubeacp_nadir_vec
     return message->nadir_y * INT32_C(100);
 }
 
-/** Sets Nadir Y in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Nadir Y in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_nadir_vector_set_nadir_y_micro(cubeacp_nadir_vector_t *message, int32_t value)
 {
     if ((value < -3276850) || (value > 3276749)) {
@@ -116,7 +116,7 @@ static inline int32_t cubeacp_nadir_vector_nadir_z_micro(const cubeacp_nadir_vec
     return message->nadir_z * INT32_C(100);
 }
 
-/** Sets Nadir Z in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Nadir Z in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_nadir_vector_set_nadir_z_micro(cubeacp_nadir_vector_t *message, int32_t value)
 {
     if ((value < -3276850) || (value > 3276749)) {
@@ -134,7 +134,7 @@ static inline double cubeacp_nadir_vector_nadir_x_physical(const cubeacp_nadir_v
     return icdgen_quotient(message->nadir_x, 10000);
 }
 
-/** Sets Nadir X, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Nadir X, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_nadir_vector_set_nadir_x_physical(cubeacp_nadir_vector_t *message, double value)
 {
     return icdgen_set_i16(&message->nadir_x, value, 1, 0, 10000, INT16_MIN, INT16_MAX);
@@ -146,7 +146,7 @@ static inline double cubeacp_nadir_vector_nadir_y_physical(const cubeacp_nadir_v
     return icdgen_quotient(message->nadir_y, 10000);
 }
 
-/** Sets Nadir Y, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Nadir Y, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_nadir_vector_set_nadir_y_physical(cubeacp_nadir_vector_t *message, double value)
 {
     return icdgen_set_i16(&message->nadir_y, value, 1, 0, 10000, INT16_MIN, INT16_MAX);
@@ -158,7 +158,7 @@ static inline double cubeacp_nadir_vector_nadir_z_physical(const cubeacp_nadir_v
     return icdgen_quotient(message->nadir_z, 10000);
 }
 
-/** Sets Nadir Z, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Nadir Z, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_nadir_vector_set_nadir_z_physical(cubeacp_nadir_vector_t *message, double value)
 {
     return icdgen_set_i16(&message->nadir_z, value, 1, 0, 10000, INT16_MIN, INT16_MAX);

@@ -22,7 +22,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_POWER_AND_TEMPERATURE_ID 195u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_POWER_AND_TEMPERATURE_LENGTH 38u
 
 /** Raw values. */
@@ -113,13 +113,13 @@ typedef struct {
     int16_t z_rate_sensor_temperature;
 } cubeacp_power_and_temperature_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_power_and_temperature_init(cubeacp_power_and_temperature_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 38 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 38 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_power_and_temperature_decode(
     cubeacp_power_and_temperature_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -138,7 +138,7 @@ static inline icd_status_t cubeacp_power_and_temperature_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 38 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 38 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_power_and_temperature_encode(
     const cubeacp_power_and_temperature_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -157,7 +157,7 @@ static inline icd_status_t cubeacp_power_and_temperature_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_power_and_temperature_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -260,7 +260,7 @@ static inline int32_t cubeacp_power_and_temperature_cubesense1_3v3_current_ua(
     return message->cubesense1_3v3_current * INT32_C(100);
 }
 
-/** Sets CubeSense1 3V3 Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CubeSense1 3V3 Current in uA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubesense1_3v3_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -279,7 +279,7 @@ static inline int32_t cubeacp_power_and_temperature_cubesense1_cam_sram_current_
     return message->cubesense1_cam_sram_current * INT32_C(100);
 }
 
-/** Sets CubeSense1 Cam SRAM Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CubeSense1 Cam SRAM Current in uA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubesense1_cam_sram_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -298,7 +298,7 @@ static inline int32_t cubeacp_power_and_temperature_cubesense2_3v3_current_ua(
     return message->cubesense2_3v3_current * INT32_C(100);
 }
 
-/** Sets CubeSense2 3V3 Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CubeSense2 3V3 Current in uA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubesense2_3v3_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -317,7 +317,7 @@ static inline int32_t cubeacp_power_and_temperature_cubesense2_cam_sram_current_
     return message->cubesense2_cam_sram_current * INT32_C(100);
 }
 
-/** Sets CubeSense2 Cam SRAM Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CubeSense2 Cam SRAM Current in uA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubesense2_cam_sram_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -335,7 +335,7 @@ static inline int32_t cubeacp_power_and_temperature_wheel1_current_ua(const cube
     return message->wheel1_current * INT32_C(10);
 }
 
-/** Sets Wheel1Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Wheel1Current in uA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_power_and_temperature_set_wheel1_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -353,7 +353,7 @@ static inline int32_t cubeacp_power_and_temperature_wheel2_current_ua(const cube
     return message->wheel2_current * INT32_C(10);
 }
 
-/** Sets Wheel2Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Wheel2Current in uA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_power_and_temperature_set_wheel2_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -371,7 +371,7 @@ static inline int32_t cubeacp_power_and_temperature_wheel3_current_ua(const cube
     return message->wheel3_current * INT32_C(10);
 }
 
-/** Sets Wheel3Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Wheel3Current in uA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_power_and_temperature_set_wheel3_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -389,7 +389,7 @@ static inline int32_t cubeacp_power_and_temperature_cubestar_current_ua(const cu
     return message->cubestar_current * INT32_C(10);
 }
 
-/** Sets CubeStarCurrent in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CubeStarCurrent in uA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubestar_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -408,7 +408,7 @@ static inline int32_t cubeacp_power_and_temperature_magnetorquer_current_ua(
     return message->magnetorquer_current * INT32_C(100);
 }
 
-/** Sets Magnetorquer Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Magnetorquer Current in uA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_power_and_temperature_set_magnetorquer_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -427,7 +427,10 @@ static inline int32_t cubeacp_power_and_temperature_cubestar_mcu_temperature_mc(
     return message->cubestar_mcu_temperature * INT32_C(10);
 }
 
-/** Sets CubeStar MCU temperature in thousandths of C, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set CubeStar MCU temperature in thousandths of C to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubestar_mcu_temperature_mc(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -446,7 +449,10 @@ static inline int32_t cubeacp_power_and_temperature_magnetometer_temperature_mc(
     return message->magnetometer_temperature * INT32_C(100);
 }
 
-/** Sets Magnetometer Temperature in thousandths of C, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Magnetometer Temperature in thousandths of C to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_power_and_temperature_set_magnetometer_temperature_mc(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -466,8 +472,8 @@ static inline int32_t cubeacp_power_and_temperature_redundant_mag_temperature_mc
 }
 
 /**
- * Sets Redundant Magnetometer Temperature in thousandths of C, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Redundant Magnetometer Temperature in thousandths of C to the nearest raw value. Return ICD_ERROR_RANGE if it is
+ * out of range.
  */
 static inline icd_status_t cubeacp_power_and_temperature_set_redundant_mag_temperature_mc(
     cubeacp_power_and_temperature_t *message,
@@ -489,7 +495,7 @@ static inline double cubeacp_power_and_temperature_cubesense1_3v3_current_ma(
     return icdgen_quotient(message->cubesense1_3v3_current, 10);
 }
 
-/** Sets CubeSense1 3V3 Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CubeSense1 3V3 Current in mA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubesense1_3v3_current_ma(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -504,7 +510,7 @@ static inline double cubeacp_power_and_temperature_cubesense1_cam_sram_current_m
     return icdgen_quotient(message->cubesense1_cam_sram_current, 10);
 }
 
-/** Sets CubeSense1 Cam SRAM Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CubeSense1 Cam SRAM Current in mA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubesense1_cam_sram_current_ma(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -519,7 +525,7 @@ static inline double cubeacp_power_and_temperature_cubesense2_3v3_current_ma(
     return icdgen_quotient(message->cubesense2_3v3_current, 10);
 }
 
-/** Sets CubeSense2 3V3 Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CubeSense2 3V3 Current in mA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubesense2_3v3_current_ma(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -534,7 +540,7 @@ static inline double cubeacp_power_and_temperature_cubesense2_cam_sram_current_m
     return icdgen_quotient(message->cubesense2_cam_sram_current, 10);
 }
 
-/** Sets CubeSense2 Cam SRAM Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CubeSense2 Cam SRAM Current in mA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubesense2_cam_sram_current_ma(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -549,7 +555,7 @@ static inline double cubeacp_power_and_temperature_cubecontrol_3v3_current_ma(
     return icdgen_quotient(message->cubecontrol_3v3_current * INT64_C(125), 256);
 }
 
-/** Sets CubeControl 3V3 Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CubeControl 3V3 Current in mA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubecontrol_3v3_current_ma(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -564,7 +570,7 @@ static inline double cubeacp_power_and_temperature_cubecontrol_5v_current_ma(
     return icdgen_quotient(message->cubecontrol_5v_current * INT64_C(125), 256);
 }
 
-/** Sets CubeControl 5V Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CubeControl 5V Current in mA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubecontrol_5v_current_ma(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -579,7 +585,7 @@ static inline double cubeacp_power_and_temperature_cubecontrol_vbat_current_ma(
     return icdgen_quotient(message->cubecontrol_vbat_current * INT64_C(125), 256);
 }
 
-/** Sets CubeControl Vbat Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CubeControl Vbat Current in mA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubecontrol_vbat_current_ma(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -593,7 +599,7 @@ static inline double cubeacp_power_and_temperature_wheel1_current_ma(const cubea
     return icdgen_quotient(message->wheel1_current, 100);
 }
 
-/** Sets Wheel1Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Wheel1Current in mA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_power_and_temperature_set_wheel1_current_ma(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -607,7 +613,7 @@ static inline double cubeacp_power_and_temperature_wheel2_current_ma(const cubea
     return icdgen_quotient(message->wheel2_current, 100);
 }
 
-/** Sets Wheel2Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Wheel2Current in mA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_power_and_temperature_set_wheel2_current_ma(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -621,7 +627,7 @@ static inline double cubeacp_power_and_temperature_wheel3_current_ma(const cubea
     return icdgen_quotient(message->wheel3_current, 100);
 }
 
-/** Sets Wheel3Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Wheel3Current in mA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_power_and_temperature_set_wheel3_current_ma(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -635,7 +641,7 @@ static inline double cubeacp_power_and_temperature_cubestar_current_ma(const cub
     return icdgen_quotient(message->cubestar_current, 100);
 }
 
-/** Sets CubeStarCurrent in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CubeStarCurrent in mA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubestar_current_ma(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -650,7 +656,7 @@ static inline double cubeacp_power_and_temperature_magnetorquer_current_ma(
     return icdgen_quotient(message->magnetorquer_current, 10);
 }
 
-/** Sets Magnetorquer Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Magnetorquer Current in mA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_power_and_temperature_set_magnetorquer_current_ma(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -665,7 +671,7 @@ static inline double cubeacp_power_and_temperature_cubestar_mcu_temperature_c(
     return icdgen_quotient(message->cubestar_mcu_temperature, 100);
 }
 
-/** Sets CubeStar MCU temperature in C, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set CubeStar MCU temperature in C to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubestar_mcu_temperature_c(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -680,7 +686,7 @@ static inline double cubeacp_power_and_temperature_magnetometer_temperature_c(
     return icdgen_quotient(message->magnetometer_temperature, 10);
 }
 
-/** Sets Magnetometer Temperature in C, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Magnetometer Temperature in C to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_power_and_temperature_set_magnetometer_temperature_c(
     cubeacp_power_and_temperature_t *message,
     double value)
@@ -695,7 +701,9 @@ static inline double cubeacp_power_and_temperature_redundant_mag_temperature_c(
     return icdgen_quotient(message->redundant_mag_temperature, 10);
 }
 
-/** Sets Redundant Magnetometer Temperature in C, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Redundant Magnetometer Temperature in C to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_power_and_temperature_set_redundant_mag_temperature_c(
     cubeacp_power_and_temperature_t *message,
     double value)

@@ -13,7 +13,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_QUATERNION_COVARIANCE_ID 164u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_QUATERNION_COVARIANCE_LENGTH 6u
 
 /** Raw values. */
@@ -36,13 +36,13 @@ typedef struct {
     int16_t q3_rms;
 } cubeacp_quaternion_covariance_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_quaternion_covariance_init(cubeacp_quaternion_covariance_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_quaternion_covariance_decode(
     cubeacp_quaternion_covariance_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -57,7 +57,7 @@ static inline icd_status_t cubeacp_quaternion_covariance_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_quaternion_covariance_encode(
     const cubeacp_quaternion_covariance_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -72,7 +72,7 @@ static inline icd_status_t cubeacp_quaternion_covariance_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_quaternion_covariance_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -90,7 +90,10 @@ static inline int32_t cubeacp_quaternion_covariance_q1_rms_milli(const cubeacp_q
     return message->q1_rms;
 }
 
-/** Sets Quaternion Covariance - Q1 RMS in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Quaternion Covariance - Q1 RMS in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_quaternion_covariance_set_q1_rms_milli(
     cubeacp_quaternion_covariance_t *message,
     int32_t value)
@@ -108,7 +111,10 @@ static inline int32_t cubeacp_quaternion_covariance_q2_rms_milli(const cubeacp_q
     return message->q2_rms;
 }
 
-/** Sets Quaternion Covariance - Q2 RMS in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Quaternion Covariance - Q2 RMS in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_quaternion_covariance_set_q2_rms_milli(
     cubeacp_quaternion_covariance_t *message,
     int32_t value)
@@ -126,7 +132,10 @@ static inline int32_t cubeacp_quaternion_covariance_q3_rms_milli(const cubeacp_q
     return message->q3_rms;
 }
 
-/** Sets Quaternion Covariance - Q3 RMS in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Quaternion Covariance - Q3 RMS in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_quaternion_covariance_set_q3_rms_milli(
     cubeacp_quaternion_covariance_t *message,
     int32_t value)
@@ -147,7 +156,8 @@ static inline double cubeacp_quaternion_covariance_q1_rms_physical(const cubeacp
 }
 
 /**
- * Sets Quaternion Covariance - Q1 RMS, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Quaternion Covariance - Q1 RMS, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_quaternion_covariance_set_q1_rms_physical(
     cubeacp_quaternion_covariance_t *message,
@@ -163,7 +173,8 @@ static inline double cubeacp_quaternion_covariance_q2_rms_physical(const cubeacp
 }
 
 /**
- * Sets Quaternion Covariance - Q2 RMS, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Quaternion Covariance - Q2 RMS, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_quaternion_covariance_set_q2_rms_physical(
     cubeacp_quaternion_covariance_t *message,
@@ -179,7 +190,8 @@ static inline double cubeacp_quaternion_covariance_q3_rms_physical(const cubeacp
 }
 
 /**
- * Sets Quaternion Covariance - Q3 RMS, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Quaternion Covariance - Q3 RMS, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_quaternion_covariance_set_q3_rms_physical(
     cubeacp_quaternion_covariance_t *message,

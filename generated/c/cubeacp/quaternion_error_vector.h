@@ -15,7 +15,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_QUATERNION_ERROR_VECTOR_ID 163u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_QUATERNION_ERROR_VECTOR_LENGTH 6u
 
 /** Raw values. */
@@ -28,13 +28,13 @@ typedef struct {
     int16_t quaternion_error_q3;
 } cubeacp_quaternion_error_vector_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_quaternion_error_vector_init(cubeacp_quaternion_error_vector_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_quaternion_error_vector_decode(
     cubeacp_quaternion_error_vector_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -49,7 +49,7 @@ static inline icd_status_t cubeacp_quaternion_error_vector_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_quaternion_error_vector_encode(
     const cubeacp_quaternion_error_vector_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -64,7 +64,7 @@ static inline icd_status_t cubeacp_quaternion_error_vector_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_quaternion_error_vector_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -83,7 +83,7 @@ static inline int32_t cubeacp_quaternion_error_vector_quaternion_error_q1_micro(
     return message->quaternion_error_q1 * INT32_C(100);
 }
 
-/** Sets Quaternion Error - Q1 in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Quaternion Error - Q1 in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_quaternion_error_vector_set_quaternion_error_q1_micro(
     cubeacp_quaternion_error_vector_t *message,
     int32_t value)
@@ -102,7 +102,7 @@ static inline int32_t cubeacp_quaternion_error_vector_quaternion_error_q2_micro(
     return message->quaternion_error_q2 * INT32_C(100);
 }
 
-/** Sets Quaternion Error - Q2 in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Quaternion Error - Q2 in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_quaternion_error_vector_set_quaternion_error_q2_micro(
     cubeacp_quaternion_error_vector_t *message,
     int32_t value)
@@ -121,7 +121,7 @@ static inline int32_t cubeacp_quaternion_error_vector_quaternion_error_q3_micro(
     return message->quaternion_error_q3 * INT32_C(100);
 }
 
-/** Sets Quaternion Error - Q3 in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Quaternion Error - Q3 in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_quaternion_error_vector_set_quaternion_error_q3_micro(
     cubeacp_quaternion_error_vector_t *message,
     int32_t value)
@@ -142,7 +142,10 @@ static inline double cubeacp_quaternion_error_vector_quaternion_error_q1_physica
     return icdgen_quotient(message->quaternion_error_q1, 10000);
 }
 
-/** Sets Quaternion Error - Q1, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Quaternion Error - Q1, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_quaternion_error_vector_set_quaternion_error_q1_physical(
     cubeacp_quaternion_error_vector_t *message,
     double value)
@@ -157,7 +160,10 @@ static inline double cubeacp_quaternion_error_vector_quaternion_error_q2_physica
     return icdgen_quotient(message->quaternion_error_q2, 10000);
 }
 
-/** Sets Quaternion Error - Q2, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Quaternion Error - Q2, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_quaternion_error_vector_set_quaternion_error_q2_physical(
     cubeacp_quaternion_error_vector_t *message,
     double value)
@@ -172,7 +178,10 @@ static inline double cubeacp_quaternion_error_vector_quaternion_error_q3_physica
     return icdgen_quotient(message->quaternion_error_q3, 10000);
 }
 
-/** Sets Quaternion Error - Q3, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Quaternion Error - Q3, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_quaternion_error_vector_set_quaternion_error_q3_physical(
     cubeacp_quaternion_error_vector_t *message,
     double value)

@@ -17,7 +17,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_RATE_SENSOR_RATES_ID 155u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_RATE_SENSOR_RATES_LENGTH 6u
 
 /** Raw values. */
@@ -30,13 +30,13 @@ typedef struct {
     int16_t z_angular_rate;
 } cubeacp_rate_sensor_rates_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_rate_sensor_rates_init(cubeacp_rate_sensor_rates_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_rate_sensor_rates_decode(
     cubeacp_rate_sensor_rates_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -51,7 +51,7 @@ static inline icd_status_t cubeacp_rate_sensor_rates_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_rate_sensor_rates_encode(
     const cubeacp_rate_sensor_rates_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -66,7 +66,7 @@ static inline icd_status_t cubeacp_rate_sensor_rates_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_rate_sensor_rates_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -84,7 +84,9 @@ static inline int32_t cubeacp_rate_sensor_rates_x_angular_rate_mdeg_per_s(const 
     return message->x_angular_rate * INT32_C(10);
 }
 
-/** Sets X Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set X Angular Rate in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_rate_sensor_rates_set_x_angular_rate_mdeg_per_s(
     cubeacp_rate_sensor_rates_t *message,
     int32_t value)
@@ -102,7 +104,9 @@ static inline int32_t cubeacp_rate_sensor_rates_y_angular_rate_mdeg_per_s(const 
     return message->y_angular_rate * INT32_C(10);
 }
 
-/** Sets Y Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Y Angular Rate in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_rate_sensor_rates_set_y_angular_rate_mdeg_per_s(
     cubeacp_rate_sensor_rates_t *message,
     int32_t value)
@@ -120,7 +124,9 @@ static inline int32_t cubeacp_rate_sensor_rates_z_angular_rate_mdeg_per_s(const 
     return message->z_angular_rate * INT32_C(10);
 }
 
-/** Sets Z Angular Rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Z Angular Rate in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_rate_sensor_rates_set_z_angular_rate_mdeg_per_s(
     cubeacp_rate_sensor_rates_t *message,
     int32_t value)
@@ -140,7 +146,7 @@ static inline double cubeacp_rate_sensor_rates_x_angular_rate_deg_per_s(const cu
     return icdgen_quotient(message->x_angular_rate, 100);
 }
 
-/** Sets X Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set X Angular Rate in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_rate_sensor_rates_set_x_angular_rate_deg_per_s(
     cubeacp_rate_sensor_rates_t *message,
     double value)
@@ -154,7 +160,7 @@ static inline double cubeacp_rate_sensor_rates_y_angular_rate_deg_per_s(const cu
     return icdgen_quotient(message->y_angular_rate, 100);
 }
 
-/** Sets Y Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Y Angular Rate in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_rate_sensor_rates_set_y_angular_rate_deg_per_s(
     cubeacp_rate_sensor_rates_t *message,
     double value)
@@ -168,7 +174,7 @@ static inline double cubeacp_rate_sensor_rates_z_angular_rate_deg_per_s(const cu
     return icdgen_quotient(message->z_angular_rate, 100);
 }
 
-/** Sets Z Angular Rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Z Angular Rate in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_rate_sensor_rates_set_z_angular_rate_deg_per_s(
     cubeacp_rate_sensor_rates_t *message,
     double value)

@@ -17,7 +17,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_RAW_CAM2_SENSOR_ID 166u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_RAW_CAM2_SENSOR_LENGTH 6u
 
 /** Raw values. */
@@ -39,13 +39,13 @@ typedef struct {
     cubeacp_detect_result_t cam2_detection_result;
 } cubeacp_raw_cam2_sensor_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_raw_cam2_sensor_init(cubeacp_raw_cam2_sensor_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_raw_cam2_sensor_decode(
     cubeacp_raw_cam2_sensor_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -61,7 +61,7 @@ static inline icd_status_t cubeacp_raw_cam2_sensor_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_raw_cam2_sensor_encode(
     const cubeacp_raw_cam2_sensor_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -77,7 +77,7 @@ static inline icd_status_t cubeacp_raw_cam2_sensor_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_raw_cam2_sensor_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

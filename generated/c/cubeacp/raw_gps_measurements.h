@@ -20,7 +20,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_RAW_GPS_MEASUREMENTS_ID 210u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_RAW_GPS_MEASUREMENTS_LENGTH 36u
 
 /** Raw values. */
@@ -115,13 +115,13 @@ typedef struct {
     uint8_t z_vel_standard_deviation;
 } cubeacp_raw_gps_measurements_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_raw_gps_measurements_init(cubeacp_raw_gps_measurements_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 36 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 36 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_raw_gps_measurements_decode(
     cubeacp_raw_gps_measurements_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -153,7 +153,7 @@ static inline icd_status_t cubeacp_raw_gps_measurements_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 36 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 36 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_raw_gps_measurements_encode(
     const cubeacp_raw_gps_measurements_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -185,7 +185,7 @@ static inline icd_status_t cubeacp_raw_gps_measurements_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_raw_gps_measurements_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -270,7 +270,7 @@ static inline int32_t cubeacp_raw_gps_measurements_x_pos_standard_deviation_mm(
     return message->x_pos_standard_deviation * INT32_C(100);
 }
 
-/** Sets X-pos Standard Deviation in mm, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set X-pos Standard Deviation in mm to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_raw_gps_measurements_set_x_pos_standard_deviation_mm(
     cubeacp_raw_gps_measurements_t *message,
     int32_t value)
@@ -289,7 +289,7 @@ static inline int32_t cubeacp_raw_gps_measurements_y_pos_standard_deviation_mm(
     return message->y_pos_standard_deviation * INT32_C(100);
 }
 
-/** Sets Y-pos Standard Deviation in mm, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Y-pos Standard Deviation in mm to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_raw_gps_measurements_set_y_pos_standard_deviation_mm(
     cubeacp_raw_gps_measurements_t *message,
     int32_t value)
@@ -308,7 +308,7 @@ static inline int32_t cubeacp_raw_gps_measurements_z_pos_standard_deviation_mm(
     return message->z_pos_standard_deviation * INT32_C(100);
 }
 
-/** Sets Z-pos Standard Deviation in mm, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Z-pos Standard Deviation in mm to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_raw_gps_measurements_set_z_pos_standard_deviation_mm(
     cubeacp_raw_gps_measurements_t *message,
     int32_t value)
@@ -329,7 +329,7 @@ static inline double cubeacp_raw_gps_measurements_x_pos_standard_deviation_m(
     return icdgen_quotient(message->x_pos_standard_deviation, 10);
 }
 
-/** Sets X-pos Standard Deviation in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set X-pos Standard Deviation in m to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_raw_gps_measurements_set_x_pos_standard_deviation_m(
     cubeacp_raw_gps_measurements_t *message,
     double value)
@@ -344,7 +344,7 @@ static inline double cubeacp_raw_gps_measurements_y_pos_standard_deviation_m(
     return icdgen_quotient(message->y_pos_standard_deviation, 10);
 }
 
-/** Sets Y-pos Standard Deviation in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Y-pos Standard Deviation in m to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_raw_gps_measurements_set_y_pos_standard_deviation_m(
     cubeacp_raw_gps_measurements_t *message,
     double value)
@@ -359,7 +359,7 @@ static inline double cubeacp_raw_gps_measurements_z_pos_standard_deviation_m(
     return icdgen_quotient(message->z_pos_standard_deviation, 10);
 }
 
-/** Sets Z-pos Standard Deviation in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Z-pos Standard Deviation in m to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_raw_gps_measurements_set_z_pos_standard_deviation_m(
     cubeacp_raw_gps_measurements_t *message,
     double value)

@@ -13,7 +13,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_RAW_GPS_TIME_ID 177u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_RAW_GPS_TIME_LENGTH 6u
 
 /** Raw values. */
@@ -28,13 +28,13 @@ typedef struct {
     uint32_t gps_time_milliseconds;
 } cubeacp_raw_gps_time_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_raw_gps_time_init(cubeacp_raw_gps_time_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_raw_gps_time_decode(
     cubeacp_raw_gps_time_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -48,7 +48,7 @@ static inline icd_status_t cubeacp_raw_gps_time_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_raw_gps_time_encode(
     const cubeacp_raw_gps_time_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -62,7 +62,7 @@ static inline icd_status_t cubeacp_raw_gps_time_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_raw_gps_time_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

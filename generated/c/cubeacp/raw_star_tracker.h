@@ -26,7 +26,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_RAW_STAR_TRACKER_ID 211u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_RAW_STAR_TRACKER_LENGTH 54u
 
 /** Raw values. */
@@ -180,13 +180,13 @@ typedef struct {
     int16_t q2;
 } cubeacp_raw_star_tracker_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_raw_star_tracker_init(cubeacp_raw_star_tracker_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 54 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 54 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_raw_star_tracker_decode(
     cubeacp_raw_star_tracker_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -221,7 +221,7 @@ static inline icd_status_t cubeacp_raw_star_tracker_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 54 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 54 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_raw_star_tracker_encode(
     const cubeacp_raw_star_tracker_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -255,7 +255,7 @@ static inline icd_status_t cubeacp_raw_star_tracker_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_raw_star_tracker_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -411,7 +411,7 @@ static inline int32_t cubeacp_raw_star_tracker_x_axis_rate_micro(const cubeacp_r
     return message->x_axis_rate * INT32_C(100);
 }
 
-/** Sets x-Axis rate in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set x-Axis rate in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_raw_star_tracker_set_x_axis_rate_micro(
     cubeacp_raw_star_tracker_t *message,
     int32_t value)
@@ -429,7 +429,7 @@ static inline int32_t cubeacp_raw_star_tracker_y_axis_rate_micro(const cubeacp_r
     return message->y_axis_rate * INT32_C(100);
 }
 
-/** Sets y-Axis rate in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set y-Axis rate in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_raw_star_tracker_set_y_axis_rate_micro(
     cubeacp_raw_star_tracker_t *message,
     int32_t value)
@@ -447,7 +447,7 @@ static inline int32_t cubeacp_raw_star_tracker_z_axis_rate_micro(const cubeacp_r
     return message->z_axis_rate * INT32_C(100);
 }
 
-/** Sets z-Axis rate in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set z-Axis rate in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_raw_star_tracker_set_z_axis_rate_micro(
     cubeacp_raw_star_tracker_t *message,
     int32_t value)
@@ -465,7 +465,7 @@ static inline int32_t cubeacp_raw_star_tracker_q0_micro(const cubeacp_raw_star_t
     return message->q0 * INT32_C(100);
 }
 
-/** Sets Q0 in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Q0 in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_raw_star_tracker_set_q0_micro(cubeacp_raw_star_tracker_t *message, int32_t value)
 {
     if ((value < -3276850) || (value > 3276749)) {
@@ -481,7 +481,7 @@ static inline int32_t cubeacp_raw_star_tracker_q1_micro(const cubeacp_raw_star_t
     return message->q1 * INT32_C(100);
 }
 
-/** Sets Q1 in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Q1 in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_raw_star_tracker_set_q1_micro(cubeacp_raw_star_tracker_t *message, int32_t value)
 {
     if ((value < -3276850) || (value > 3276749)) {
@@ -497,7 +497,7 @@ static inline int32_t cubeacp_raw_star_tracker_q2_micro(const cubeacp_raw_star_t
     return message->q2 * INT32_C(100);
 }
 
-/** Sets Q2 in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Q2 in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_raw_star_tracker_set_q2_micro(cubeacp_raw_star_tracker_t *message, int32_t value)
 {
     if ((value < -3276850) || (value > 3276749)) {
@@ -515,7 +515,7 @@ static inline double cubeacp_raw_star_tracker_x_axis_rate_physical(const cubeacp
     return icdgen_quotient(message->x_axis_rate, 10000);
 }
 
-/** Sets x-Axis rate, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set x-Axis rate, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_raw_star_tracker_set_x_axis_rate_physical(
     cubeacp_raw_star_tracker_t *message,
     double value)
@@ -529,7 +529,7 @@ static inline double cubeacp_raw_star_tracker_y_axis_rate_physical(const cubeacp
     return icdgen_quotient(message->y_axis_rate, 10000);
 }
 
-/** Sets y-Axis rate, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set y-Axis rate, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_raw_star_tracker_set_y_axis_rate_physical(
     cubeacp_raw_star_tracker_t *message,
     double value)
@@ -543,7 +543,7 @@ static inline double cubeacp_raw_star_tracker_z_axis_rate_physical(const cubeacp
     return icdgen_quotient(message->z_axis_rate, 10000);
 }
 
-/** Sets z-Axis rate, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set z-Axis rate, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_raw_star_tracker_set_z_axis_rate_physical(
     cubeacp_raw_star_tracker_t *message,
     double value)
@@ -557,7 +557,7 @@ static inline double cubeacp_raw_star_tracker_q0_physical(const cubeacp_raw_star
     return icdgen_quotient(message->q0, 10000);
 }
 
-/** Sets Q0, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Q0, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_raw_star_tracker_set_q0_physical(cubeacp_raw_star_tracker_t *message, double value)
 {
     return icdgen_set_i16(&message->q0, value, 1, 0, 10000, INT16_MIN, INT16_MAX);
@@ -569,7 +569,7 @@ static inline double cubeacp_raw_star_tracker_q1_physical(const cubeacp_raw_star
     return icdgen_quotient(message->q1, 10000);
 }
 
-/** Sets Q1, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Q1, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_raw_star_tracker_set_q1_physical(cubeacp_raw_star_tracker_t *message, double value)
 {
     return icdgen_set_i16(&message->q1, value, 1, 0, 10000, INT16_MIN, INT16_MAX);
@@ -581,7 +581,7 @@ static inline double cubeacp_raw_star_tracker_q2_physical(const cubeacp_raw_star
     return icdgen_quotient(message->q2, 10000);
 }
 
-/** Sets Q2, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Q2, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_raw_star_tracker_set_q2_physical(cubeacp_raw_star_tracker_t *message, double value)
 {
     return icdgen_set_i16(&message->q2, value, 1, 0, 10000, INT16_MIN, INT16_MAX);

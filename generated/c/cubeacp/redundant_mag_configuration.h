@@ -5,7 +5,7 @@
 
 /**
  * @file
- * Redundant Magnetometer Configuration: configuration, set by telecommand 36, got by telemetry 205, 30 bytes. Table
+ * Redundant Magnetometer Configuration: configuration, set by telecommand 36, read by telemetry 205, 30 bytes. Table
  * 191\.
  * @note ACP-051 (certain): Magnetometers have four names for two. Main, primary and none stand for one; redundant,
  * secondary and 2nd for the other.
@@ -17,7 +17,7 @@
 #define CUBEACP_REDUNDANT_MAG_CONFIGURATION_SET_ID 36u
 /** Id of the telemetry that gets it. */
 #define CUBEACP_REDUNDANT_MAG_CONFIGURATION_GET_ID 205u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_REDUNDANT_MAG_CONFIGURATION_LENGTH 30u
 
 /** Raw values. */
@@ -107,13 +107,13 @@ typedef struct {
     int16_t sensitivity_s32;
 } cubeacp_redundant_mag_configuration_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_redundant_mag_configuration_init(cubeacp_redundant_mag_configuration_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 30 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 30 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_redundant_mag_configuration_decode(
     cubeacp_redundant_mag_configuration_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -132,7 +132,7 @@ static inline icd_status_t cubeacp_redundant_mag_configuration_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 30 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 30 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_redundant_mag_configuration_encode(
     const cubeacp_redundant_mag_configuration_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -151,7 +151,7 @@ static inline icd_status_t cubeacp_redundant_mag_configuration_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_redundant_mag_configuration_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -183,8 +183,8 @@ static inline int32_t cubeacp_redundant_mag_configuration_mounting_alpha_mdeg(
 }
 
 /**
- * Sets Redundant Magnetometer Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw value;
- * ICD_ERROR_RANGE if there is none.
+ * Set Redundant Magnetometer Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_mounting_alpha_mdeg(
     cubeacp_redundant_mag_configuration_t *message,
@@ -205,8 +205,8 @@ static inline int32_t cubeacp_redundant_mag_configuration_mounting_beta_mdeg(
 }
 
 /**
- * Sets Redundant Magnetometer Mounting Transform Beta Angle in thousandths of deg, to the nearest raw value;
- * ICD_ERROR_RANGE if there is none.
+ * Set Redundant Magnetometer Mounting Transform Beta Angle in thousandths of deg to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_mounting_beta_mdeg(
     cubeacp_redundant_mag_configuration_t *message,
@@ -227,8 +227,8 @@ static inline int32_t cubeacp_redundant_mag_configuration_mounting_gamma_mdeg(
 }
 
 /**
- * Sets Redundant Magnetometer Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw value;
- * ICD_ERROR_RANGE if there is none.
+ * Set Redundant Magnetometer Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_mounting_gamma_mdeg(
     cubeacp_redundant_mag_configuration_t *message,
@@ -249,8 +249,8 @@ static inline int32_t cubeacp_redundant_mag_configuration_channel_1_offset_milli
 }
 
 /**
- * Sets Redundant Magnetometer Channel 1 Offset in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Redundant Magnetometer Channel 1 Offset in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is
+ * out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_channel_1_offset_milli(
     cubeacp_redundant_mag_configuration_t *message,
@@ -271,8 +271,8 @@ static inline int32_t cubeacp_redundant_mag_configuration_channel_2_offset_milli
 }
 
 /**
- * Sets Redundant Magnetometer Channel 2 Offset in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Redundant Magnetometer Channel 2 Offset in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is
+ * out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_channel_2_offset_milli(
     cubeacp_redundant_mag_configuration_t *message,
@@ -293,8 +293,8 @@ static inline int32_t cubeacp_redundant_mag_configuration_channel_3_offset_milli
 }
 
 /**
- * Sets Redundant Magnetometer Channel 3 Offset in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Redundant Magnetometer Channel 3 Offset in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is
+ * out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_channel_3_offset_milli(
     cubeacp_redundant_mag_configuration_t *message,
@@ -315,8 +315,8 @@ static inline int32_t cubeacp_redundant_mag_configuration_sensitivity_s11_milli(
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S11 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S11 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s11_milli(
     cubeacp_redundant_mag_configuration_t *message,
@@ -337,8 +337,8 @@ static inline int32_t cubeacp_redundant_mag_configuration_sensitivity_s22_milli(
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S22 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S22 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s22_milli(
     cubeacp_redundant_mag_configuration_t *message,
@@ -359,8 +359,8 @@ static inline int32_t cubeacp_redundant_mag_configuration_sensitivity_s33_milli(
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S33 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S33 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s33_milli(
     cubeacp_redundant_mag_configuration_t *message,
@@ -381,8 +381,8 @@ static inline int32_t cubeacp_redundant_mag_configuration_sensitivity_s12_milli(
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S12 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S12 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s12_milli(
     cubeacp_redundant_mag_configuration_t *message,
@@ -403,8 +403,8 @@ static inline int32_t cubeacp_redundant_mag_configuration_sensitivity_s13_milli(
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S13 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S13 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s13_milli(
     cubeacp_redundant_mag_configuration_t *message,
@@ -425,8 +425,8 @@ static inline int32_t cubeacp_redundant_mag_configuration_sensitivity_s21_milli(
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S21 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S21 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s21_milli(
     cubeacp_redundant_mag_configuration_t *message,
@@ -447,8 +447,8 @@ static inline int32_t cubeacp_redundant_mag_configuration_sensitivity_s23_milli(
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S23 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S23 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s23_milli(
     cubeacp_redundant_mag_configuration_t *message,
@@ -469,8 +469,8 @@ static inline int32_t cubeacp_redundant_mag_configuration_sensitivity_s31_milli(
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S31 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S31 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s31_milli(
     cubeacp_redundant_mag_configuration_t *message,
@@ -491,8 +491,8 @@ static inline int32_t cubeacp_redundant_mag_configuration_sensitivity_s32_milli(
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S32 in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S32 in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s32_milli(
     cubeacp_redundant_mag_configuration_t *message,
@@ -515,8 +515,8 @@ static inline double cubeacp_redundant_mag_configuration_mounting_alpha_deg(
 }
 
 /**
- * Sets Redundant Magnetometer Mounting Transform Alpha Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Mounting Transform Alpha Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_mounting_alpha_deg(
     cubeacp_redundant_mag_configuration_t *message,
@@ -533,8 +533,8 @@ static inline double cubeacp_redundant_mag_configuration_mounting_beta_deg(
 }
 
 /**
- * Sets Redundant Magnetometer Mounting Transform Beta Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Mounting Transform Beta Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_mounting_beta_deg(
     cubeacp_redundant_mag_configuration_t *message,
@@ -551,8 +551,8 @@ static inline double cubeacp_redundant_mag_configuration_mounting_gamma_deg(
 }
 
 /**
- * Sets Redundant Magnetometer Mounting Transform Gamma Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Mounting Transform Gamma Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_mounting_gamma_deg(
     cubeacp_redundant_mag_configuration_t *message,
@@ -569,8 +569,8 @@ static inline double cubeacp_redundant_mag_configuration_channel_1_offset_physic
 }
 
 /**
- * Sets Redundant Magnetometer Channel 1 Offset, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Channel 1 Offset, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_channel_1_offset_physical(
     cubeacp_redundant_mag_configuration_t *message,
@@ -587,8 +587,8 @@ static inline double cubeacp_redundant_mag_configuration_channel_2_offset_physic
 }
 
 /**
- * Sets Redundant Magnetometer Channel 2 Offset, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Channel 2 Offset, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_channel_2_offset_physical(
     cubeacp_redundant_mag_configuration_t *message,
@@ -605,8 +605,8 @@ static inline double cubeacp_redundant_mag_configuration_channel_3_offset_physic
 }
 
 /**
- * Sets Redundant Magnetometer Channel 3 Offset, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there
- * is none.
+ * Set Redundant Magnetometer Channel 3 Offset, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if
+ * it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_channel_3_offset_physical(
     cubeacp_redundant_mag_configuration_t *message,
@@ -623,8 +623,8 @@ static inline double cubeacp_redundant_mag_configuration_sensitivity_s11_physica
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S11, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S11, as a physical value to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s11_physical(
     cubeacp_redundant_mag_configuration_t *message,
@@ -641,8 +641,8 @@ static inline double cubeacp_redundant_mag_configuration_sensitivity_s22_physica
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S22, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S22, as a physical value to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s22_physical(
     cubeacp_redundant_mag_configuration_t *message,
@@ -659,8 +659,8 @@ static inline double cubeacp_redundant_mag_configuration_sensitivity_s33_physica
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S33, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S33, as a physical value to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s33_physical(
     cubeacp_redundant_mag_configuration_t *message,
@@ -677,8 +677,8 @@ static inline double cubeacp_redundant_mag_configuration_sensitivity_s12_physica
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S12, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S12, as a physical value to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s12_physical(
     cubeacp_redundant_mag_configuration_t *message,
@@ -695,8 +695,8 @@ static inline double cubeacp_redundant_mag_configuration_sensitivity_s13_physica
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S13, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S13, as a physical value to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s13_physical(
     cubeacp_redundant_mag_configuration_t *message,
@@ -713,8 +713,8 @@ static inline double cubeacp_redundant_mag_configuration_sensitivity_s21_physica
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S21, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S21, as a physical value to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s21_physical(
     cubeacp_redundant_mag_configuration_t *message,
@@ -731,8 +731,8 @@ static inline double cubeacp_redundant_mag_configuration_sensitivity_s23_physica
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S23, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S23, as a physical value to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s23_physical(
     cubeacp_redundant_mag_configuration_t *message,
@@ -749,8 +749,8 @@ static inline double cubeacp_redundant_mag_configuration_sensitivity_s31_physica
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S31, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S31, as a physical value to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s31_physical(
     cubeacp_redundant_mag_configuration_t *message,
@@ -767,8 +767,8 @@ static inline double cubeacp_redundant_mag_configuration_sensitivity_s32_physica
 }
 
 /**
- * Sets Redundant Magnetometer Sensitivity Matrix S32, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set Redundant Magnetometer Sensitivity Matrix S32, as a physical value to the nearest raw value. Return
+ * ICD_ERROR_RANGE if it is out of range.
  */
 static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s32_physical(
     cubeacp_redundant_mag_configuration_t *message,

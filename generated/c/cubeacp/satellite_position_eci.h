@@ -13,7 +13,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_SATELLITE_POSITION_ECI_ID 148u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_SATELLITE_POSITION_ECI_LENGTH 6u
 
 /** Raw values. */
@@ -26,13 +26,13 @@ typedef struct {
     int16_t z_position;
 } cubeacp_satellite_position_eci_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_satellite_position_eci_init(cubeacp_satellite_position_eci_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_satellite_position_eci_decode(
     cubeacp_satellite_position_eci_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -47,7 +47,7 @@ static inline icd_status_t cubeacp_satellite_position_eci_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_satellite_position_eci_encode(
     const cubeacp_satellite_position_eci_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -62,7 +62,7 @@ static inline icd_status_t cubeacp_satellite_position_eci_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_satellite_position_eci_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -80,7 +80,7 @@ static inline int32_t cubeacp_satellite_position_eci_x_position_m(const cubeacp_
     return message->x_position * INT32_C(250);
 }
 
-/** Sets X position in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set X position in m to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_satellite_position_eci_set_x_position_m(
     cubeacp_satellite_position_eci_t *message,
     int32_t value)
@@ -98,7 +98,7 @@ static inline int32_t cubeacp_satellite_position_eci_y_position_m(const cubeacp_
     return message->y_position * INT32_C(250);
 }
 
-/** Sets Y position in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Y position in m to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_satellite_position_eci_set_y_position_m(
     cubeacp_satellite_position_eci_t *message,
     int32_t value)
@@ -116,7 +116,7 @@ static inline int32_t cubeacp_satellite_position_eci_z_position_m(const cubeacp_
     return message->z_position * INT32_C(250);
 }
 
-/** Sets Z position in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Z position in m to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_satellite_position_eci_set_z_position_m(
     cubeacp_satellite_position_eci_t *message,
     int32_t value)
@@ -136,7 +136,7 @@ static inline double cubeacp_satellite_position_eci_x_position_km(const cubeacp_
     return icdgen_quotient(message->x_position, 4);
 }
 
-/** Sets X position in km, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set X position in km to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_satellite_position_eci_set_x_position_km(
     cubeacp_satellite_position_eci_t *message,
     double value)
@@ -150,7 +150,7 @@ static inline double cubeacp_satellite_position_eci_y_position_km(const cubeacp_
     return icdgen_quotient(message->y_position, 4);
 }
 
-/** Sets Y position in km, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Y position in km to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_satellite_position_eci_set_y_position_km(
     cubeacp_satellite_position_eci_t *message,
     double value)
@@ -164,7 +164,7 @@ static inline double cubeacp_satellite_position_eci_z_position_km(const cubeacp_
     return icdgen_quotient(message->z_position, 4);
 }
 
-/** Sets Z position in km, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Z position in km to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_satellite_position_eci_set_z_position_km(
     cubeacp_satellite_position_eci_t *message,
     double value)

@@ -14,7 +14,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_SATELLITE_POSITION_LLH_ID 150u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_SATELLITE_POSITION_LLH_LENGTH 6u
 
 /** Raw values. */
@@ -35,13 +35,13 @@ typedef struct {
     uint16_t altitude;
 } cubeacp_satellite_position_llh_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_satellite_position_llh_init(cubeacp_satellite_position_llh_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_satellite_position_llh_decode(
     cubeacp_satellite_position_llh_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -56,7 +56,7 @@ static inline icd_status_t cubeacp_satellite_position_llh_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_satellite_position_llh_encode(
     const cubeacp_satellite_position_llh_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -71,7 +71,7 @@ static inline icd_status_t cubeacp_satellite_position_llh_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_satellite_position_llh_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -89,7 +89,7 @@ static inline int32_t cubeacp_satellite_position_llh_latitude_mdeg(const cubeacp
     return message->latitude * INT32_C(10);
 }
 
-/** Sets Latitude in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Latitude in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_satellite_position_llh_set_latitude_mdeg(
     cubeacp_satellite_position_llh_t *message,
     int32_t value)
@@ -107,7 +107,7 @@ static inline int32_t cubeacp_satellite_position_llh_longitude_mdeg(const cubeac
     return message->longitude * INT32_C(10);
 }
 
-/** Sets Longitude in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Longitude in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_satellite_position_llh_set_longitude_mdeg(
     cubeacp_satellite_position_llh_t *message,
     int32_t value)
@@ -125,7 +125,7 @@ static inline int32_t cubeacp_satellite_position_llh_altitude_m(const cubeacp_sa
     return message->altitude * INT32_C(10);
 }
 
-/** Sets Altitude in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Altitude in m to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_satellite_position_llh_set_altitude_m(
     cubeacp_satellite_position_llh_t *message,
     int32_t value)
@@ -145,7 +145,7 @@ static inline double cubeacp_satellite_position_llh_latitude_deg(const cubeacp_s
     return icdgen_quotient(message->latitude, 100);
 }
 
-/** Sets Latitude in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Latitude in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_satellite_position_llh_set_latitude_deg(
     cubeacp_satellite_position_llh_t *message,
     double value)
@@ -159,7 +159,7 @@ static inline double cubeacp_satellite_position_llh_longitude_deg(const cubeacp_
     return icdgen_quotient(message->longitude, 100);
 }
 
-/** Sets Longitude in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Longitude in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_satellite_position_llh_set_longitude_deg(
     cubeacp_satellite_position_llh_t *message,
     double value)
@@ -173,7 +173,7 @@ static inline double cubeacp_satellite_position_llh_altitude_km(const cubeacp_sa
     return icdgen_quotient(message->altitude, 100);
 }
 
-/** Sets Altitude in km, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Altitude in km to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_satellite_position_llh_set_altitude_km(
     cubeacp_satellite_position_llh_t *message,
     double value)

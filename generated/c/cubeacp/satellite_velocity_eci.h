@@ -13,7 +13,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_SATELLITE_VELOCITY_ECI_ID 149u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_SATELLITE_VELOCITY_ECI_LENGTH 6u
 
 /** Raw values. */
@@ -26,13 +26,13 @@ typedef struct {
     int16_t z_velocity;
 } cubeacp_satellite_velocity_eci_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_satellite_velocity_eci_init(cubeacp_satellite_velocity_eci_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_satellite_velocity_eci_decode(
     cubeacp_satellite_velocity_eci_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -47,7 +47,7 @@ static inline icd_status_t cubeacp_satellite_velocity_eci_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_satellite_velocity_eci_encode(
     const cubeacp_satellite_velocity_eci_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -62,7 +62,7 @@ static inline icd_status_t cubeacp_satellite_velocity_eci_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_satellite_velocity_eci_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -81,7 +81,7 @@ static inline int32_t cubeacp_satellite_velocity_eci_x_velocity_mm_per_s(
     return message->x_velocity * INT32_C(250);
 }
 
-/** Sets X Velocity in mm/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set X Velocity in mm/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_satellite_velocity_eci_set_x_velocity_mm_per_s(
     cubeacp_satellite_velocity_eci_t *message,
     int32_t value)
@@ -100,7 +100,7 @@ static inline int32_t cubeacp_satellite_velocity_eci_y_velocity_mm_per_s(
     return message->y_velocity * INT32_C(250);
 }
 
-/** Sets Y Velocity in mm/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Y Velocity in mm/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_satellite_velocity_eci_set_y_velocity_mm_per_s(
     cubeacp_satellite_velocity_eci_t *message,
     int32_t value)
@@ -119,7 +119,7 @@ static inline int32_t cubeacp_satellite_velocity_eci_z_velocity_mm_per_s(
     return message->z_velocity * INT32_C(250);
 }
 
-/** Sets Z Velocity in mm/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Z Velocity in mm/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_satellite_velocity_eci_set_z_velocity_mm_per_s(
     cubeacp_satellite_velocity_eci_t *message,
     int32_t value)
@@ -139,7 +139,7 @@ static inline double cubeacp_satellite_velocity_eci_x_velocity_m_per_s(const cub
     return icdgen_quotient(message->x_velocity, 4);
 }
 
-/** Sets X Velocity in m/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set X Velocity in m/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_satellite_velocity_eci_set_x_velocity_m_per_s(
     cubeacp_satellite_velocity_eci_t *message,
     double value)
@@ -153,7 +153,7 @@ static inline double cubeacp_satellite_velocity_eci_y_velocity_m_per_s(const cub
     return icdgen_quotient(message->y_velocity, 4);
 }
 
-/** Sets Y Velocity in m/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Y Velocity in m/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_satellite_velocity_eci_set_y_velocity_m_per_s(
     cubeacp_satellite_velocity_eci_t *message,
     double value)
@@ -167,7 +167,7 @@ static inline double cubeacp_satellite_velocity_eci_z_velocity_m_per_s(const cub
     return icdgen_quotient(message->z_velocity, 4);
 }
 
-/** Sets Z Velocity in m/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Z Velocity in m/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_satellite_velocity_eci_set_z_velocity_m_per_s(
     cubeacp_satellite_velocity_eci_t *message,
     double value)

@@ -15,7 +15,7 @@
 
 /** Id of the telecommand. */
 #define CUBEACP_SAVE_IMAGE_ID 80u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_SAVE_IMAGE_LENGTH 2u
 
 /** Raw values. */
@@ -26,13 +26,13 @@ typedef struct {
     cubeacp_im_size_t image_size;
 } cubeacp_save_image_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_save_image_init(cubeacp_save_image_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 2 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 2 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_save_image_decode(
     cubeacp_save_image_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -46,7 +46,7 @@ static inline icd_status_t cubeacp_save_image_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 2 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 2 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_save_image_encode(
     const cubeacp_save_image_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -60,7 +60,7 @@ static inline icd_status_t cubeacp_save_image_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_save_image_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -5,7 +5,7 @@
 
 /**
  * @file
- * SD Log2 Configuration: configuration, set by telecommand 105, got by telemetry 236, 13 bytes. Table 212.
+ * SD Log2 Configuration: configuration, set by telecommand 105, read by telemetry 236, 13 bytes. Table 212.
  * Which frames go into log 2, how often, and to which card.
  * @note ACP-185 (certain): Log1 is LOG1 in its description. Names have Log1 and Log2, descriptions LOG1 and LOG2.
  * @note ACP-186 (open): A log that is reconfigured while it runs. The mask in the file header is that of the start.
@@ -19,7 +19,7 @@
 #define CUBEACP_SD_LOG2_CONFIGURATION_SET_ID 105u
 /** Id of the telemetry that gets it. */
 #define CUBEACP_SD_LOG2_CONFIGURATION_GET_ID 236u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_SD_LOG2_CONFIGURATION_LENGTH 13u
 /** Log Period: logging disabled. */
 #define CUBEACP_SD_LOG2_CONFIGURATION_LOG_PERIOD_LOGGING_DISABLED 0x0000u
@@ -42,13 +42,13 @@ typedef struct {
     cubeacp_sd_log_select_t log_destination;
 } cubeacp_sd_log2_configuration_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_sd_log2_configuration_init(cubeacp_sd_log2_configuration_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 13 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 13 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_sd_log2_configuration_decode(
     cubeacp_sd_log2_configuration_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -63,7 +63,7 @@ static inline icd_status_t cubeacp_sd_log2_configuration_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 13 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 13 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_sd_log2_configuration_encode(
     const cubeacp_sd_log2_configuration_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -78,7 +78,7 @@ static inline icd_status_t cubeacp_sd_log2_configuration_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_sd_log2_configuration_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

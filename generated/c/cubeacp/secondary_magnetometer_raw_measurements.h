@@ -17,7 +17,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_SECONDARY_MAGNETOMETER_RAW_MEASUREMENTS_ID 215u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_SECONDARY_MAGNETOMETER_RAW_MEASUREMENTS_LENGTH 6u
 
 /** Raw values. */
@@ -40,14 +40,14 @@ typedef struct {
     int16_t mag_z;
 } cubeacp_secondary_magnetometer_raw_measurements_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_secondary_magnetometer_raw_measurements_init(
     cubeacp_secondary_magnetometer_raw_measurements_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_secondary_magnetometer_raw_measurements_decode(
     cubeacp_secondary_magnetometer_raw_measurements_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -62,7 +62,7 @@ static inline icd_status_t cubeacp_secondary_magnetometer_raw_measurements_decod
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_secondary_magnetometer_raw_measurements_encode(
     const cubeacp_secondary_magnetometer_raw_measurements_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -77,7 +77,7 @@ static inline icd_status_t cubeacp_secondary_magnetometer_raw_measurements_encod
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_secondary_magnetometer_raw_measurements_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

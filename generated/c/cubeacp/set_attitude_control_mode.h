@@ -13,7 +13,7 @@
 
 /** Id of the telecommand. */
 #define CUBEACP_SET_ATTITUDE_CONTROL_MODE_ID 13u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_SET_ATTITUDE_CONTROL_MODE_LENGTH 3u
 /** Timeout: no timeout. */
 #define CUBEACP_SET_ATTITUDE_CONTROL_MODE_TIMEOUT_NO_TIMEOUT 0xFFFFu
@@ -33,13 +33,13 @@ typedef struct {
     uint16_t timeout;
 } cubeacp_set_attitude_control_mode_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_set_attitude_control_mode_init(cubeacp_set_attitude_control_mode_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 3 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 3 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_set_attitude_control_mode_decode(
     cubeacp_set_attitude_control_mode_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -53,7 +53,7 @@ static inline icd_status_t cubeacp_set_attitude_control_mode_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 3 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 3 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_set_attitude_control_mode_encode(
     const cubeacp_set_attitude_control_mode_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -67,7 +67,7 @@ static inline icd_status_t cubeacp_set_attitude_control_mode_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_set_attitude_control_mode_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

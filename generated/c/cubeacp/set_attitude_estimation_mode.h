@@ -13,7 +13,7 @@
 
 /** Id of the telecommand. */
 #define CUBEACP_SET_ATTITUDE_ESTIMATION_MODE_ID 14u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_SET_ATTITUDE_ESTIMATION_MODE_LENGTH 1u
 
 /** Raw values. */
@@ -22,13 +22,13 @@ typedef struct {
     cubeacp_estim_mode_select_t attitude_estimation_mode;
 } cubeacp_set_attitude_estimation_mode_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_set_attitude_estimation_mode_init(cubeacp_set_attitude_estimation_mode_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 1 byte; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 1 byte. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_set_attitude_estimation_mode_decode(
     cubeacp_set_attitude_estimation_mode_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -41,7 +41,7 @@ static inline icd_status_t cubeacp_set_attitude_estimation_mode_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 1 byte; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 1 byte. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_set_attitude_estimation_mode_encode(
     const cubeacp_set_attitude_estimation_mode_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -54,7 +54,7 @@ static inline icd_status_t cubeacp_set_attitude_estimation_mode_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_set_attitude_estimation_mode_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -5,7 +5,7 @@
 
 /**
  * @file
- * Set Detumbling Control Parameters: configuration, set by telecommand 38, got by telemetry 208, 14 bytes. Table 195.
+ * Set Detumbling Control Parameters: configuration, set by telecommand 38, read by telemetry 208, 14 bytes. Table 195.
  * Gains and references of the detumbling mode.
  * @note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a get id have neutral
  * names, but for eight. Names and identifiers are held as printed.
@@ -17,7 +17,7 @@
 #define CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_SET_ID 38u
 /** Id of the telemetry that gets it. */
 #define CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_GET_ID 208u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_LENGTH 14u
 /** Reference spin rate in deg/s: must be below this. */
 #define CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_SPIN_RATE_DEG_PER_S_BELOW 0.0
@@ -49,13 +49,13 @@ typedef struct {
     float fast_bdot_detumbling_gain;
 } cubeacp_set_detumbling_control_parameters_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_set_detumbling_control_parameters_init(cubeacp_set_detumbling_control_parameters_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 14 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 14 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_set_detumbling_control_parameters_decode(
     cubeacp_set_detumbling_control_parameters_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -71,7 +71,7 @@ static inline icd_status_t cubeacp_set_detumbling_control_parameters_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 14 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 14 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_set_detumbling_control_parameters_encode(
     const cubeacp_set_detumbling_control_parameters_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -87,7 +87,7 @@ static inline icd_status_t cubeacp_set_detumbling_control_parameters_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_set_detumbling_control_parameters_fields(size_t *count)
 {
     static const icd_limit_t limits[] = {
@@ -110,7 +110,10 @@ static inline int32_t cubeacp_set_detumbling_control_parameters_spin_rate_mdeg_p
     return message->spin_rate;
 }
 
-/** Sets Reference spin rate in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Reference spin rate in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_set_detumbling_control_parameters_set_spin_rate_mdeg_per_s(
     cubeacp_set_detumbling_control_parameters_t *message,
     int32_t value)
@@ -131,7 +134,7 @@ static inline double cubeacp_set_detumbling_control_parameters_spin_rate_deg_per
     return icdgen_quotient(message->spin_rate, 1000);
 }
 
-/** Sets Reference spin rate in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Reference spin rate in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_set_detumbling_control_parameters_set_spin_rate_deg_per_s(
     cubeacp_set_detumbling_control_parameters_t *message,
     double value)

@@ -5,7 +5,7 @@
 
 /**
  * @file
- * Set Magnetorquer Configuration: configuration, set by telecommand 21, got by telemetry 136, 3 bytes. Table 179.
+ * Set Magnetorquer Configuration: configuration, set by telecommand 21, read by telemetry 136, 3 bytes. Table 179.
  * @note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a get id have neutral
  * names, but for eight. Names and identifiers are held as printed.
  */
@@ -17,7 +17,7 @@
 #define CUBEACP_SET_MAGNETORQUER_CONFIGURATION_SET_ID 21u
 /** Id of the telemetry that gets it. */
 #define CUBEACP_SET_MAGNETORQUER_CONFIGURATION_GET_ID 136u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_SET_MAGNETORQUER_CONFIGURATION_LENGTH 3u
 
 /** Raw values. */
@@ -41,13 +41,13 @@ typedef struct {
     cubeacp_axis_select_t magnetorquer_3_configuration;
 } cubeacp_set_magnetorquer_configuration_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_set_magnetorquer_configuration_init(cubeacp_set_magnetorquer_configuration_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 3 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 3 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_set_magnetorquer_configuration_decode(
     cubeacp_set_magnetorquer_configuration_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -62,7 +62,7 @@ static inline icd_status_t cubeacp_set_magnetorquer_configuration_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 3 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 3 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_set_magnetorquer_configuration_encode(
     const cubeacp_set_magnetorquer_configuration_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -77,7 +77,7 @@ static inline icd_status_t cubeacp_set_magnetorquer_configuration_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_set_magnetorquer_configuration_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -15,7 +15,7 @@
 
 /** Id of the telecommand. */
 #define CUBEACP_SET_MAGNETORQUER_OUTPUT_ID 16u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_SET_MAGNETORQUER_OUTPUT_LENGTH 6u
 
 /** Raw values. */
@@ -45,13 +45,13 @@ typedef struct {
     int16_t z_duty_cycle;
 } cubeacp_set_magnetorquer_output_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_set_magnetorquer_output_init(cubeacp_set_magnetorquer_output_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_set_magnetorquer_output_decode(
     cubeacp_set_magnetorquer_output_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -66,7 +66,7 @@ static inline icd_status_t cubeacp_set_magnetorquer_output_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_set_magnetorquer_output_encode(
     const cubeacp_set_magnetorquer_output_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -81,7 +81,7 @@ static inline icd_status_t cubeacp_set_magnetorquer_output_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_set_magnetorquer_output_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -101,7 +101,8 @@ static inline int32_t cubeacp_set_magnetorquer_output_x_duty_cycle_milli(
 }
 
 /**
- * Sets Commanded X Magnetorquer duty cycle in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Commanded X Magnetorquer duty cycle in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_set_magnetorquer_output_set_x_duty_cycle_milli(
     cubeacp_set_magnetorquer_output_t *message,
@@ -122,7 +123,8 @@ static inline int32_t cubeacp_set_magnetorquer_output_y_duty_cycle_milli(
 }
 
 /**
- * Sets Commanded Y Magnetorquer duty cycle in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Commanded Y Magnetorquer duty cycle in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_set_magnetorquer_output_set_y_duty_cycle_milli(
     cubeacp_set_magnetorquer_output_t *message,
@@ -143,7 +145,8 @@ static inline int32_t cubeacp_set_magnetorquer_output_z_duty_cycle_milli(
 }
 
 /**
- * Sets Commanded Z Magnetorquer duty cycle in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set Commanded Z Magnetorquer duty cycle in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_set_magnetorquer_output_set_z_duty_cycle_milli(
     cubeacp_set_magnetorquer_output_t *message,
@@ -166,8 +169,8 @@ static inline double cubeacp_set_magnetorquer_output_x_duty_cycle_physical(
 }
 
 /**
- * Sets Commanded X Magnetorquer duty cycle, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Commanded X Magnetorquer duty cycle, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it
+ * is out of range.
  */
 static inline icd_status_t cubeacp_set_magnetorquer_output_set_x_duty_cycle_physical(
     cubeacp_set_magnetorquer_output_t *message,
@@ -184,8 +187,8 @@ static inline double cubeacp_set_magnetorquer_output_y_duty_cycle_physical(
 }
 
 /**
- * Sets Commanded Y Magnetorquer duty cycle, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Commanded Y Magnetorquer duty cycle, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it
+ * is out of range.
  */
 static inline icd_status_t cubeacp_set_magnetorquer_output_set_y_duty_cycle_physical(
     cubeacp_set_magnetorquer_output_t *message,
@@ -202,8 +205,8 @@ static inline double cubeacp_set_magnetorquer_output_z_duty_cycle_physical(
 }
 
 /**
- * Sets Commanded Z Magnetorquer duty cycle, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is
- * none.
+ * Set Commanded Z Magnetorquer duty cycle, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it
+ * is out of range.
  */
 static inline icd_status_t cubeacp_set_magnetorquer_output_set_z_duty_cycle_physical(
     cubeacp_set_magnetorquer_output_t *message,

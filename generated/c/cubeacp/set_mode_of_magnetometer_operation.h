@@ -14,7 +14,7 @@
 
 /** Id of the telecommand. */
 #define CUBEACP_SET_MODE_OF_MAGNETOMETER_OPERATION_ID 56u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_SET_MODE_OF_MAGNETOMETER_OPERATION_LENGTH 1u
 
 /** Raw values. */
@@ -28,14 +28,14 @@ typedef struct {
     cubeacp_mag_mode_val_t magnetometer_mode;
 } cubeacp_set_mode_of_magnetometer_operation_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_set_mode_of_magnetometer_operation_init(
     cubeacp_set_mode_of_magnetometer_operation_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 1 byte; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 1 byte. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_set_mode_of_magnetometer_operation_decode(
     cubeacp_set_mode_of_magnetometer_operation_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -48,7 +48,7 @@ static inline icd_status_t cubeacp_set_mode_of_magnetometer_operation_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 1 byte; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 1 byte. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_set_mode_of_magnetometer_operation_encode(
     const cubeacp_set_mode_of_magnetometer_operation_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -61,7 +61,7 @@ static inline icd_status_t cubeacp_set_mode_of_magnetometer_operation_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_set_mode_of_magnetometer_operation_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

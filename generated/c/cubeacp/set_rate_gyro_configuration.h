@@ -5,7 +5,7 @@
 
 /**
  * @file
- * Set Rate Gyro Configuration: configuration, set by telecommand 23, got by telemetry 138, 10 bytes. Table 182.
+ * Set Rate Gyro Configuration: configuration, set by telecommand 23, read by telemetry 138, 10 bytes. Table 182.
  * @note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a get id have neutral
  * names, but for eight. Names and identifiers are held as printed.
  * @note ACP-131 (certain): Gyro, rate sensor and MEMS. One sensor has three names, two of them in one message.
@@ -18,7 +18,7 @@
 #define CUBEACP_SET_RATE_GYRO_CONFIGURATION_SET_ID 23u
 /** Id of the telemetry that gets it. */
 #define CUBEACP_SET_RATE_GYRO_CONFIGURATION_GET_ID 138u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_SET_RATE_GYRO_CONFIGURATION_LENGTH 10u
 
 /** Raw values. */
@@ -53,13 +53,13 @@ typedef struct {
     uint8_t rate_sensor_mult;
 } cubeacp_set_rate_gyro_configuration_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_set_rate_gyro_configuration_init(cubeacp_set_rate_gyro_configuration_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 10 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 10 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_set_rate_gyro_configuration_decode(
     cubeacp_set_rate_gyro_configuration_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -78,7 +78,7 @@ static inline icd_status_t cubeacp_set_rate_gyro_configuration_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 10 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 10 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_set_rate_gyro_configuration_encode(
     const cubeacp_set_rate_gyro_configuration_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -97,7 +97,7 @@ static inline icd_status_t cubeacp_set_rate_gyro_configuration_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_set_rate_gyro_configuration_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -120,7 +120,10 @@ static inline int32_t cubeacp_set_rate_gyro_configuration_x_rate_sensor_offset_m
     return message->x_rate_sensor_offset;
 }
 
-/** Sets X-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set X-Rate Sensor Offset in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_set_rate_gyro_configuration_set_x_rate_sensor_offset_mdeg_per_s(
     cubeacp_set_rate_gyro_configuration_t *message,
     int32_t value)
@@ -139,7 +142,10 @@ static inline int32_t cubeacp_set_rate_gyro_configuration_y_rate_sensor_offset_m
     return message->y_rate_sensor_offset;
 }
 
-/** Sets Y-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Y-Rate Sensor Offset in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_set_rate_gyro_configuration_set_y_rate_sensor_offset_mdeg_per_s(
     cubeacp_set_rate_gyro_configuration_t *message,
     int32_t value)
@@ -158,7 +164,10 @@ static inline int32_t cubeacp_set_rate_gyro_configuration_z_rate_sensor_offset_m
     return message->z_rate_sensor_offset;
 }
 
-/** Sets Z-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Z-Rate Sensor Offset in thousandths of deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_set_rate_gyro_configuration_set_z_rate_sensor_offset_mdeg_per_s(
     cubeacp_set_rate_gyro_configuration_t *message,
     int32_t value)
@@ -179,7 +188,7 @@ static inline double cubeacp_set_rate_gyro_configuration_x_rate_sensor_offset_de
     return icdgen_quotient(message->x_rate_sensor_offset, 1000);
 }
 
-/** Sets X-Rate Sensor Offset in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set X-Rate Sensor Offset in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_set_rate_gyro_configuration_set_x_rate_sensor_offset_deg_per_s(
     cubeacp_set_rate_gyro_configuration_t *message,
     double value)
@@ -194,7 +203,7 @@ static inline double cubeacp_set_rate_gyro_configuration_y_rate_sensor_offset_de
     return icdgen_quotient(message->y_rate_sensor_offset, 1000);
 }
 
-/** Sets Y-Rate Sensor Offset in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Y-Rate Sensor Offset in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_set_rate_gyro_configuration_set_y_rate_sensor_offset_deg_per_s(
     cubeacp_set_rate_gyro_configuration_t *message,
     double value)
@@ -209,7 +218,7 @@ static inline double cubeacp_set_rate_gyro_configuration_z_rate_sensor_offset_de
     return icdgen_quotient(message->z_rate_sensor_offset, 1000);
 }
 
-/** Sets Z-Rate Sensor Offset in deg/s, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Z-Rate Sensor Offset in deg/s to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_set_rate_gyro_configuration_set_z_rate_sensor_offset_deg_per_s(
     cubeacp_set_rate_gyro_configuration_t *message,
     double value)

@@ -5,7 +5,7 @@
 
 /**
  * @file
- * Set Reaction Wheel Control Parameters: configuration, set by telecommand 40, got by telemetry 217, 13 bytes. Table
+ * Set Reaction Wheel Control Parameters: configuration, set by telecommand 40, read by telemetry 217, 13 bytes. Table
  * 197\.
  * Gains and reference of the reaction-wheel mode.
  * @note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a get id have neutral
@@ -19,7 +19,7 @@
 #define CUBEACP_SET_REACTION_WHEEL_CONTROL_PARAMETERS_SET_ID 40u
 /** Id of the telemetry that gets it. */
 #define CUBEACP_SET_REACTION_WHEEL_CONTROL_PARAMETERS_GET_ID 217u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_SET_REACTION_WHEEL_CONTROL_PARAMETERS_LENGTH 13u
 
 /** Raw values. */
@@ -55,14 +55,14 @@ typedef struct {
     bool control_transition_on_wheel_error;
 } cubeacp_set_reaction_wheel_control_parameters_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_set_reaction_wheel_control_parameters_init(
     cubeacp_set_reaction_wheel_control_parameters_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 13 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 13 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_set_reaction_wheel_control_parameters_decode(
     cubeacp_set_reaction_wheel_control_parameters_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -79,7 +79,7 @@ static inline icd_status_t cubeacp_set_reaction_wheel_control_parameters_decode(
     return ICD_OK;
 }
 
-/** Name of the first field whose raw value has more bits than the field; NULL if all fit. */
+/** Return the name of the first field whose raw value has more bits than the field; NULL if all fit. */
 static inline const char *cubeacp_set_reaction_wheel_control_parameters_misfit(
     const cubeacp_set_reaction_wheel_control_parameters_t *message)
 {
@@ -90,8 +90,8 @@ static inline const char *cubeacp_set_reaction_wheel_control_parameters_misfit(
 }
 
 /**
- * Writes a frame of 13 bytes. ICD_ERROR_LENGTH if the buffer is smaller, ICD_ERROR_RANGE if a raw
- * value does not fit its field; nothing is written then.
+ * Encode a frame of 13 bytes. Return ICD_ERROR_LENGTH if the buffer is too small, and ICD_ERROR_RANGE
+ * if a raw value does not fit into its field. Nothing is written in case of an error.
  */
 static inline icd_status_t cubeacp_set_reaction_wheel_control_parameters_encode(
     const cubeacp_set_reaction_wheel_control_parameters_t *ICDGEN_RESTRICT message,
@@ -113,7 +113,7 @@ static inline icd_status_t cubeacp_set_reaction_wheel_control_parameters_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_set_reaction_wheel_control_parameters_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -5,7 +5,7 @@
 
 /**
  * @file
- * Set Star Tracker Configuration: configuration, set by telecommand 37, got by telemetry 202, 53 bytes. Table 188.
+ * Set Star Tracker Configuration: configuration, set by telecommand 37, read by telemetry 202, 53 bytes. Table 188.
  * Of CubeStar.
  * @note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained. They are written 0 and
  * ignored.
@@ -19,7 +19,7 @@
 #define CUBEACP_SET_STAR_TRACKER_CONFIGURATION_SET_ID 37u
 /** Id of the telemetry that gets it. */
 #define CUBEACP_SET_STAR_TRACKER_CONFIGURATION_GET_ID 202u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_SET_STAR_TRACKER_CONFIGURATION_LENGTH 53u
 
 /** Raw values. */
@@ -162,13 +162,13 @@ typedef struct {
     uint8_t search_width;
 } cubeacp_set_star_tracker_configuration_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_set_star_tracker_configuration_init(cubeacp_set_star_tracker_configuration_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 53 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 53 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_decode(
     cubeacp_set_star_tracker_configuration_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -206,7 +206,7 @@ static inline icd_status_t cubeacp_set_star_tracker_configuration_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 53 bytes, reserved bits 0; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 53 bytes, reserved bits 0. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_encode(
     const cubeacp_set_star_tracker_configuration_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -245,7 +245,7 @@ static inline icd_status_t cubeacp_set_star_tracker_configuration_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_set_star_tracker_configuration_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -288,8 +288,8 @@ static inline int32_t cubeacp_set_star_tracker_configuration_mounting_alpha_mdeg
 }
 
 /**
- * Sets StarTracker Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set StarTracker Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE
+ * if it is out of range.
  */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_mounting_alpha_mdeg(
     cubeacp_set_star_tracker_configuration_t *message,
@@ -310,8 +310,8 @@ static inline int32_t cubeacp_set_star_tracker_configuration_mounting_beta_mdeg(
 }
 
 /**
- * Sets StarTracker Mounting Transform Beta Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set StarTracker Mounting Transform Beta Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE
+ * if it is out of range.
  */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_mounting_beta_mdeg(
     cubeacp_set_star_tracker_configuration_t *message,
@@ -332,8 +332,8 @@ static inline int32_t cubeacp_set_star_tracker_configuration_mounting_gamma_mdeg
 }
 
 /**
- * Sets StarTracker Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw value; ICD_ERROR_RANGE if
- * there is none.
+ * Set StarTracker Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value. Return ICD_ERROR_RANGE
+ * if it is out of range.
  */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_mounting_gamma_mdeg(
     cubeacp_set_star_tracker_configuration_t *message,
@@ -353,7 +353,10 @@ static inline int32_t cubeacp_set_star_tracker_configuration_error_margin_milli_
     return message->error_margin * INT32_C(10);
 }
 
-/** Sets Star Tracker Error Margin in thousandths of %, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Star Tracker Error Margin in thousandths of % to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_error_margin_milli_percent(
     cubeacp_set_star_tracker_configuration_t *message,
     int32_t value)
@@ -372,7 +375,7 @@ static inline int32_t cubeacp_set_star_tracker_configuration_tracking_margin_mil
     return message->tracking_margin * INT32_C(10);
 }
 
-/** Sets Star Tracking Margin in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star Tracking Margin in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_tracking_margin_milli(
     cubeacp_set_star_tracker_configuration_t *message,
     int32_t value)
@@ -391,7 +394,7 @@ static inline int32_t cubeacp_set_star_tracker_configuration_validation_margin_m
     return message->validation_margin * INT32_C(10);
 }
 
-/** Sets Star Validation Margin in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star Validation Margin in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_validation_margin_milli(
     cubeacp_set_star_tracker_configuration_t *message,
     int32_t value)
@@ -410,7 +413,9 @@ static inline int32_t cubeacp_set_star_tracker_configuration_search_width_milli(
     return message->search_width * INT32_C(200);
 }
 
-/** Sets Star Tracking Search Width in thousandths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Star Tracking Search Width in thousandths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_search_width_milli(
     cubeacp_set_star_tracker_configuration_t *message,
     int32_t value)
@@ -432,7 +437,8 @@ static inline double cubeacp_set_star_tracker_configuration_mounting_alpha_deg(
 }
 
 /**
- * Sets StarTracker Mounting Transform Alpha Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set StarTracker Mounting Transform Alpha Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_mounting_alpha_deg(
     cubeacp_set_star_tracker_configuration_t *message,
@@ -449,7 +455,8 @@ static inline double cubeacp_set_star_tracker_configuration_mounting_beta_deg(
 }
 
 /**
- * Sets StarTracker Mounting Transform Beta Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set StarTracker Mounting Transform Beta Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
  */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_mounting_beta_deg(
     cubeacp_set_star_tracker_configuration_t *message,
@@ -466,7 +473,8 @@ static inline double cubeacp_set_star_tracker_configuration_mounting_gamma_deg(
 }
 
 /**
- * Sets StarTracker Mounting Transform Gamma Angle in deg, to the nearest raw value; ICD_ERROR_RANGE if there is none.
+ * Set StarTracker Mounting Transform Gamma Angle in deg to the nearest raw value. Return ICD_ERROR_RANGE if it is out
+ * of range.
  */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_mounting_gamma_deg(
     cubeacp_set_star_tracker_configuration_t *message,
@@ -482,7 +490,7 @@ static inline double cubeacp_set_star_tracker_configuration_error_margin_percent
     return icdgen_quotient(message->error_margin, 100);
 }
 
-/** Sets Star Tracker Error Margin in %, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star Tracker Error Margin in % to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_error_margin_percent(
     cubeacp_set_star_tracker_configuration_t *message,
     double value)
@@ -497,7 +505,9 @@ static inline double cubeacp_set_star_tracker_configuration_tracking_margin_phys
     return icdgen_quotient(message->tracking_margin, 100);
 }
 
-/** Sets Star Tracking Margin, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Star Tracking Margin, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range.
+ */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_tracking_margin_physical(
     cubeacp_set_star_tracker_configuration_t *message,
     double value)
@@ -512,7 +522,10 @@ static inline double cubeacp_set_star_tracker_configuration_validation_margin_ph
     return icdgen_quotient(message->validation_margin, 100);
 }
 
-/** Sets Star Validation Margin, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Star Validation Margin, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_validation_margin_physical(
     cubeacp_set_star_tracker_configuration_t *message,
     double value)
@@ -527,7 +540,10 @@ static inline double cubeacp_set_star_tracker_configuration_search_width_physica
     return icdgen_quotient(message->search_width, 5);
 }
 
-/** Sets Star Tracking Search Width, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/**
+ * Set Star Tracking Search Width, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of
+ * range.
+ */
 static inline icd_status_t cubeacp_set_star_tracker_configuration_set_search_width_physical(
     cubeacp_set_star_tracker_configuration_t *message,
     double value)

@@ -5,7 +5,7 @@
 
 /**
  * @file
- * Set Tracking Controller Gain Parameters: configuration, set by telecommand 54, got by telemetry 221, 13 bytes. Table
+ * Set Tracking Controller Gain Parameters: configuration, set by telecommand 54, read by telemetry 221, 13 bytes. Table
  * 198\.
  * Gains of the tracking mode.
  * @note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a get id have neutral
@@ -19,7 +19,7 @@
 #define CUBEACP_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS_SET_ID 54u
 /** Id of the telemetry that gets it. */
 #define CUBEACP_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS_GET_ID 221u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS_LENGTH 13u
 
 /** Raw values. */
@@ -48,14 +48,14 @@ typedef struct {
     cubeacp_axis_select_t target_tracking_facet;
 } cubeacp_set_tracking_controller_gain_parameters_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_set_tracking_controller_gain_parameters_init(
     cubeacp_set_tracking_controller_gain_parameters_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 13 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 13 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_set_tracking_controller_gain_parameters_decode(
     cubeacp_set_tracking_controller_gain_parameters_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -71,7 +71,7 @@ static inline icd_status_t cubeacp_set_tracking_controller_gain_parameters_decod
     return ICD_OK;
 }
 
-/** Encodes a frame of 13 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 13 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_set_tracking_controller_gain_parameters_encode(
     const cubeacp_set_tracking_controller_gain_parameters_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -87,7 +87,7 @@ static inline icd_status_t cubeacp_set_tracking_controller_gain_parameters_encod
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_set_tracking_controller_gain_parameters_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -5,7 +5,7 @@
 
 /**
  * @file
- * Set Wheel Configuration: configuration, set by telecommand 22, got by telemetry 137, 4 bytes. Table 181.
+ * Set Wheel Configuration: configuration, set by telecommand 22, read by telemetry 137, 4 bytes. Table 181.
  * @note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a get id have neutral
  * names, but for eight. Names and identifiers are held as printed.
  */
@@ -17,7 +17,7 @@
 #define CUBEACP_SET_WHEEL_CONFIGURATION_SET_ID 22u
 /** Id of the telemetry that gets it. */
 #define CUBEACP_SET_WHEEL_CONFIGURATION_GET_ID 137u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_SET_WHEEL_CONFIGURATION_LENGTH 4u
 
 /** Raw values. */
@@ -48,13 +48,13 @@ typedef struct {
     cubeacp_axis_select_t rw4_configuration;
 } cubeacp_set_wheel_configuration_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_set_wheel_configuration_init(cubeacp_set_wheel_configuration_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 4 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 4 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_set_wheel_configuration_decode(
     cubeacp_set_wheel_configuration_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -70,7 +70,7 @@ static inline icd_status_t cubeacp_set_wheel_configuration_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 4 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 4 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_set_wheel_configuration_encode(
     const cubeacp_set_wheel_configuration_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -86,7 +86,7 @@ static inline icd_status_t cubeacp_set_wheel_configuration_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_set_wheel_configuration_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -5,7 +5,7 @@
 
 /**
  * @file
- * Set Y-Wheel Control Parameters: configuration, set by telecommand 39, got by telemetry 209, 20 bytes. Table 196.
+ * Set Y-Wheel Control Parameters: configuration, set by telecommand 39, read by telemetry 209, 20 bytes. Table 196.
  * Gains and reference of the Y-wheel mode.
  * @note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a get id have neutral
  * names, but for eight. Names and identifiers are held as printed.
@@ -17,7 +17,7 @@
 #define CUBEACP_SET_Y_WHEEL_CONTROL_PARAMETERS_SET_ID 39u
 /** Id of the telemetry that gets it. */
 #define CUBEACP_SET_Y_WHEEL_CONTROL_PARAMETERS_GET_ID 209u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_SET_Y_WHEEL_CONTROL_PARAMETERS_LENGTH 20u
 /** Reference Wheel Momentum in Nms: must be below this. */
 #define CUBEACP_SET_Y_WHEEL_CONTROL_PARAMETERS_REFERENCE_WHEEL_MOMENTUM_BELOW 0.0
@@ -57,13 +57,13 @@ typedef struct {
     float reference_wheel_momentum;
 } cubeacp_set_y_wheel_control_parameters_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_set_y_wheel_control_parameters_init(cubeacp_set_y_wheel_control_parameters_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 20 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 20 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_set_y_wheel_control_parameters_decode(
     cubeacp_set_y_wheel_control_parameters_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -80,7 +80,7 @@ static inline icd_status_t cubeacp_set_y_wheel_control_parameters_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 20 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 20 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_set_y_wheel_control_parameters_encode(
     const cubeacp_set_y_wheel_control_parameters_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -97,7 +97,7 @@ static inline icd_status_t cubeacp_set_y_wheel_control_parameters_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_set_y_wheel_control_parameters_fields(size_t *count)
 {
     static const icd_limit_t limits[] = {

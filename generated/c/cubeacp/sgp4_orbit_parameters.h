@@ -5,7 +5,7 @@
 
 /**
  * @file
- * SGP4 Orbit Parameters: configuration, set by telecommand 45, got by telemetry 207, 64 bytes. Table 194.
+ * SGP4 Orbit Parameters: configuration, set by telecommand 45, read by telemetry 207, 64 bytes. Table 194.
  */
 
 #include "../icdgen.h"
@@ -14,7 +14,7 @@
 #define CUBEACP_SGP4_ORBIT_PARAMETERS_SET_ID 45u
 /** Id of the telemetry that gets it. */
 #define CUBEACP_SGP4_ORBIT_PARAMETERS_GET_ID 207u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_SGP4_ORBIT_PARAMETERS_LENGTH 64u
 
 /** Raw values. */
@@ -45,13 +45,13 @@ typedef struct {
     double epoch;
 } cubeacp_sgp4_orbit_parameters_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_sgp4_orbit_parameters_init(cubeacp_sgp4_orbit_parameters_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 64 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 64 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_sgp4_orbit_parameters_decode(
     cubeacp_sgp4_orbit_parameters_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -64,7 +64,7 @@ static inline icd_status_t cubeacp_sgp4_orbit_parameters_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 64 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 64 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_sgp4_orbit_parameters_encode(
     const cubeacp_sgp4_orbit_parameters_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -77,7 +77,7 @@ static inline icd_status_t cubeacp_sgp4_orbit_parameters_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_sgp4_orbit_parameters_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -13,7 +13,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_STAR_1_ORBIT_VECTOR_ID 184u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_STAR_1_ORBIT_VECTOR_LENGTH 6u
 
 /** Raw values. */
@@ -38,13 +38,13 @@ typedef struct {
     int16_t star1_orbit_z;
 } cubeacp_star_1_orbit_vector_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_star_1_orbit_vector_init(cubeacp_star_1_orbit_vector_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_star_1_orbit_vector_decode(
     cubeacp_star_1_orbit_vector_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -59,7 +59,7 @@ static inline icd_status_t cubeacp_star_1_orbit_vector_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_star_1_orbit_vector_encode(
     const cubeacp_star_1_orbit_vector_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -74,7 +74,7 @@ static inline icd_status_t cubeacp_star_1_orbit_vector_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_star_1_orbit_vector_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -92,7 +92,7 @@ static inline int32_t cubeacp_star_1_orbit_vector_star1_orbit_x_micro(const cube
     return message->star1_orbit_x * INT32_C(100);
 }
 
-/** Sets Star1OX in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star1OX in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_star_1_orbit_vector_set_star1_orbit_x_micro(
     cubeacp_star_1_orbit_vector_t *message,
     int32_t value)
@@ -110,7 +110,7 @@ static inline int32_t cubeacp_star_1_orbit_vector_star1_orbit_y_micro(const cube
     return message->star1_orbit_y * INT32_C(100);
 }
 
-/** Sets Star1OY in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star1OY in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_star_1_orbit_vector_set_star1_orbit_y_micro(
     cubeacp_star_1_orbit_vector_t *message,
     int32_t value)
@@ -128,7 +128,7 @@ static inline int32_t cubeacp_star_1_orbit_vector_star1_orbit_z_micro(const cube
     return message->star1_orbit_z * INT32_C(100);
 }
 
-/** Sets Star1OZ in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star1OZ in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_star_1_orbit_vector_set_star1_orbit_z_micro(
     cubeacp_star_1_orbit_vector_t *message,
     int32_t value)
@@ -148,7 +148,7 @@ static inline double cubeacp_star_1_orbit_vector_star1_orbit_x_physical(const cu
     return icdgen_quotient(message->star1_orbit_x, 10000);
 }
 
-/** Sets Star1OX, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star1OX, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_star_1_orbit_vector_set_star1_orbit_x_physical(
     cubeacp_star_1_orbit_vector_t *message,
     double value)
@@ -162,7 +162,7 @@ static inline double cubeacp_star_1_orbit_vector_star1_orbit_y_physical(const cu
     return icdgen_quotient(message->star1_orbit_y, 10000);
 }
 
-/** Sets Star1OY, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star1OY, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_star_1_orbit_vector_set_star1_orbit_y_physical(
     cubeacp_star_1_orbit_vector_t *message,
     double value)
@@ -176,7 +176,7 @@ static inline double cubeacp_star_1_orbit_vector_star1_orbit_z_physical(const cu
     return icdgen_quotient(message->star1_orbit_z, 10000);
 }
 
-/** Sets Star1OZ, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star1OZ, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_star_1_orbit_vector_set_star1_orbit_z_physical(
     cubeacp_star_1_orbit_vector_t *message,
     double value)

@@ -14,7 +14,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_STAR_2_RAW_DATA_ID 213u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_STAR_2_RAW_DATA_LENGTH 6u
 
 /** Raw values. */
@@ -38,13 +38,13 @@ typedef struct {
     int16_t centroid_y_star_2;
 } cubeacp_star_2_raw_data_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_star_2_raw_data_init(cubeacp_star_2_raw_data_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_star_2_raw_data_decode(
     cubeacp_star_2_raw_data_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -59,7 +59,7 @@ static inline icd_status_t cubeacp_star_2_raw_data_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_star_2_raw_data_encode(
     const cubeacp_star_2_raw_data_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -74,7 +74,7 @@ static inline icd_status_t cubeacp_star_2_raw_data_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_star_2_raw_data_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -13,7 +13,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_STAR_3_BODY_VECTOR_ID 183u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_STAR_3_BODY_VECTOR_LENGTH 6u
 
 /** Raw values. */
@@ -36,13 +36,13 @@ typedef struct {
     int16_t star3_body_z;
 } cubeacp_star_3_body_vector_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_star_3_body_vector_init(cubeacp_star_3_body_vector_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_star_3_body_vector_decode(
     cubeacp_star_3_body_vector_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -57,7 +57,7 @@ static inline icd_status_t cubeacp_star_3_body_vector_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_star_3_body_vector_encode(
     const cubeacp_star_3_body_vector_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -72,7 +72,7 @@ static inline icd_status_t cubeacp_star_3_body_vector_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_star_3_body_vector_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -90,7 +90,7 @@ static inline int32_t cubeacp_star_3_body_vector_star3_body_x_micro(const cubeac
     return message->star3_body_x * INT32_C(100);
 }
 
-/** Sets Star3BX in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star3BX in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_star_3_body_vector_set_star3_body_x_micro(
     cubeacp_star_3_body_vector_t *message,
     int32_t value)
@@ -108,7 +108,7 @@ static inline int32_t cubeacp_star_3_body_vector_star3_body_y_micro(const cubeac
     return message->star3_body_y * INT32_C(100);
 }
 
-/** Sets Star3BY in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star3BY in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_star_3_body_vector_set_star3_body_y_micro(
     cubeacp_star_3_body_vector_t *message,
     int32_t value)
@@ -126,7 +126,7 @@ static inline int32_t cubeacp_star_3_body_vector_star3_body_z_micro(const cubeac
     return message->star3_body_z * INT32_C(100);
 }
 
-/** Sets Star3BZ in millionths, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star3BZ in millionths to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_star_3_body_vector_set_star3_body_z_micro(
     cubeacp_star_3_body_vector_t *message,
     int32_t value)
@@ -146,7 +146,7 @@ static inline double cubeacp_star_3_body_vector_star3_body_x_physical(const cube
     return icdgen_quotient(message->star3_body_x, 10000);
 }
 
-/** Sets Star3BX, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star3BX, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_star_3_body_vector_set_star3_body_x_physical(
     cubeacp_star_3_body_vector_t *message,
     double value)
@@ -160,7 +160,7 @@ static inline double cubeacp_star_3_body_vector_star3_body_y_physical(const cube
     return icdgen_quotient(message->star3_body_y, 10000);
 }
 
-/** Sets Star3BY, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star3BY, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_star_3_body_vector_set_star3_body_y_physical(
     cubeacp_star_3_body_vector_t *message,
     double value)
@@ -174,7 +174,7 @@ static inline double cubeacp_star_3_body_vector_star3_body_z_physical(const cube
     return icdgen_quotient(message->star3_body_z, 10000);
 }
 
-/** Sets Star3BZ, as a physical value, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Star3BZ, as a physical value to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_star_3_body_vector_set_star3_body_z_physical(
     cubeacp_star_3_body_vector_t *message,
     double value)

@@ -16,7 +16,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_STAR_PERFORMANCE2_ID 231u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_STAR_PERFORMANCE2_LENGTH 6u
 
 /** Raw values. */
@@ -63,13 +63,13 @@ typedef struct {
     uint8_t star_3_confidence;
 } cubeacp_star_performance2_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_star_performance2_init(cubeacp_star_performance2_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_star_performance2_decode(
     cubeacp_star_performance2_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -97,7 +97,7 @@ static inline icd_status_t cubeacp_star_performance2_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_star_performance2_encode(
     const cubeacp_star_performance2_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -124,7 +124,7 @@ static inline icd_status_t cubeacp_star_performance2_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_star_performance2_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -15,7 +15,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_STATE_ID 135u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_STATE_LENGTH 1u
 
 /** Raw values. */
@@ -45,13 +45,13 @@ typedef struct {
     bool sd_card_write_error;
 } cubeacp_state_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_state_init(cubeacp_state_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 1 byte; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 1 byte. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_state_decode(
     cubeacp_state_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -73,7 +73,7 @@ static inline icd_status_t cubeacp_state_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 1 byte, reserved bits 0; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 1 byte, reserved bits 0. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_state_encode(
     const cubeacp_state_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -93,7 +93,7 @@ static inline icd_status_t cubeacp_state_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_state_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -15,7 +15,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_STATUS_OF_IMAGE_CAPTURE_AND_SAVE_OPERATION_ID 233u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_STATUS_OF_IMAGE_CAPTURE_AND_SAVE_OPERATION_LENGTH 2u
 
 /** Raw values. */
@@ -30,14 +30,14 @@ typedef struct {
     cubeacp_im_save_status_t status;
 } cubeacp_status_of_image_capture_and_save_operation_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_status_of_image_capture_and_save_operation_init(
     cubeacp_status_of_image_capture_and_save_operation_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 2 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 2 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_status_of_image_capture_and_save_operation_decode(
     cubeacp_status_of_image_capture_and_save_operation_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -51,7 +51,7 @@ static inline icd_status_t cubeacp_status_of_image_capture_and_save_operation_de
     return ICD_OK;
 }
 
-/** Encodes a frame of 2 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 2 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_status_of_image_capture_and_save_operation_encode(
     const cubeacp_status_of_image_capture_and_save_operation_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -65,7 +65,7 @@ static inline icd_status_t cubeacp_status_of_image_capture_and_save_operation_en
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_status_of_image_capture_and_save_operation_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -5,7 +5,7 @@
 
 /**
  * @file
- * Tracking Controller Target Reference: configuration, set by telecommand 55, got by telemetry 200, 12 bytes. Table
+ * Tracking Controller Target Reference: configuration, set by telecommand 55, read by telemetry 200, 12 bytes. Table
  * 187\.
  * Target of the tracking control mode.
  */
@@ -16,7 +16,7 @@
 #define CUBEACP_TRACKING_CONTROLLER_TARGET_REFERENCE_SET_ID 55u
 /** Id of the telemetry that gets it. */
 #define CUBEACP_TRACKING_CONTROLLER_TARGET_REFERENCE_GET_ID 200u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_TRACKING_CONTROLLER_TARGET_REFERENCE_LENGTH 12u
 
 /** Raw values. */
@@ -41,14 +41,14 @@ typedef struct {
     float geocentric_altitude_of_target;
 } cubeacp_tracking_controller_target_reference_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_tracking_controller_target_reference_init(
     cubeacp_tracking_controller_target_reference_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 12 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 12 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_tracking_controller_target_reference_decode(
     cubeacp_tracking_controller_target_reference_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -63,7 +63,7 @@ static inline icd_status_t cubeacp_tracking_controller_target_reference_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 12 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 12 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_tracking_controller_target_reference_encode(
     const cubeacp_tracking_controller_target_reference_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -78,7 +78,7 @@ static inline icd_status_t cubeacp_tracking_controller_target_reference_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_tracking_controller_target_reference_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

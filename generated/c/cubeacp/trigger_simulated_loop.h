@@ -17,7 +17,7 @@
 
 /** Id of the telecommand. */
 #define CUBEACP_TRIGGER_SIMULATED_LOOP_ID 19u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_TRIGGER_SIMULATED_LOOP_LENGTH 127u
 
 /** Raw values. */
@@ -341,13 +341,13 @@ typedef struct {
     uint8_t z_vel_standard_deviation;
 } cubeacp_trigger_simulated_loop_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_trigger_simulated_loop_init(cubeacp_trigger_simulated_loop_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 127 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 127 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_trigger_simulated_loop_decode(
     cubeacp_trigger_simulated_loop_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -389,7 +389,7 @@ static inline icd_status_t cubeacp_trigger_simulated_loop_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 127 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 127 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_trigger_simulated_loop_encode(
     const cubeacp_trigger_simulated_loop_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -431,7 +431,7 @@ static inline icd_status_t cubeacp_trigger_simulated_loop_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_trigger_simulated_loop_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -508,7 +508,7 @@ static inline int32_t cubeacp_trigger_simulated_loop_x_pos_standard_deviation_mm
     return message->x_pos_standard_deviation * INT32_C(100);
 }
 
-/** Sets X-pos Standard Deviation in mm, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set X-pos Standard Deviation in mm to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_trigger_simulated_loop_set_x_pos_standard_deviation_mm(
     cubeacp_trigger_simulated_loop_t *message,
     int32_t value)
@@ -527,7 +527,7 @@ static inline int32_t cubeacp_trigger_simulated_loop_y_pos_standard_deviation_mm
     return message->y_pos_standard_deviation * INT32_C(100);
 }
 
-/** Sets Y-pos Standard Deviation in mm, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Y-pos Standard Deviation in mm to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_trigger_simulated_loop_set_y_pos_standard_deviation_mm(
     cubeacp_trigger_simulated_loop_t *message,
     int32_t value)
@@ -546,7 +546,7 @@ static inline int32_t cubeacp_trigger_simulated_loop_z_pos_standard_deviation_mm
     return message->z_pos_standard_deviation * INT32_C(100);
 }
 
-/** Sets Z-pos Standard Deviation in mm, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Z-pos Standard Deviation in mm to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_trigger_simulated_loop_set_z_pos_standard_deviation_mm(
     cubeacp_trigger_simulated_loop_t *message,
     int32_t value)
@@ -567,7 +567,7 @@ static inline double cubeacp_trigger_simulated_loop_x_pos_standard_deviation_m(
     return icdgen_quotient(message->x_pos_standard_deviation, 10);
 }
 
-/** Sets X-pos Standard Deviation in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set X-pos Standard Deviation in m to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_trigger_simulated_loop_set_x_pos_standard_deviation_m(
     cubeacp_trigger_simulated_loop_t *message,
     double value)
@@ -582,7 +582,7 @@ static inline double cubeacp_trigger_simulated_loop_y_pos_standard_deviation_m(
     return icdgen_quotient(message->y_pos_standard_deviation, 10);
 }
 
-/** Sets Y-pos Standard Deviation in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Y-pos Standard Deviation in m to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_trigger_simulated_loop_set_y_pos_standard_deviation_m(
     cubeacp_trigger_simulated_loop_t *message,
     double value)
@@ -597,7 +597,7 @@ static inline double cubeacp_trigger_simulated_loop_z_pos_standard_deviation_m(
     return icdgen_quotient(message->z_pos_standard_deviation, 10);
 }
 
-/** Sets Z-pos Standard Deviation in m, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Z-pos Standard Deviation in m to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_trigger_simulated_loop_set_z_pos_standard_deviation_m(
     cubeacp_trigger_simulated_loop_t *message,
     double value)

@@ -5,7 +5,7 @@
 
 /**
  * @file
- * UART Log Configuration: configuration, set by telecommand 106, got by telemetry 237, 12 bytes. Table 213.
+ * UART Log Configuration: configuration, set by telecommand 106, read by telemetry 237, 12 bytes. Table 213.
  * Which frames are sent unasked on the UART, and how often.
  */
 
@@ -15,7 +15,7 @@
 #define CUBEACP_UART_LOG_CONFIGURATION_SET_ID 106u
 /** Id of the telemetry that gets it. */
 #define CUBEACP_UART_LOG_CONFIGURATION_GET_ID 237u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_UART_LOG_CONFIGURATION_LENGTH 12u
 /** Log Period: logging disabled. */
 #define CUBEACP_UART_LOG_CONFIGURATION_LOG_PERIOD_LOGGING_DISABLED 0x0000u
@@ -36,13 +36,13 @@ typedef struct {
     uint16_t log_period;
 } cubeacp_uart_log_configuration_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_uart_log_configuration_init(cubeacp_uart_log_configuration_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 12 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 12 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_uart_log_configuration_decode(
     cubeacp_uart_log_configuration_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -56,7 +56,7 @@ static inline icd_status_t cubeacp_uart_log_configuration_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 12 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 12 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_uart_log_configuration_encode(
     const cubeacp_uart_log_configuration_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -70,7 +70,7 @@ static inline icd_status_t cubeacp_uart_log_configuration_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_uart_log_configuration_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

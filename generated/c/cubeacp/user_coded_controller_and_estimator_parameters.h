@@ -5,8 +5,8 @@
 
 /**
  * @file
- * User-coded Controller and Estimator Parameters: configuration, set by telecommand 29, got by telemetry 226, 96 bytes.
- * Table 208.
+ * User-coded Controller and Estimator Parameters: configuration, set by telecommand 29, read by telemetry 226, 96
+ * bytes. Table 208.
  */
 
 #include "../icdgen.h"
@@ -15,7 +15,7 @@
 #define CUBEACP_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS_SET_ID 29u
 /** Id of the telemetry that gets it. */
 #define CUBEACP_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS_GET_ID 226u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS_LENGTH 96u
 
 /** Raw values. */
@@ -33,14 +33,14 @@ typedef struct {
     uint8_t user_coded_estimator_settings[48];
 } cubeacp_user_coded_controller_and_estimator_parameters_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_user_coded_controller_and_estimator_parameters_init(
     cubeacp_user_coded_controller_and_estimator_parameters_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 96 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 96 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_user_coded_controller_and_estimator_parameters_decode(
     cubeacp_user_coded_controller_and_estimator_parameters_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -54,7 +54,7 @@ static inline icd_status_t cubeacp_user_coded_controller_and_estimator_parameter
     return ICD_OK;
 }
 
-/** Encodes a frame of 96 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 96 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_user_coded_controller_and_estimator_parameters_encode(
     const cubeacp_user_coded_controller_and_estimator_parameters_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -68,7 +68,7 @@ static inline icd_status_t cubeacp_user_coded_controller_and_estimator_parameter
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_user_coded_controller_and_estimator_parameters_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

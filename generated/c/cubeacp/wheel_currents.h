@@ -14,7 +14,7 @@
 
 /** Id of the telemetry. */
 #define CUBEACP_WHEEL_CURRENTS_ID 173u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEACP_WHEEL_CURRENTS_LENGTH 6u
 
 /** Raw values. */
@@ -42,13 +42,13 @@ typedef struct {
     uint16_t wheel3_current;
 } cubeacp_wheel_currents_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubeacp_wheel_currents_init(cubeacp_wheel_currents_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 6 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 6 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubeacp_wheel_currents_decode(
     cubeacp_wheel_currents_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -63,7 +63,7 @@ static inline icd_status_t cubeacp_wheel_currents_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 6 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 6 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubeacp_wheel_currents_encode(
     const cubeacp_wheel_currents_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -78,7 +78,7 @@ static inline icd_status_t cubeacp_wheel_currents_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubeacp_wheel_currents_fields(size_t *count)
 {
     static const icd_field_t fields[] = {
@@ -96,7 +96,7 @@ static inline int32_t cubeacp_wheel_currents_wheel1_current_ua(const cubeacp_whe
     return message->wheel1_current * INT32_C(10);
 }
 
-/** Sets Wheel1Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Wheel1Current in uA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_wheel_currents_set_wheel1_current_ua(
     cubeacp_wheel_currents_t *message,
     int32_t value)
@@ -114,7 +114,7 @@ static inline int32_t cubeacp_wheel_currents_wheel2_current_ua(const cubeacp_whe
     return message->wheel2_current * INT32_C(10);
 }
 
-/** Sets Wheel2Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Wheel2Current in uA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_wheel_currents_set_wheel2_current_ua(
     cubeacp_wheel_currents_t *message,
     int32_t value)
@@ -132,7 +132,7 @@ static inline int32_t cubeacp_wheel_currents_wheel3_current_ua(const cubeacp_whe
     return message->wheel3_current * INT32_C(10);
 }
 
-/** Sets Wheel3Current in uA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Wheel3Current in uA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_wheel_currents_set_wheel3_current_ua(
     cubeacp_wheel_currents_t *message,
     int32_t value)
@@ -152,7 +152,7 @@ static inline double cubeacp_wheel_currents_wheel1_current_ma(const cubeacp_whee
     return icdgen_quotient(message->wheel1_current, 100);
 }
 
-/** Sets Wheel1Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Wheel1Current in mA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_wheel_currents_set_wheel1_current_ma(cubeacp_wheel_currents_t *message, double value)
 {
     return icdgen_set_u16(&message->wheel1_current, value, 1, 0, 100, UINT16_MAX);
@@ -164,7 +164,7 @@ static inline double cubeacp_wheel_currents_wheel2_current_ma(const cubeacp_whee
     return icdgen_quotient(message->wheel2_current, 100);
 }
 
-/** Sets Wheel2Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Wheel2Current in mA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_wheel_currents_set_wheel2_current_ma(cubeacp_wheel_currents_t *message, double value)
 {
     return icdgen_set_u16(&message->wheel2_current, value, 1, 0, 100, UINT16_MAX);
@@ -176,7 +176,7 @@ static inline double cubeacp_wheel_currents_wheel3_current_ma(const cubeacp_whee
     return icdgen_quotient(message->wheel3_current, 100);
 }
 
-/** Sets Wheel3Current in mA, to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Set Wheel3Current in mA to the nearest raw value. Return ICD_ERROR_RANGE if it is out of range. */
 static inline icd_status_t cubeacp_wheel_currents_set_wheel3_current_ma(cubeacp_wheel_currents_t *message, double value)
 {
     return icdgen_set_u16(&message->wheel3_current, value, 1, 0, 100, UINT16_MAX);

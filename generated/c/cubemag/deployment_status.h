@@ -17,7 +17,7 @@
 
 /** Id of the telemetry. */
 #define CUBEMAG_DEPLOYMENT_STATUS_ID 190u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEMAG_DEPLOYMENT_STATUS_LENGTH 5u
 
 /** Raw values. */
@@ -58,13 +58,13 @@ typedef struct {
     bool deployment_timeout;
 } cubemag_deployment_status_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubemag_deployment_status_init(cubemag_deployment_status_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 5 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 5 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubemag_deployment_status_decode(
     cubemag_deployment_status_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -86,7 +86,7 @@ static inline icd_status_t cubemag_deployment_status_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 5 bytes, reserved bits 0; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 5 bytes, reserved bits 0. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubemag_deployment_status_encode(
     const cubemag_deployment_status_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -107,7 +107,7 @@ static inline icd_status_t cubemag_deployment_status_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubemag_deployment_status_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

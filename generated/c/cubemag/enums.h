@@ -5,14 +5,15 @@
 
 /**
  * @file
- * Enumerations of CubeMag. A variable of such a type may hold any value: what a node sends is kept as it is.
+ * Enumerations of CubeMag.
+ * A variable of these types can store any value: unknown values from a node are kept unchanged.
  */
 
 #include <stddef.h>
 #include <stdint.h>
 
 /**
- * MagState: an enumeration. Table 58. State of the CubeMag service. Held by MagSvc State in State.
+ * MagState: an enumeration. Table 58. State of the CubeMag service. Used by MagSvc State in State.
  * @note MAG-008 (open): MagState has no deployed state. The service can be armed, deploying, idle or in error. A
  * deployed boom shows as idle at best, and what a unit without a boom reports is not said.
  */
@@ -29,7 +30,7 @@ enum {
     CUBEMAG_MAG_STATE_ERROR = 3
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubemag_mag_state_name(cubemag_mag_state_t value)
 {
     switch (value) {
@@ -47,7 +48,7 @@ static inline const char *cubemag_mag_state_name(cubemag_mag_state_t value)
 }
 
 /**
- * MntState: an enumeration. Table 59. State of a magnetometer service. Held by Primary Mag State in State; Red Mag
+ * MntState: an enumeration. Table 59. State of a magnetometer service. Used by Primary Mag State in State; Red Mag
  * State in State.
  * @note MAG-009 (open): MntState: Mnt is not explained. The states belong to the magnetometers by the table that uses
  * them; Mnt stands nowhere else.
@@ -76,7 +77,7 @@ enum {
     CUBEMAG_MNT_STATE_ERROR = 5
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubemag_mnt_state_name(cubemag_mnt_state_t value)
 {
     switch (value) {

@@ -14,7 +14,7 @@
 
 /** Id of the telemetry. */
 #define CUBEMAG_REDUNDANT_MAGNETOMETER_MEASUREMENT_ID 193u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEMAG_REDUNDANT_MAGNETOMETER_MEASUREMENT_LENGTH 13u
 
 /** Raw values. */
@@ -46,14 +46,14 @@ typedef struct {
     bool data_valid;
 } cubemag_redundant_magnetometer_measurement_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubemag_redundant_magnetometer_measurement_init(
     cubemag_redundant_magnetometer_measurement_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 13 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 13 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubemag_redundant_magnetometer_measurement_decode(
     cubemag_redundant_magnetometer_measurement_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -69,7 +69,7 @@ static inline icd_status_t cubemag_redundant_magnetometer_measurement_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 13 bytes, reserved bits 0; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 13 bytes, reserved bits 0. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubemag_redundant_magnetometer_measurement_encode(
     const cubemag_redundant_magnetometer_measurement_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -85,7 +85,7 @@ static inline icd_status_t cubemag_redundant_magnetometer_measurement_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubemag_redundant_magnetometer_measurement_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

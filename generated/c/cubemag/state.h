@@ -16,7 +16,7 @@
 
 /** Id of the telemetry. */
 #define CUBEMAG_STATE_ID 188u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEMAG_STATE_LENGTH 3u
 
 /** Raw values. */
@@ -39,13 +39,13 @@ typedef struct {
     cubemag_mnt_state_t red_mag_state;
 } cubemag_state_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubemag_state_init(cubemag_state_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 3 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 3 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubemag_state_decode(
     cubemag_state_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -60,7 +60,7 @@ static inline icd_status_t cubemag_state_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 3 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 3 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubemag_state_encode(
     const cubemag_state_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -75,7 +75,7 @@ static inline icd_status_t cubemag_state_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubemag_state_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

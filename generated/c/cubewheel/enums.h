@@ -5,13 +5,14 @@
 
 /**
  * @file
- * Enumerations of CubeWheel. A variable of such a type may hold any value: what a node sends is kept as it is.
+ * Enumerations of CubeWheel.
+ * A variable of these types can store any value: unknown values from a node are kept unchanged.
  */
 
 #include <stddef.h>
 #include <stdint.h>
 
-/** WheelErrorState: an enumeration. Table 48. Held by Wheel Error State in Wheel Speed. */
+/** WheelErrorState: an enumeration. Table 48. Used by Wheel Error State in Wheel Speed. */
 typedef uint8_t cubewheel_wheel_error_state_t;
 
 enum {
@@ -29,7 +30,7 @@ enum {
     CUBEWHEEL_WHEEL_ERROR_STATE_SPEED_NOT_REACHED_TIMEOUT = 3
 };
 
-/** Name of the value as printed in the manual; NULL for a value that has none. */
+/** Return the name of the value as printed in the manual; NULL if it has none. */
 static inline const char *cubewheel_wheel_error_state_name(cubewheel_wheel_error_state_t value)
 {
     switch (value) {

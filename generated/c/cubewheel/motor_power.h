@@ -19,7 +19,7 @@
 
 /** Id of the telemetry. */
 #define CUBEWHEEL_MOTOR_POWER_ID 197u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEWHEEL_MOTOR_POWER_LENGTH 1u
 
 /** Raw values. */
@@ -31,13 +31,13 @@ typedef struct {
     bool motor_power_switch;
 } cubewheel_motor_power_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubewheel_motor_power_init(cubewheel_motor_power_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 1 byte; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 1 byte. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubewheel_motor_power_decode(
     cubewheel_motor_power_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -50,7 +50,7 @@ static inline icd_status_t cubewheel_motor_power_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 1 byte, reserved bits 0; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 1 byte, reserved bits 0. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubewheel_motor_power_encode(
     const cubewheel_motor_power_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -63,7 +63,7 @@ static inline icd_status_t cubewheel_motor_power_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubewheel_motor_power_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -19,7 +19,7 @@
 
 /** Id of the telemetry. */
 #define CUBEWHEEL_WHEEL_REFERENCE_SPEED_ID 196u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEWHEEL_WHEEL_REFERENCE_SPEED_LENGTH 4u
 
 /** Raw values. */
@@ -35,13 +35,13 @@ typedef struct {
     float reference_speed;
 } cubewheel_wheel_reference_speed_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubewheel_wheel_reference_speed_init(cubewheel_wheel_reference_speed_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 4 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 4 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubewheel_wheel_reference_speed_decode(
     cubewheel_wheel_reference_speed_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -54,7 +54,7 @@ static inline icd_status_t cubewheel_wheel_reference_speed_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 4 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 4 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubewheel_wheel_reference_speed_encode(
     const cubewheel_wheel_reference_speed_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -67,7 +67,7 @@ static inline icd_status_t cubewheel_wheel_reference_speed_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubewheel_wheel_reference_speed_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

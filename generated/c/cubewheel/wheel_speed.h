@@ -15,7 +15,7 @@
 
 /** Id of the telemetry. */
 #define CUBEWHEEL_WHEEL_SPEED_ID 188u
-/** Bytes of a frame, without the id. */
+/** Length of a frame in bytes, without the id. */
 #define CUBEWHEEL_WHEEL_SPEED_LENGTH 5u
 
 /** Raw values. */
@@ -37,13 +37,13 @@ typedef struct {
     cubewheel_wheel_error_state_t wheel_error_state;
 } cubewheel_wheel_speed_t;
 
-/** Sets all raw values to 0. */
+/** Set all raw values to 0. */
 static inline void cubewheel_wheel_speed_init(cubewheel_wheel_speed_t *message)
 {
     (void)memset(message, 0, sizeof *message);
 }
 
-/** Decodes a frame of 5 bytes; ICD_ERROR_LENGTH, and no change, for any other. */
+/** Decode a frame of 5 bytes. Return ICD_ERROR_LENGTH, with no change, for any other length. */
 static inline icd_status_t cubewheel_wheel_speed_decode(
     cubewheel_wheel_speed_t *ICDGEN_RESTRICT message,
     const uint8_t *ICDGEN_RESTRICT buffer,
@@ -57,7 +57,7 @@ static inline icd_status_t cubewheel_wheel_speed_decode(
     return ICD_OK;
 }
 
-/** Encodes a frame of 5 bytes; ICD_ERROR_LENGTH if the buffer is smaller. */
+/** Encode a frame of 5 bytes. Return ICD_ERROR_LENGTH if the buffer is too small. */
 static inline icd_status_t cubewheel_wheel_speed_encode(
     const cubewheel_wheel_speed_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,
@@ -71,7 +71,7 @@ static inline icd_status_t cubewheel_wheel_speed_encode(
     return ICD_OK;
 }
 
-/** Fields in the order of the ICD; sets `count` to their number. */
+/** Return the fields in the order of the ICD and set `count` to their number. */
 static inline const icd_field_t *cubewheel_wheel_speed_fields(size_t *count)
 {
     static const icd_field_t fields[] = {

@@ -6,20 +6,20 @@
 #include <stdint.h>
 #include <string.h>
 
-/** What became of a call. */
+/** Result of a function. ICD_OK is 0; all other values are errors. */
 typedef enum {
     ICD_OK = 0,
-    /** The buffer does not have the length of the message; for encoding: it is smaller. */
+    /** Length mismatch: data of the wrong length, or an output buffer that is too small. */
     ICD_ERROR_LENGTH = 1,
-    /** A value does not fit its field, or is not finite. */
+    /** Value out of range of its field, or not finite. */
     ICD_ERROR_RANGE = 2,
-    /** The node has no message of that id. */
+    /** The ICD has no message with this id. */
     ICD_ERROR_UNKNOWN_ID = 3,
-    /** On the wire: the ICD does not describe this part of the protocol. */
+    /** Wire layer only: the ICD does not describe this part of the protocol. */
     ICD_ERROR_UNSUPPORTED = 4,
-    /** On the wire: the checksum is not that of the data. */
+    /** Wire layer only: checksum mismatch. */
     ICD_ERROR_CHECKSUM = 5,
-    /** On the wire: a request is going on, another one would overrun the node. */
+    /** Wire layer only: another request is in progress. */
     ICD_ERROR_BUSY = 6
 } icd_status_t;
 

@@ -4,7 +4,7 @@
 #include "base.h"
 #include "words.h"
 
-/* The two's complement number that the bits stand for. */
+/* Return the two's complement number with these bits. */
 ICDGEN_INLINE int8_t icdgen_i8(uint8_t bits)
 {
     int8_t value;
@@ -33,7 +33,7 @@ ICDGEN_INLINE int64_t icdgen_i64(uint64_t bits)
     return value;
 }
 
-/* The same for fewer bits than the type has; `sign` is the highest of them. */
+/* Sign-extend a number that has fewer bits than its type. `sign` is the mask of its highest bit. */
 ICDGEN_INLINE int32_t icdgen_extend32(uint32_t bits, uint32_t sign)
 {
     return ICDGEN_I32(bits ^ sign) - ICDGEN_I32(sign);
@@ -44,7 +44,7 @@ ICDGEN_INLINE int64_t icdgen_extend64(uint64_t bits, uint64_t sign)
     return ICDGEN_I64(bits ^ sign) - ICDGEN_I64(sign);
 }
 
-/* Floating-point fields are moved as bits, so that every NaN keeps its payload. */
+/* Floating-point fields are copied as bits, so that every NaN keeps its payload. */
 ICDGEN_INLINE void icdgen_set_f32(float *value, uint32_t bits)
 {
     (void)memcpy(value, &bits, sizeof bits);
@@ -69,7 +69,10 @@ ICDGEN_INLINE uint64_t icdgen_bits_f64(const double *value)
     return bits;
 }
 
-/** The float of these bits: special values that are no numbers are made so, for not every target has names for them. */
+/**
+ * Return the float with these bits. Special values such as NaN are defined this way because NAN and INFINITY are
+ * optional in C.
+ */
 static inline float icd_f32_of(uint32_t bits)
 {
     float value;
@@ -77,7 +80,7 @@ static inline float icd_f32_of(uint32_t bits)
     return value;
 }
 
-/** The double of these bits. */
+/** Return the double with these bits. */
 static inline double icd_f64_of(uint64_t bits)
 {
     double value;
@@ -85,7 +88,9 @@ static inline double icd_f64_of(uint64_t bits)
     return value;
 }
 
-/** Whether a float is a special value, which no comparison says of NaN: all NaNs are the same here, and both zeros. */
+/**
+ * Return whether a float equals a special value. Unlike with `==`, any NaN equals any other NaN. Both zeros are equal.
+ */
 static inline bool icd_is_special_f32(float value, float special)
 {
     const uint32_t infinity = UINT32_C(0x7F800000);
@@ -96,7 +101,9 @@ static inline bool icd_is_special_f32(float value, float special)
     return (one == other) || ((most | others) == 0u) || ((most > infinity) && (others > infinity));
 }
 
-/** Whether a double is a special value, which no comparison says of NaN: all NaNs are the same here, and both zeros. */
+/**
+ * Return whether a double equals a special value. Unlike with `==`, any NaN equals any other NaN. Both zeros are equal.
+ */
 static inline bool icd_is_special_f64(double value, double special)
 {
     const uint64_t infinity = UINT64_C(0x7FF0000000000000);
@@ -108,9 +115,9 @@ static inline bool icd_is_special_f64(double value, double special)
 }
 
 /*
- * Four or eight neighbouring bools of a struct that are neighbouring bits of a byte, from bit 0 up (FALLING: down to
- * bit 0). Where bools are bytes, one multiplication moves all of them: it puts a copy of the bits over each byte of a
- * word, shifted so that each copy has another bit where the byte's bit 0 is. The way back is the same in reverse.
+ * Copy four or eight adjacent bools of a struct from or to adjacent bits of a byte, from bit 0 up (FALLING: down to bit
+ * 0). If a bool is one byte, a single multiplication copies all of them: it places a shifted copy of the bits over each
+ * byte of a word, so that bit 0 of each byte is a different bit. The inverse uses the same trick in reverse.
  */
 #if ICDGEN_WORDS
 #define ICDGEN_FLAGS_ARE_BYTES(type, first, last, count)                                                               \

@@ -6,14 +6,14 @@
 #ifndef ICDGEN_NO_DOUBLE
 
 /*
- * Physical values by curves, which are made of pieces: from a raw value on, a polynomial in what is above that.
- * Horner's rule, where every difference, product and sum is a double of its own. That the steps are volatile keeps
- * compilers from making one of two, and from reckoning with more digits in between.
+ * Calibration curves, made of pieces. Each piece begins at a raw value and is a polynomial in the difference from that
+ * value, computed by Horner's rule. Every difference, product and sum is rounded to a double. The intermediate results
+ * are volatile, so that compilers neither fuse two operations nor compute with excess precision.
  */
 typedef struct {
     double start;
-    const double *terms; /* the constant first */
-    size_t count;        /* without terms there is no number */
+    const double *terms; /* coefficients; the constant term first */
+    size_t count;        /* 0: the curve is not defined for this piece (NaN) */
 } icdgen_piece_t;
 
 static inline bool icdgen_is_finite(double value)
@@ -30,7 +30,7 @@ static inline bool icdgen_is_nan(double value)
     return (bits & UINT64_C(0x7FFFFFFFFFFFFFFF)) > UINT64_C(0x7FF0000000000000);
 }
 
-/* The last piece that begins at the raw value or below, or else the first one. */
+/* Return the last piece that begins at or below the raw value, or the first piece if there is none. */
 static inline const icdgen_piece_t *icdgen_piece(double raw, const icdgen_piece_t *pieces, size_t count)
 {
     size_t first = 0u;
@@ -46,7 +46,7 @@ static inline const icdgen_piece_t *icdgen_piece(double raw, const icdgen_piece_
     return &pieces[first];
 }
 
-/* A value that is no number has always the same bits. */
+/* Replace any NaN by the NaN with fixed bits, so that results are the same on all targets. */
 static inline double icdgen_curve(double raw, const icdgen_piece_t *pieces, size_t count)
 {
     const icdgen_piece_t *piece = icdgen_piece(raw, pieces, count);
@@ -70,7 +70,7 @@ static inline double icdgen_curve(double raw, const icdgen_piece_t *pieces, size
     return result;
 }
 
-/* The raw value whose physical one is nearest, of two the even one; the physical values rise, or fall, all along. */
+/* Return the raw value with the nearest physical value, ties to even. The physical values must be monotonic. */
 static inline icd_status_t icdgen_curve_nearest(
     int32_t *raw, double value, const icdgen_piece_t *pieces, size_t count, int32_t low, int32_t high)
 {
@@ -139,7 +139,7 @@ static inline icd_status_t icdgen_set_curve_u8(
     return status;
 }
 
-/* The number of a line: (value - constant) / slope, each step a double of its own. */
+/* Invert a line: (value - constant) / slope, each step rounded to a double. */
 static inline icd_status_t icdgen_set_curve_f64(double *raw, double value, const icdgen_piece_t *line)
 {
     volatile double inverse = value - line->terms[0];
@@ -154,7 +154,7 @@ static inline icd_status_t icdgen_set_curve_f64(double *raw, double value, const
 
 static inline icd_status_t icdgen_set_curve_f32(float *raw, double value, const icdgen_piece_t *line)
 {
-    const double beyond = 3.4028235677973366e38; /* half way from the largest float to what would follow */
+    const double beyond = 3.4028235677973366e38; /* halfway between the largest float and the next power of two */
     double wide = 0.0;
     const icd_status_t status = icdgen_set_curve_f64(&wide, value, line);
     if (status != ICD_OK) {

@@ -6,11 +6,11 @@
 #ifndef ICDGEN_NO_DOUBLE
 
 /*
- * Values that are derived from several fields: each step is a double of its own. That steps are volatile keeps
- * compilers from making one of two, and from reckoning with more digits in between.
+ * Values derived from several fields. Every step is rounded to a double. The intermediate results are volatile, so that
+ * compilers neither fuse two operations nor compute with excess precision.
  */
 
-/* A value that is no number has always the same bits. */
+/* Replace any NaN by the NaN with fixed bits, so that results are the same on all targets. */
 static inline double icdgen_quiet(double value)
 {
     double result = value;
@@ -21,7 +21,10 @@ static inline double icdgen_quiet(double value)
     return result;
 }
 
-/* By squaring, from the lowest bit of a whole exponent on; of a negative one the reciprocal. */
+/*
+ * Compute an integer power by repeated squaring, lowest bit of the exponent first. A negative exponent gives the
+ * reciprocal.
+ */
 static inline double icdgen_power(double base, double exponent)
 {
     const int32_t whole = ICDGEN_I32(exponent);

@@ -3,30 +3,33 @@
 
 #include "base.h"
 
-/** In which way a limit holds. */
+/** Kind of a limit: value >= limit, > limit, <= limit or < limit. */
 typedef enum { ICD_LIMIT_MIN, ICD_LIMIT_ABOVE, ICD_LIMIT_MAX, ICD_LIMIT_BELOW } icd_limit_kind_t;
 
-/** A limit of the physical value (of the raw value where there is no scale). */
+/** A limit of the physical value, or of the raw value if the field has no scale. */
 typedef struct {
     icd_limit_kind_t kind;
     double value;
 } icd_limit_t;
 
-/** What the ICD says of a field. */
+/** Description of a field, as data for generic code such as displays. */
 typedef struct icd_field {
-    const char *name; /**< What the ICD calls it. */
-    const char *unit; /**< Of the physical value; empty without one. */
-    uint32_t at;   /**< Its first bit in the frame, or struct; behind the longest, if only a frame's length tells it. */
-    uint32_t bits; /**< How many bits it has; of an array, each element. */
-    uint32_t count; /**< How many elements an array has, or can have; 1 if it is none. */
+    const char *name; /**< Name in the ICD. */
+    const char *unit; /**< Unit of the physical value; empty if there is none. */
+    uint32_t at;      /**< First bit in the frame or struct; beyond the frame if the frame length gives the value. */
+    uint32_t bits;    /**< Size in bits; for an array, of each element. */
+    uint32_t count;   /**< Number of elements of an array, at most; 1 for other fields. */
     const icd_limit_t *limits;
     size_t limit_count;
-    const struct icd_field *(*fields)(size_t *count); /**< What a struct is made of; NULL of what is none. */
+    const struct icd_field *(*fields)(size_t *count); /**< Returns the fields of a struct; NULL for other fields. */
 } icd_field_t;
 
 #ifndef ICDGEN_NO_DOUBLE
 
-/** Whether a physical value (a raw one where there is no scale) keeps the limits of its field; NaN keeps none. */
+/**
+ * Return whether a value is within the limits of its field. `value` is physical, or raw if the field has no scale. NaN
+ * is never within a limit.
+ */
 static inline bool icd_allows(const icd_field_t *field, double value)
 {
     bool holds = true;

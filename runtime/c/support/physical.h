@@ -4,7 +4,7 @@
 #include "base.h"
 #include "bits.h"
 
-/* The nearest whole number to a quotient, ties to even; the divisor is above 0. */
+/* Return the integer nearest to a quotient, ties to even. The divisor is positive. */
 static inline int32_t icdgen_nearest32(int32_t value, int32_t divisor)
 {
     int32_t quotient = value / divisor;
@@ -32,9 +32,9 @@ static inline int64_t icdgen_nearest64(int64_t value, int64_t divisor)
 #ifndef ICDGEN_NO_DOUBLE
 
 /*
- * Physical values: (raw * factor + offset) / divisor, where factor and divisor have up to 33 bits and divisor is above
- * 0. Everything below is whole numbers of 128 bits and the bits of a double, so neither the processor's rounding nor
- * the compiler's freedom with floating-point arithmetic can change a result.
+ * Physical values: (raw * factor + offset) / divisor. Factor and divisor have up to 33 bits; the divisor is positive.
+ * The computation uses 128-bit integers and the bits of a double, so that neither the rounding mode of the processor
+ * nor floating-point optimizations of the compiler change a result.
  */
 typedef struct {
     uint64_t high;
@@ -76,7 +76,7 @@ static inline icdgen_wide_t icdgen_sum(icdgen_wide_t left, uint64_t right, bool 
     return sum;
 }
 
-/* Divides the magnitude; returns what is left over. */
+/* Divide the magnitude and return the remainder. */
 static inline uint64_t icdgen_divide(icdgen_wide_t *value, uint64_t divisor)
 {
     uint64_t rest = 0;
@@ -97,7 +97,7 @@ static inline uint64_t icdgen_divide(icdgen_wide_t *value, uint64_t divisor)
     return rest;
 }
 
-/* The correctly rounded double of a quotient. */
+/* Return the quotient as a correctly rounded double. */
 static inline double icdgen_rounded(icdgen_wide_t value, uint64_t divisor)
 {
     uint64_t bits = 0;
@@ -149,8 +149,8 @@ static inline double icdgen_physical_u64(uint64_t raw, int64_t factor, int64_t o
 }
 
 /*
- * The same where both numbers are doubles without rounding: one division, if the compiler promises to round it once and
- * correctly.
+ * Return the quotient of two numbers that are exact as doubles. This is a single division if the compiler guarantees to
+ * round it once and correctly.
  */
 ICDGEN_INLINE double icdgen_quotient(int64_t value, int64_t divisor)
 {
@@ -167,8 +167,8 @@ ICDGEN_INLINE double icdgen_quotient(int64_t value, int64_t divisor)
 }
 
 /*
- * The way back: the magnitude and the sign of the nearest raw value, ties to even. The double is taken as the exact
- * number that it is, so 0.005 is above one half of 0.01.
+ * The inverse: magnitude and sign of the nearest raw value, ties to even. The double is used as the exact number that
+ * it represents, so 0.005 is above one half of 0.01.
  */
 static inline icd_status_t icdgen_nearest(
     double value, int64_t factor, int64_t offset, int64_t divisor, bool *negative, uint64_t *magnitude)
@@ -182,7 +182,9 @@ static inline icd_status_t icdgen_nearest(
     const uint64_t fraction = bits & UINT64_C(0xFFFFFFFFFFFFF);
     const uint64_t significand = exponent == 0u ? fraction : fraction | (UINT64_C(1) << 52);
 
-    /* |value| * divisor = whole + fraction, where the fraction is told by its first bit and whether there are more. */
+    /*
+     * |value| * divisor = whole + fraction. The fraction is reduced to its first bit and a flag for any further bits.
+     */
     icdgen_wide_t whole = icdgen_product(significand, ICDGEN_U64(divisor), false);
     bool half = false;
     bool more = false;
@@ -203,7 +205,7 @@ static inline icd_status_t icdgen_nearest(
         whole.high >>= 1;
     }
 
-    /* With a minus sign before the value or the factor, all is turned round, and the result turned back in the end. */
+    /* A negative value or factor negates the computation; the result is negated back at the end. */
     const bool turned = (bits >> 63 != 0u) != (factor < 0);
     const bool minus = bits >> 63 != 0u;
     const uint64_t step = icdgen_magnitude(factor);
@@ -213,7 +215,7 @@ static inline icd_status_t icdgen_nearest(
         return ICD_ERROR_RANGE;
     }
 
-    /* Floor of the quotient, and what is left over of the step and missing to it, without the fraction. */
+    /* Floor of the quotient, the remainder, and the distance to the next step, without the fraction. */
     const bool below = whole.negative && rest != 0u;
     if (below) {
         rest = step - rest;
@@ -228,7 +230,7 @@ static inline icd_status_t icdgen_nearest(
         up = half && more;
         tie = half && !more;
     } else {
-        /* the fraction decides nothing */
+        /* the fraction does not change the result */
     }
     const bool odd = ((whole.low & 1u) != 0u) != below;
     up = up || (tie && odd);

@@ -5,8 +5,8 @@
 #include "words.h"
 
 /*
- * A row of neighbouring members of one size, from the first to the last named: they are words in the buffer, one after
- * the other, and are moved as one where the machine has their byte order.
+ * A row of adjacent struct members of one size, from the first to the last named member. They are consecutive words in
+ * the buffer and are copied at once if the machine has the same byte order.
  */
 ICDGEN_INLINE bool icdgen_is_little(void)
 {
@@ -45,7 +45,7 @@ ICDGEN_INLINE void icdgen_write_row(
     icdgen_copy(buffer, ICDGEN_CAST(const uint8_t *, message) + offset, length, size, little);
 }
 
-/* The bytes of a row; does not compile if there is anything between its members. */
+/* Size of a row in bytes. Compilation fails if there is padding between its members. */
 #define ICDGEN_ROW(type, size, count, first, last)                                                                     \
     (sizeof(char[offsetof(type, last) - offsetof(type, first) == ((count) - 1u) * (size) ? 1 : -1]) * (count) * (size))
 

@@ -6,7 +6,7 @@
 
 #ifndef ICDGEN_NO_DOUBLE
 
-/* A whole number of 256 bits in two's complement, the least significant part first. */
+/* A 256-bit integer in two's complement, least significant word first. */
 typedef struct {
     uint32_t part[8];
 } icdgen_big_t;
@@ -87,7 +87,7 @@ static inline icdgen_big_t icdgen_big_magnitude(const icdgen_big_t *value)
     return icdgen_big_is_negative(value) ? icdgen_big_difference(&zero, value) : *value;
 }
 
-/* How many bits a number that is not negative has without leading zeros. */
+/* Return the number of significant bits of a non-negative number. */
 static inline int32_t icdgen_big_length(const icdgen_big_t *value)
 {
     int32_t length = 256;
@@ -108,7 +108,10 @@ static inline void icdgen_big_shift(icdgen_big_t *value, int32_t places)
     }
 }
 
-/* -1, 0 or 1, as a value times a power of two is below, equal to or above another one; neither has 255 bits. */
+/*
+ * Compare a value times a power of two with another value: -1, 0 or 1 for below, equal or above. Both have fewer than
+ * 255 bits.
+ */
 static inline int icdgen_big_compare(const icdgen_big_t *left, int32_t power, const icdgen_big_t *right)
 {
     const bool negative = icdgen_big_is_negative(left);
@@ -135,7 +138,7 @@ static inline int icdgen_big_compare(const icdgen_big_t *left, int32_t power, co
     return icdgen_big_is_negative(&rest) ? -farther : farther;
 }
 
-/* (raw * factor + offset) / divisor, rounded once to the nearest double, ties to even. */
+/* Return (raw * factor + offset) / divisor, rounded once to the nearest double, ties to even. */
 static inline double icdgen_wide_physical(uint64_t raw, bool is_negative, const icdgen_scale_t *scale)
 {
     const icdgen_big_t whole = icdgen_big(raw, is_negative);
@@ -153,7 +156,7 @@ static inline double icdgen_wide_physical(uint64_t raw, bool is_negative, const 
             icdgen_big_shift(&rest, 1);
             --exponent;
         }
-        /* 53 digits of the quotient and one for rounding; the first is 1. */
+        /* 53 binary digits of the quotient and one for rounding; the first digit is 1. */
         for (unsigned digit = 0; digit < 54u; ++digit) {
             more = icdgen_big_difference(&rest, &divisor);
             bits <<= 1;
@@ -183,13 +186,13 @@ static inline double icdgen_wide_physical_i64(int64_t raw, const icdgen_scale_t 
     return icdgen_wide_physical(ICDGEN_U64(raw), raw < 0, scale);
 }
 
-/* A double, as twice its significand times the divisor, and the power of two that this is to be multiplied with. */
+/* A double as an integer (twice its significand times the divisor) times a power of two. */
 typedef struct {
     icdgen_big_t twice;
     int32_t power;
 } icdgen_wide_value_t;
 
-/* Whether a raw value is too small: whether the next one is nearer, or even and as near. */
+/* Return whether a raw value is too small: the next one is nearer, or is even and equally near. */
 static inline bool icdgen_wide_exceeds(
     const icdgen_wide_value_t *value, uint64_t raw, bool is_negative, const icdgen_scale_t *scale)
 {
@@ -203,7 +206,7 @@ static inline bool icdgen_wide_exceeds(
     return is_beyond || (beyond == 0 && (raw & 1u) != 0u);
 }
 
-/* The bits of the raw value nearest to a physical one, ties to even; ``low`` is not above 0. */
+/* Return the bits of the raw value nearest to a physical value, ties to even. ``low`` is at most 0. */
 static inline icd_status_t icdgen_wide_nearest(
     uint64_t *raw, double physical, const icdgen_scale_t *scale, int64_t low, uint64_t high)
 {

@@ -4,8 +4,8 @@
 #include "base.h"
 
 /*
- * Words are loaded and stored as they lie in memory where the processor can do that at any address, and swapped if its
- * byte order is the other one; elsewhere they are put together byte by byte.
+ * Words are loaded and stored directly if the processor supports unaligned access, and swapped if its byte order
+ * differs. On other processors they are assembled byte by byte.
  */
 #if !defined(ICDGEN_PORTABLE) && defined(__GNUC__) && defined(__BYTE_ORDER__) &&                                       \
     (defined(__x86_64__) || defined(__i386__) || defined(__aarch64__) || defined(__ARM_FEATURE_UNALIGNED) ||           \

@@ -8,7 +8,7 @@ static inline uint32_t icdgen_can_part(icd_can_part_t part, uint32_t id)
     return (id >> part.shift) & ((UINT32_C(1) << part.bits) - 1u);
 }
 
-/* Whether the kind of message has data. */
+/* Return whether messages of this kind have data. */
 static inline bool icdgen_can_has_data(icd_can_kind_t kind)
 {
     return kind == ICD_CAN_TELECOMMAND || kind == ICD_CAN_REPLY;

@@ -8,30 +8,31 @@
 
 /* ---- CAN --------------------------------------------------------------------------------------------------------- */
 
-/** A CAN frame: identifier of 29 bits, and data. */
+/** A CAN frame with a 29-bit identifier. */
 typedef struct {
     uint32_t id;
     uint8_t length;
     uint8_t data[8];
 } icd_can_packet_t;
 
-/** The most data that a message of the kind can have. The node is on CAN. */
+/** Return the largest number of data bytes of a message of this kind. The link must describe CAN. */
 ICDGEN_API size_t icd_can_most(const icd_link_t *link, icd_can_kind_t kind);
 
-/** Gives the packets of a message one by one. */
+/** Splits a message into CAN packets, one per call of icd_can_next(). */
 typedef struct {
     const icd_can_form_t *can;
     const uint8_t *data;
     size_t length;
     uint32_t id;
-    uint32_t count; /* packets in all */
+    uint32_t count; /* number of packets */
     uint32_t next;
     bool extended;
 } icd_can_splitter_t;
 
 /**
- * Begins a message, whose data must stay where they are. ICD_ERROR_LENGTH if they are too long, ICD_ERROR_RANGE if an
- * id or address does not fit the identifier.
+ * Start splitting a message of `length` bytes. `data` must stay valid until the last packet is taken.
+ * Return ICD_ERROR_LENGTH if the data are too long, ICD_ERROR_RANGE if an id or address does not fit into the
+ * identifier.
  */
 ICDGEN_API icd_status_t icd_can_split(
     icd_can_splitter_t *splitter,
@@ -43,7 +44,7 @@ ICDGEN_API icd_status_t icd_can_split(
     const uint8_t *data,
     size_t length);
 
-/** The next packet; false after the last. */
+/** Write the next packet to `packet`. Return false after the last packet. */
 ICDGEN_API bool icd_can_next(icd_can_splitter_t *splitter, icd_can_packet_t *packet);
 
 #endif /* ICDGEN_WIRE_CAN_H */

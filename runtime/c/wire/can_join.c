@@ -56,7 +56,7 @@ static inline void icdgen_can_tell(
     on_event(context, &event);
 }
 
-/* Data begin one byte after the id. */
+/* The data start after the id byte. */
 static inline void icdgen_can_tell_message(
     const icd_link_t *link,
     uint32_t key,
@@ -81,7 +81,7 @@ static inline bool icdgen_can_got(const icd_can_slot_t *slot, uint32_t number)
     return number < slot->count && ((ICDGEN_U32(slot->got[number / 8u]) >> (number % 8u)) & 1u) != 0u;
 }
 
-/* Frees a slot; its memory goes to the end of the row. */
+/* Free a slot and move its memory to the end of the array. */
 static inline void icdgen_can_free(icd_can_joiner_t *joiner, size_t index)
 {
     icd_can_slot_t *const slots = joiner->slots;
@@ -92,7 +92,7 @@ static inline void icdgen_can_free(icd_can_joiner_t *joiner, size_t index)
     slots[joiner->used].data = data;
 }
 
-/* Forgets a message. One that is done leaves no event: it was kept to know repeated packets. */
+/* Discard a message. A complete message causes no event: its slot only serves to detect repeated packets. */
 static inline void icdgen_can_give_up(icd_can_joiner_t *joiner, size_t index, icd_event_fn *on_event, void *context)
 {
     const icd_can_slot_t *const slot = &joiner->slots[index];
@@ -116,7 +116,7 @@ ICDGEN_API void icd_can_expire(icd_can_joiner_t *joiner, uint32_t now, icd_event
     }
 }
 
-/* Notes that a packet came, be it a repeated one. */
+/* Record a received packet, new or repeated. */
 static inline void icdgen_can_came(icd_can_slot_t *slot, uint32_t number, uint32_t now)
 {
     slot->last = now;
@@ -125,11 +125,14 @@ static inline void icdgen_can_came(icd_can_slot_t *slot, uint32_t number, uint32
     } else if (number + 1u != slot->run) {
         slot->run = number == 0u ? 1u : 0u;
     } else {
-        /* the one before came again */
+        /* the previous packet was repeated */
     }
 }
 
-/* A slot for a new message, for which the oldest one that is done makes room; NULL if there is none. */
+/*
+ * Return a slot for a new message. If all are in use, reuse the oldest slot with a complete message; NULL if there is
+ * none.
+ */
 static inline icd_can_slot_t *icdgen_can_slot(icd_can_joiner_t *joiner)
 {
     for (size_t i = 0; joiner->used == joiner->slot_count && i < joiner->used; ++i) {
@@ -140,7 +143,7 @@ static inline icd_can_slot_t *icdgen_can_slot(icd_can_joiner_t *joiner)
     return joiner->used < joiner->slot_count ? &joiner->slots[joiner->used++] : NULL;
 }
 
-/* Bytes of the message if the ICD knows it and it needs several packets, else 0. */
+/* Return the length of the message in bytes if the ICD has it and it needs several packets; otherwise 0. */
 static inline uint32_t icdgen_can_length(const icd_link_t *link, icd_can_kind_t kind, uint32_t id)
 {
     const icd_message_t *const message = icd_find_message(
@@ -148,7 +151,7 @@ static inline uint32_t icdgen_can_length(const icd_link_t *link, icd_can_kind_t 
     return message != NULL && message->length > link->can->data_bytes ? message->length : 0u;
 }
 
-/* Another message than that of a slot has begun; with the same packets as the old one up to here, they are kept. */
+/* Start a new message in the slot of another. The packets received so far are kept if they are the same in both. */
 static inline void icdgen_can_replace(
     icd_can_joiner_t *joiner,
     size_t index,
@@ -168,7 +171,7 @@ static inline void icdgen_can_replace(
     icdgen_can_give_up(joiner, index, on_event, context);
 }
 
-/* A packet of a message of several. */
+/* Process a packet of a message of several packets. */
 static inline void icdgen_can_extended(
     icd_can_joiner_t *joiner,
     uint32_t now,
@@ -194,7 +197,7 @@ static inline void icdgen_can_extended(
         count = ICDGEN_U32((length + size - 1u) / size);
     } else if (slot != NULL && !slot->done && left < slot->count) {
         count = slot->count;
-    } else { /* the first packet that comes tells how many there are */
+    } else { /* the first packet received contains the number of packets */
         count = left + 1u;
     }
     if (packet->length != form->left_at + 1u || left >= count || count > joiner->room) {
@@ -213,7 +216,7 @@ static inline void icdgen_can_extended(
     }
     (void)memset(&fresh, 0, sizeof fresh);
     if (slot != NULL && (slot->done || slot->count != count || icdgen_can_got(slot, number))) {
-        icdgen_can_replace(joiner, index, number, &fresh, on_event, context); /* the next free slot has its memory */
+        icdgen_can_replace(joiner, index, number, &fresh, on_event, context); /* the next free slot owns its memory */
         slot = NULL;
     }
     if (slot == NULL) {

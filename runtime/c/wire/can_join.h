@@ -8,40 +8,43 @@
 #include "events.h"
 #include "can.h"
 
-/** A message of several packets on its way. */
+/** A partly received message of several packets. */
 typedef struct {
-    uint8_t *data; /* of all its packets; the byte before it is the id of the message */
-    uint32_t key;  /* the identifier */
+    uint8_t *data; /* data of all packets; the byte before them is the id of the message */
+    uint32_t key;  /* CAN identifier */
     icd_can_kind_t kind;
-    uint32_t count;  /* of all its packets */
-    uint32_t length; /* of the message; 0: that of all its packets */
-    uint32_t there;  /* packets that have come */
-    uint32_t last;   /* when the last one came */
-    uint32_t run;    /* packets 0 to run - 1 came last, one after the other */
+    uint32_t count;  /* number of packets of the message */
+    uint32_t length; /* bytes of the message; 0: all bytes of its packets */
+    uint32_t there;  /* number of packets received */
+    uint32_t last;   /* time of the last packet in ms */
+    uint32_t run;    /* packets 0 to run - 1 were received last, in this order */
     uint32_t completed_by;
     bool done;
     uint8_t got[32];
 } icd_can_slot_t;
 
-/** Puts messages together, from so many senders at once as there are slots. */
+/** Assembles messages from CAN packets. Needs one slot for each message that is received at the same time. */
 typedef struct {
     const icd_link_t *link;
-    icd_can_slot_t *slots; /* in the order in which their messages began */
+    icd_can_slot_t *slots; /* ordered by the start of their messages */
     size_t slot_count;
     size_t used;
-    uint32_t room; /* packets */
+    uint32_t room; /* largest number of packets of a message */
     int16_t address;
 } icd_can_joiner_t;
 
-/** Whose messages are taken: everybody's. */
+/** Value of `address`: accept messages for any destination. */
 #define ICD_CAN_EVERYBODY (-1)
 
-/** Bytes that each slot takes of the buffer: NODE_CAN_SLOT_BYTES is the constant for a node. The node is on CAN. */
+/**
+ * Return the buffer size per slot in bytes. NODE_CAN_SLOT_BYTES is the constant of a node. The link must describe CAN.
+ */
 ICDGEN_API size_t icd_can_slot_bytes(const icd_link_t *link);
 
 /**
- * `address`: whose messages are taken, or ICD_CAN_EVERYBODY. ICD_ERROR_LENGTH if the buffer is too small for the
- * slots.
+ * Initialize a joiner with `count` slots and a buffer of `size` bytes. Both must stay valid while it is in use.
+ * `address`: accept only messages for this destination, or ICD_CAN_EVERYBODY.
+ * Return ICD_ERROR_LENGTH if the buffer is too small for the slots.
  */
 ICDGEN_API icd_status_t icd_can_joiner_init(
     icd_can_joiner_t *joiner,
@@ -52,12 +55,12 @@ ICDGEN_API icd_status_t icd_can_joiner_init(
     uint8_t *buffer,
     size_t size);
 
-/** Gives up what has waited too long for its next packet: ICD_EVENT_INCOMPLETE. */
+/** Discard messages whose next packet is overdue and report each as ICD_EVENT_INCOMPLETE. `now` is in milliseconds. */
 ICDGEN_API void icd_can_expire(icd_can_joiner_t *joiner, uint32_t now, icd_event_fn *on_event, void *context);
 
 /**
- * Takes one packet; `now` in milliseconds. Tells of ICD_EVENT_MESSAGE, whose data have no id, and of INCOMPLETE,
- * MALFORMED, DUPLICATE, BUSY and UNKNOWN_TYPE.
+ * Pass one received packet to the joiner. `now` is in milliseconds.
+ * Events: ICD_EVENT_MESSAGE (`data` without the id), INCOMPLETE, MALFORMED, DUPLICATE, BUSY and UNKNOWN_TYPE.
  */
 ICDGEN_API void icd_can_feed(
     icd_can_joiner_t *joiner, uint32_t now, const icd_can_packet_t *packet, icd_event_fn *on_event, void *context);

@@ -15,7 +15,7 @@ static inline bool icdgen_on_bus(uint8_t buses, icd_bus_t bus)
     return ((ICDGEN_U32(buses) >> ICDGEN_U32(bus)) & 1u) != 0u;
 }
 
-/* What is common to all buses. */
+/* Initialize the part that is the same for all buses. */
 static inline icd_status_t icdgen_client_init(
     icd_client_t *client, const icd_link_t *link, icd_bus_t bus, uint8_t *buffer, size_t size)
 {
@@ -129,7 +129,7 @@ static inline void icdgen_client_timeout(icd_client_t *client, uint32_t now, icd
     icdgen_client_end(client, now, &event, on_event, context);
 }
 
-/* Sends the request, for the first time or again. */
+/* Send the request, for the first time or again. */
 static inline void icdgen_client_send(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
 {
     client->attempts++;
@@ -143,7 +143,7 @@ static inline void icdgen_client_send(icd_client_t *client, uint32_t now, icd_ev
     }
 }
 
-/* Whether anything that is to be sent has not been taken. */
+/* Return whether there is output that has not been taken. */
 static inline bool icdgen_client_has_output(const icd_client_t *client)
 {
     return client->pending != 0u || client->poll || !client->encoder.ended || client->encoder.pending != 0u ||

@@ -15,15 +15,15 @@
 
 typedef enum {
     ICD_CLIENT_IDLE,
-    ICD_CLIENT_HOLD,  /* a late reply to the request before may still come */
-    ICD_CLIENT_WAIT,  /* for the reply */
-    ICD_CLIENT_PAUSE, /* I2C: before polling or sending again */
-    ICD_CLIENT_POLL   /* I2C: for the acknowledge frame */
+    ICD_CLIENT_HOLD,  /* waits because a late reply to the previous request may still arrive */
+    ICD_CLIENT_WAIT,  /* waits for the reply */
+    ICD_CLIENT_PAUSE, /* I2C: waits before the next poll or the next attempt */
+    ICD_CLIENT_POLL   /* I2C: waits for the acknowledge frame */
 } icd_client_state_t;
 
 /**
- * A request. `repeat`: whether it may be sent again although it may have arrived; of telemetry and settings it always
- * may.
+ * A request. `repeat`: whether the client may send it again if the node may already have received it. Telemetry and
+ * settings are always repeated.
  */
 typedef struct {
     icd_direction_t direction;
@@ -35,34 +35,38 @@ typedef struct {
 
 typedef struct icd_client icd_client_t;
 
-/** One request at a time, from sending to its outcome. */
+/** A client: sends one request at a time and reports its outcome. Members without a description are internal. */
 struct icd_client {
     const icd_link_t *link;
-    icd_client_settings_t settings; /**< May be changed while no request is going on. */
+    icd_client_settings_t settings; /**< Timeouts and retries. May be changed while no request is in progress. */
     icd_bus_t bus;
-    bool ready;                               /* it was begun without an error */
-    bool (*fits)(const icd_client_t *client); /* CAN: whether the request fits its packets */
-    void (*expire)(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context); /* CAN: old packets */
+    bool ready;                               /* initialized without an error */
+    bool (*fits)(const icd_client_t *client); /* CAN: whether the request fits into packets */
+    void (*expire)(
+        icd_client_t *client,
+        uint32_t now,
+        icd_event_fn *on_event,
+        void *context); /* CAN: discards incomplete messages */
     icd_client_state_t state;
     bool checks_telecommands;
     bool checks_telemetry;
-    bool sent_whole; /* I2C: the telecommand is sent, its acknowledge is polled */
+    bool sent_whole; /* I2C: the telecommand is sent; its acknowledge is polled */
     bool repeat;
     icd_direction_t direction;
-    const icd_message_t *message; /* that is requested */
-    uint8_t *whole;               /* the request with its id and checksum */
+    const icd_message_t *message; /* message of the request */
+    uint8_t *whole;               /* request with id and checksum */
     size_t whole_length;
     uint32_t attempts;
-    uint32_t until;   /* when the state ends by itself */
-    uint32_t give_up; /* when polling ends */
-    bool echo;        /* a second reply to echo_id may come until echo_end */
+    uint32_t until;   /* time at which the state ends */
+    uint32_t give_up; /* time at which polling ends */
+    bool echo;        /* a second reply to echo_id may arrive until echo_end */
     uint8_t echo_id;
     uint32_t echo_end;
     uint8_t address;
     uint8_t poll_id;
-    bool poll;        /* to be sent: the request for the acknowledge frame ... */
-    uint32_t pending; /* ... and the request, so many times */
-    uint32_t owed;    /* I2C: transactions taken of which icd_client_transferred() was not told */
+    bool poll;        /* to be sent: the request for the acknowledge frame */
+    uint32_t pending; /* to be sent: the request, this many times */
+    uint32_t owed;    /* I2C: transactions taken whose result is not yet reported */
     icd_uart_encoder_t encoder;
     icd_can_splitter_t splitter;
     uint8_t chunk[32];
@@ -71,49 +75,62 @@ struct icd_client {
     icd_can_slot_t slot;
 };
 
-/** Bytes of buffer that a client needs: NODE_CLIENT_BYTES is the constant for a node. */
+/** Return the buffer size of a client in bytes. NODE_CLIENT_BYTES is the constant of a node. */
 ICDGEN_API size_t icd_client_bytes(const icd_link_t *link);
 
 /**
- * Begins a client on the UART, with the times of the ICD. ICD_ERROR_UNSUPPORTED if the node is not on that bus,
- * ICD_ERROR_LENGTH if the buffer is smaller than icd_client_bytes(); it refuses every request then. The client must
- * stay where it is. NODE_client_uart() begins one that takes the messages of the node only, and so the next two.
+ * Initialize a client on the UART with the timeouts of the ICD. The buffer must stay valid and the client must not be
+ * moved or copied while it is in use. NODE_client_uart(), NODE_client_i2c() and NODE_client_can() initialize a client
+ * that accepts only the messages of the node at compile time.
+ * Return ICD_ERROR_UNSUPPORTED if the node is not on this bus, ICD_ERROR_LENGTH if `size` is less than
+ * icd_client_bytes(). After an error the client rejects all requests.
  */
 ICDGEN_API icd_status_t icd_client_uart(icd_client_t *client, const icd_link_t *link, uint8_t *buffer, size_t size);
 
-/** On I2C, as icd_client_uart(). */
+/** Initialize a client on I2C. See icd_client_uart(). */
 ICDGEN_API icd_status_t icd_client_i2c(icd_client_t *client, const icd_link_t *link, uint8_t *buffer, size_t size);
 
-/** On CAN, as icd_client_uart(); `address` is ours, to which the node replies. */
+/**
+ * Initialize a client on CAN. `address` is the CAN address of the client, to which the node replies. See
+ * icd_client_uart().
+ */
 ICDGEN_API icd_status_t
 icd_client_can(icd_client_t *client, const icd_link_t *link, uint8_t address, uint8_t *buffer, size_t size);
 
-/** Uses checksums where the ICD leaves the choice for the bus. Where it demands them, they are used in any case. */
+/** Enable optional checksums. Checksums that the ICD requires on the bus are always used. */
 ICDGEN_API void icd_client_use_checksums(icd_client_t *client);
 
-/** When icd_client_tick() wants to be called at the latest; false: not at all. */
+/**
+ * Get the time in milliseconds at which icd_client_tick() must be called at the latest. Return false if no request is
+ * in progress; `*deadline` has no meaning then.
+ */
 ICDGEN_API bool icd_client_deadline(const icd_client_t *client, uint32_t *deadline);
 
 /**
- * Begins a request; its data are copied. ICD_ERROR_UNKNOWN_ID, ICD_ERROR_BUSY while another one is going on or has not
- * been taken by the output functions, ICD_ERROR_LENGTH, ICD_ERROR_UNSUPPORTED if the client could not be begun; nothing
- * has happened then. `on_event` NULL: that a telecommand needs no acknowledge, and is done at once, is told to nobody.
+ * Start a request. The data are copied. `now` is in milliseconds. A telecommand without acknowledge is reported at once
+ * as ICD_EVENT_DONE; `on_event` may be NULL to ignore this.
+ * Return ICD_ERROR_UNKNOWN_ID if the node has no such message, ICD_ERROR_BUSY if another request is in progress or its
+ * output has not been taken completely, ICD_ERROR_LENGTH if the data have the wrong length, or ICD_ERROR_UNSUPPORTED if
+ * the client is not initialized. After an error the client is unchanged.
  */
 ICDGEN_API icd_status_t icd_client_start(
     icd_client_t *client, uint32_t now, const icd_request_t *request, icd_event_fn *on_event, void *context);
 
 /**
- * Gives up the request, without an event, and what of it has not been taken: the next one may begin. A late reply to
- * this one is ICD_EVENT_STRAY.
+ * Cancel the request without an event, and drop its remaining output. The next request may then be started. A late
+ * reply to the cancelled request is reported as ICD_EVENT_STRAY.
  */
 ICDGEN_API void icd_client_cancel(icd_client_t *client);
 
-/** Requests telemetry. NODE_request_MESSAGE() does so by name. */
+/**
+ * Request telemetry by id. `now` is in milliseconds. NODE_request_MESSAGE() is the typed version. Errors: see
+ * icd_client_start().
+ */
 ICDGEN_API icd_status_t icd_client_request(icd_client_t *client, uint32_t now, uint8_t id);
 
 /**
- * Sends a telecommand, whose data are copied. One that is not acknowledged is ICD_EVENT_DONE at once.
- * NODE_send_MESSAGE() does so by name.
+ * Send a telecommand by id. NODE_send_MESSAGE() is the typed version. For parameters, events and errors see
+ * icd_client_start() and icd_request_t.
  */
 ICDGEN_API icd_status_t icd_client_send(
     icd_client_t *client,
@@ -125,18 +142,22 @@ ICDGEN_API icd_status_t icd_client_send(
     icd_event_fn *on_event,
     void *context);
 
-/** Whether the event is the reply to a request for that telemetry of that node, or of one that includes it. */
+/**
+ * Return whether the event is the reply to a request for telemetry `id` of `node`, or of a node that includes `node`.
+ */
 ICDGEN_API bool icd_is_reply(const icd_event_t *event, const char *node, uint8_t id);
 
-/** The next bytes for the UART; false when there are none. They last until the next call. */
+/**
+ * UART: get the next bytes to send. `*bytes` is valid until the next call. Return false if there is nothing to send.
+ */
 ICDGEN_API bool icd_client_output(icd_client_t *client, const uint8_t **bytes, size_t *count);
 
-/** The next packet for CAN; false when there is none. */
+/** CAN: get the next packet to send. Return false if there is nothing to send. */
 ICDGEN_API bool icd_client_next_packet(icd_client_t *client, icd_can_packet_t *packet);
 
 /**
- * The next transaction on I2C: bytes to write, and how many to read then; false when there is none.
- * icd_client_transferred() is told of each that was taken, once and in this order.
+ * I2C: get the next transaction: write `*count` bytes from `*bytes`, then read `*read` bytes (0: write only). Return
+ * false if there is none. Call icd_client_transferred() exactly once for each transaction, in the same order.
  */
 ICDGEN_API bool icd_client_transfer(icd_client_t *client, const uint8_t **bytes, size_t *count, size_t *read);
 

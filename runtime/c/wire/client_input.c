@@ -6,7 +6,10 @@
 #include "events.c"
 #include "client.c"
 
-/* The node refused it. A wrong checksum is no fault of the request: it is sent again. */
+/*
+ * Process a rejected request. If the node reports a wrong checksum, the request was damaged on the bus and is sent
+ * again.
+ */
 static inline void icdgen_client_refused(
     icd_client_t *client, uint32_t now, int64_t code, int64_t parameter, icd_event_fn *on_event, void *context)
 {
@@ -26,12 +29,12 @@ static inline void icdgen_client_refused(
     icdgen_client_end(client, now, &event, on_event, context);
 }
 
-/* There was no reply, or none that can be used: once more, or the end. */
+/* Process a missing or unusable reply: send again or end the request. */
 static inline void icdgen_client_no_reply(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
 {
     if (!client->repeat || client->attempts > client->settings.retries) {
         icdgen_client_timeout(client, now, on_event, context);
-    } else if (client->bus == ICD_BUS_I2C) { /* the bus said so at once: give the node some time */
+    } else if (client->bus == ICD_BUS_I2C) { /* the bus reports the failure immediately: wait before the next attempt */
         client->state = ICD_CLIENT_PAUSE;
         client->until = now + client->settings.poll_interval;
         client->give_up = now + client->settings.poll_timeout;
@@ -40,7 +43,7 @@ static inline void icdgen_client_no_reply(icd_client_t *client, uint32_t now, ic
     }
 }
 
-/* Polls once more after a while. */
+/* Poll again after the poll interval. */
 static inline void icdgen_client_again(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
 {
     if (icdgen_reached(now, client->give_up)) {
@@ -68,7 +71,7 @@ static inline void icdgen_client_tell(
     on_event(context, &event);
 }
 
-/* A client and who is told of its events, while its decoder or joiner is fed. */
+/* A client and its event callback, as context for the callbacks of its decoder or joiner. */
 typedef struct {
     icd_client_t *client;
     uint32_t now;
@@ -76,7 +79,9 @@ typedef struct {
     void *context;
 } icdgen_client_call_t;
 
-/* What came as the frame: with a checksum where there may be one, without where there need not. */
+/*
+ * Check the length and the checksum of a received frame. The checksum is optional or required, as the link describes.
+ */
 static inline void icdgen_client_replied(const icdgen_client_call_t *call, const uint8_t *data, size_t length)
 {
     icd_client_t *const client = call->client;
@@ -92,7 +97,7 @@ static inline void icdgen_client_replied(const icdgen_client_call_t *call, const
     } else if (client->checks_telemetry) {
         fault = ICD_EVENT_UNCHECKED;
     } else {
-        /* it need not have one */
+        /* the checksum is optional */
     }
     if (fault == ICD_EVENT_DONE) {
         icdgen_client_done(client, call->now, data, frame, call->on_event, call->context);
@@ -237,7 +242,7 @@ ICDGEN_API void icd_client_packet(
     }
 }
 
-/* I2C: what was read of the acknowledge frame. */
+/* I2C: process the acknowledge frame. */
 static inline void icdgen_client_polled(
     icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
 {
@@ -263,7 +268,7 @@ static inline void icdgen_client_polled(
     }
 }
 
-/* I2C: whether the last transaction was taken, and is that of the request. */
+/* I2C: return whether the last transaction is taken and belongs to the current request. */
 static inline bool icdgen_client_awaits_transfer(const icd_client_t *client, uint32_t owed)
 {
     return client->owed == owed && (client->state == ICD_CLIENT_WAIT || client->state == ICD_CLIENT_POLL) &&
@@ -276,7 +281,7 @@ ICDGEN_API void icd_client_transferred(
     size_t length = 0;
     const bool awaited = icdgen_client_awaits_transfer(client, 1);
     client->owed -= client->owed != 0u ? 1u : 0u;
-    icd_client_tick(client, now, on_event, context); /* may end that request, and begin the next one */
+    icd_client_tick(client, now, on_event, context); /* may end this request and start the next one */
     if (!awaited || !icdgen_client_awaits_transfer(client, 0)) {
         icdgen_client_tell(ICD_EVENT_STRAY, 0, bytes, bytes != NULL ? count : 0u, on_event, context);
     } else if (client->state == ICD_CLIENT_POLL) {

@@ -19,7 +19,7 @@ static inline uint32_t icdgen_reflected(uint32_t value, unsigned width)
     return reflected;
 }
 
-/* A byte with its bits the other way round: halves change places, then quarters, then bits. */
+/* Reverse the bits of a byte: swap halves, then quarters, then bits. */
 static inline uint32_t icdgen_reflected_byte(uint32_t byte)
 {
     const uint32_t halves = ((byte & 0x0Fu) << 4) | (byte >> 4);
@@ -34,8 +34,8 @@ ICDGEN_API void icd_crc_feed(icd_crc_t *crc, const uint8_t *bytes, size_t length
     const uint32_t mask = UINT32_C(0xFFFFFFFF) >> (32u - width);
     const uint32_t top = UINT32_C(1) << (width - 1u);
 #ifndef ICDGEN_NO_TABLES
-    const unsigned beyond = width > 8u ? width - 8u : 0u;  /* bits of the register below those that meet a byte */
-    const unsigned missing = width < 8u ? 8u - width : 0u; /* bits of a byte that meet none of the register */
+    const unsigned beyond = width > 8u ? width - 8u : 0u;  /* bits of the register below the byte */
+    const unsigned missing = width < 8u ? 8u - width : 0u; /* bits of the byte below the register */
 #endif
     uint32_t value = crc->value;
     for (size_t i = 0; i < length; ++i) {

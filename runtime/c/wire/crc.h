@@ -8,7 +8,7 @@
 
 /* ---- checksums --------------------------------------------------------------------------------------------------- */
 
-/** A CRC that is fed piece by piece. */
+/** State of a CRC that is computed piece by piece. */
 typedef struct {
     const icd_crc_form_t *form;
     uint32_t value;
@@ -19,15 +19,15 @@ ICDGEN_API void icd_crc_init(icd_crc_t *crc, const icd_crc_form_t *form);
 
 ICDGEN_API void icd_crc_feed(icd_crc_t *crc, const uint8_t *bytes, size_t length);
 
-/** The CRC of everything fed so far. */
+/** Return the CRC of all bytes fed so far. */
 ICDGEN_API uint32_t icd_crc_result(const icd_crc_t *crc);
 
 ICDGEN_API uint32_t icd_crc(const icd_crc_form_t *form, const uint8_t *bytes, size_t length);
 
-/** The CRC of telecommands and frames; ICD_ERROR_UNSUPPORTED if the node has none. */
+/** Compute the CRC of telecommands and frames. Return ICD_ERROR_UNSUPPORTED if the ICD has none. */
 ICDGEN_API icd_status_t icd_crc8(const icd_link_t *link, const uint8_t *bytes, size_t length, uint32_t *crc);
 
-/** The CRC of files and their blocks; ICD_ERROR_UNSUPPORTED if the node has none. */
+/** Compute the CRC of files and blocks. Return ICD_ERROR_UNSUPPORTED if the ICD has none. */
 ICDGEN_API icd_status_t icd_crc16(const icd_link_t *link, const uint8_t *bytes, size_t length, uint32_t *crc);
 
 #endif /* ICDGEN_WIRE_CRC_H */

@@ -68,7 +68,7 @@ static inline void icdgen_download_packet(
     }
 }
 
-/* Bytes to ask for next; 0 at the end of the file. */
+/* Return the number of bytes to request next; 0 at the end of the file. */
 static inline uint32_t icdgen_download_wanted(const icd_download_t *download)
 {
     const uint32_t left = download->size - download->offset;
@@ -100,14 +100,14 @@ static inline void icdgen_download_burst(icd_download_t *download)
     const icd_step_t *const step = &link->download->burst;
     download->left = download->count - download->there;
     download->last = procedure->now;
-    /* Sent once: that packets come, or none, tells more than its acknowledge. */
+    /* Sent only once: the received packets show whether the node got it, even if the acknowledge is lost. */
     icdgen_command(procedure, step, false, ICDGEN_DOWNLOAD_BURST);
     procedure->tolerant = true;
     icdgen_put(link, step, procedure->data, ICD_ROLE_LENGTH, link->download->message_length);
     icdgen_put(link, step, procedure->data, ICD_ROLE_IGNORE_HOLE_MAP, download->there == 0u ? 1u : 0u);
 }
 
-/* Sends the next piece of the hole map, or asks for the packets once all are sent. */
+/* Send the next piece of the hole map. After the last piece, request the packets. */
 static inline void icdgen_download_map(icd_download_t *download)
 {
     icd_procedure_t *const procedure = &download->procedure;
@@ -132,7 +132,7 @@ static inline void icdgen_download_map(icd_download_t *download)
     download->left++;
 }
 
-/* The block is whole: delivers it, and asks for the next one. */
+/* Deliver the complete block and request the next one. */
 static inline void icdgen_download_block(icd_download_t *download)
 {
     icd_procedure_t *const procedure = &download->procedure;
@@ -161,7 +161,7 @@ static inline void icdgen_download_block(icd_download_t *download)
     icdgen_download_load(download);
 }
 
-/* One more round, if packets are missing. */
+/* Start another round if packets are missing. */
 static inline void icdgen_download_round(icd_download_t *download)
 {
     icd_procedure_t *const procedure = &download->procedure;
@@ -203,7 +203,7 @@ static inline void icdgen_download_ready(icd_download_t *download, const uint8_t
     icdgen_download_round(download);
 }
 
-/* I2C, CAN: requests the next packet, or ends the round. */
+/* I2C, CAN: request the next packet, or end the round. */
 static inline void icdgen_download_fetch(icd_download_t *download)
 {
     icd_procedure_t *const procedure = &download->procedure;
@@ -216,7 +216,7 @@ static inline void icdgen_download_fetch(icd_download_t *download)
     procedure->tolerant = true;
 }
 
-/* UART: waits for packets until all are there, or none has come for a while. */
+/* UART: wait until all packets are received or no packet arrives for the silence time. */
 static inline void icdgen_download_silence(icd_download_t *download)
 {
     icd_procedure_t *const procedure = &download->procedure;

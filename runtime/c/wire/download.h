@@ -10,43 +10,44 @@
 #include "files.h"
 #include "procedure.h"
 
-/** Is told of each block of a file. */
+/** Callback for each block of a file. `data` is valid during the call; `offset` and `length` are in bytes. */
 typedef void icd_block_fn(void *context, uint32_t offset, const uint8_t *data, size_t length);
 
-/** The size of a file of which nothing but its end will tell, such as the index file. */
+/** Value of `size` for a file whose size is unknown before its end is reached, such as the index file. */
 #define ICD_SIZE_UNKNOWN UINT32_C(0xFFFFFFFF)
 
-/** Downloads a file block by block. `procedure` goes to the functions of icd_procedure_t. */
+/** Download of a file block by block. Pass `&download.procedure` to the icd_procedure_...() functions. */
 typedef struct {
     icd_procedure_t procedure;
     icd_bus_t bus;
     uint8_t type;
     uint8_t counter;
     uint32_t size;
-    uint32_t block; /* bytes asked for at once */
+    uint32_t block; /* bytes requested at once */
     uint8_t *buffer;
-    uint8_t *got; /* a bit for each packet of the block */
+    uint8_t *got; /* one bit for each packet of the block */
     icd_block_fn *on_block;
     void *context;
-    uint32_t offset;   /**< Progress: bytes delivered. */
-    uint32_t length;   /* of this block */
-    uint32_t checksum; /* of this block */
-    uint32_t count;    /* packets of this block */
-    uint32_t there;    /* of them */
+    uint32_t offset;   /**< Progress: bytes passed to `on_block`. */
+    uint32_t length;   /* of the current block */
+    uint32_t checksum; /* of the current block */
+    uint32_t count;    /* packets of the current block */
+    uint32_t there;    /* packets received */
     uint32_t rounds;
-    uint32_t left; /* I2C, CAN: packets still to be requested; messages of the hole map sent */
-    uint32_t last; /* when the last packet came */
+    uint32_t left; /* I2C, CAN: packets still to be requested; or messages of the hole map sent */
+    uint32_t last; /* time of the last packet */
 } icd_download_t;
 
-/** Bytes of the buffer and of the bitmap for blocks of at most `block` bytes. */
+/** Return the size in bytes of the buffer (and below, of the bitmap) for blocks of at most `block` bytes. */
 ICDGEN_API size_t icd_block_buffer(const icd_link_t *link, uint32_t block);
 
 ICDGEN_API size_t icd_block_bitmap(const icd_link_t *link, uint32_t block);
 
 /**
- * `size`: bytes of the file, or ICD_SIZE_UNKNOWN. `block`: bytes asked for at once, 0 for those of the ICD. `buffer`
- * holds icd_block_buffer() bytes, `bitmap` icd_block_bitmap(): NODE_BLOCK_BYTES and NODE_BLOCK_BITMAP_BYTES do for any.
- * ICD_ERROR_LENGTH if either is smaller, ICD_ERROR_UNSUPPORTED if the node has no downloads on that bus.
+ * Initialize a download. `size`: file size in bytes, or ICD_SIZE_UNKNOWN. `block`: bytes per block, or 0 for the block
+ * size of the ICD. `buffer` needs icd_block_buffer() bytes and `bitmap` icd_block_bitmap() bytes; NODE_BLOCK_BYTES and
+ * NODE_BLOCK_BITMAP_BYTES are always enough. Both must stay valid during the download.
+ * Return ICD_ERROR_LENGTH if a buffer is too small, ICD_ERROR_UNSUPPORTED if the node has no downloads on this bus.
  */
 ICDGEN_API icd_status_t icd_download_init(
     icd_download_t *download,

@@ -3,16 +3,16 @@
 
 #include "stream.h"
 
-#define ICDGEN_NO_SEQUENCE UINT32_C(0xFFFFFFFF) /* which no sequence number is: they have at most 31 bits */
+#define ICDGEN_NO_SEQUENCE UINT32_C(0xFFFFFFFF) /* not a valid sequence number: these have at most 31 bits */
 
-/* Fields and checksum of a frame, for both encoder and decoder. */
+/* Access to the fields and the checksum of a frame, for encoder and decoder. */
 
 static inline uint32_t icdgen_envelope_mask(const icd_envelope_field_t *field)
 {
     return UINT32_C(0xFFFFFFFF) >> (32u - field->bits);
 }
 
-/* The field of a role; NULL if there is none. */
+/* Return the field with this role; NULL if there is none. */
 static inline const icd_envelope_field_t *icdgen_envelope_field(const icd_stream_form_t *form, icd_envelope_role_t role)
 {
     for (size_t i = 0; i < form->field_count; ++i) {
@@ -23,7 +23,7 @@ static inline const icd_envelope_field_t *icdgen_envelope_field(const icd_stream
     return NULL;
 }
 
-/* `bytes` begin with the header, or the trailer, that the field stands in. */
+/* Return the value of a field. `bytes` is the header or the trailer that contains the field. */
 static inline uint32_t icdgen_envelope_get(const icd_envelope_field_t *field, const uint8_t *bytes)
 {
     uint32_t number = 0;
@@ -43,7 +43,7 @@ static inline void icdgen_envelope_put(const icd_envelope_field_t *field, uint8_
     }
 }
 
-/* A checksum that is fed piece by piece. */
+/* State of a checksum that is computed piece by piece. */
 typedef struct {
     const icd_check_form_t *form;
     icd_crc_t crc;
@@ -96,7 +96,7 @@ static inline uint32_t icdgen_check_result(const icdgen_check_t *check)
     }
 }
 
-/* Of a message in three pieces. `row` may be NULL where the checksum has no seed. */
+/* Return the checksum of header, data and trailer. `row` may be NULL if the checksum has no seed. */
 static inline uint32_t icdgen_envelope_check(
     const icd_stream_form_t *form,
     const icd_stream_row_t *row,
@@ -117,7 +117,7 @@ static inline uint32_t icdgen_envelope_check(
     return icdgen_check_result(&check);
 }
 
-/* The message of an id; NULL if there is none. */
+/* Return the message with this id; NULL if there is none. */
 static inline const icd_stream_row_t *icdgen_stream_row(
     const icd_stream_form_t *form, icd_direction_t direction, uint32_t id)
 {

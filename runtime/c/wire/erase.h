@@ -8,7 +8,10 @@
 #include "events.h"
 #include "procedure.h"
 
-/** Deletes a file or all of them, or formats the medium. `procedure` goes to the functions of icd_procedure_t. */
+/**
+ * Deletion of one file or all files, or formatting of the medium. Pass `&erase.procedure` to the icd_procedure_...()
+ * functions.
+ */
 typedef struct {
     icd_procedure_t procedure;
     const icd_erase_form_t *form;
@@ -19,11 +22,14 @@ typedef struct {
 
 typedef icd_erase_t icd_format_t;
 
-/** Deletes a file, or all of them: then it is done when the node is no longer busy. */
+/**
+ * Initialize the deletion of one file, or of all files if `all` is true. Deleting all files ends when the node is no
+ * longer busy.
+ */
 ICDGEN_API icd_status_t
 icd_erase_init(icd_erase_t *erase, const icd_link_t *link, uint8_t type, uint8_t counter, bool all);
 
-/** Formats the medium: done when the node is no longer busy. */
+/** Initialize the formatting of the medium. It ends when the node is no longer busy. */
 ICDGEN_API icd_status_t icd_format_init(icd_format_t *format, const icd_link_t *link);
 
 #endif /* ICDGEN_WIRE_ERASE_H */

@@ -14,7 +14,7 @@ static inline icd_event_t icdgen_event(icd_event_kind_t kind, uint8_t id)
     return event;
 }
 
-/* Whether a time has come; times may wrap. */
+/* Return whether a time is reached. Times may wrap around. */
 static inline bool icdgen_reached(uint32_t now, uint32_t time)
 {
     return now - time < UINT32_C(0x80000000);

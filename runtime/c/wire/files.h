@@ -8,19 +8,22 @@
 
 /* ---- hole maps and the index file -------------------------------------------------------------------------------- */
 
-/** Makes the map of a block of so many packets, none of which was received. ICD_ERROR_RANGE if there are too many. */
+/**
+ * Initialize the map of a block of `packets` packets, all of them missing. Return ICD_ERROR_RANGE if a block cannot
+ * have so many packets.
+ */
 ICDGEN_API icd_status_t icd_hole_map_init(const icd_link_t *link, uint8_t *map, uint32_t packets);
 
-/** Marks a packet as received. ICD_ERROR_RANGE if the block has no packet of that number. */
+/** Mark packet `number` as received. Return ICD_ERROR_RANGE if the block has no such packet. */
 ICDGEN_API icd_status_t icd_hole_map_set(const icd_link_t *link, uint8_t *map, uint32_t packets, uint32_t number);
 
-/** Whether the map says that the packet was received. The block has a packet of that number. */
+/** Return whether packet `number` is marked as received. The block must have such a packet. */
 ICDGEN_API bool icd_hole_map_get(const icd_link_t *link, const uint8_t *map, uint32_t number);
 
-/** Packets of a block that were not received. */
+/** Return the number of missing packets of a block. */
 ICDGEN_API uint32_t icd_hole_map_count(const icd_link_t *link, const uint8_t *map, uint32_t packets);
 
-/** An entry of the index file; `time` is packed. */
+/** An entry of the index file. `time` is packed; see icd_dos_time_unpack(). */
 typedef struct {
     uint32_t type;
     uint32_t counter;
@@ -31,11 +34,14 @@ typedef struct {
     size_t meta_length;
 } icd_index_entry_t;
 
-/** Reads an entry, whose meta-data stay where they are. */
+/** Decode an entry. `entry->meta` points into `bytes`. */
 ICDGEN_API icd_status_t
 icd_index_entry_decode(const icd_link_t *link, const uint8_t *bytes, size_t length, icd_index_entry_t *entry);
 
-/** Writes an entry. ICD_ERROR_RANGE if a number does not fit, ICD_ERROR_LENGTH if the meta-data have another length. */
+/**
+ * Encode an entry. Return ICD_ERROR_RANGE if a number does not fit into its field, ICD_ERROR_LENGTH if the meta-data
+ * have the wrong length or the buffer is too small.
+ */
 ICDGEN_API icd_status_t
 icd_index_entry_encode(const icd_link_t *link, const icd_index_entry_t *entry, uint8_t *bytes, size_t capacity);
 

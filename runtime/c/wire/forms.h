@@ -3,7 +3,7 @@
 
 #include "../icdgen.h"
 
-/* ---- what the ICD says about a node ------------------------------------------------------------------------------ */
+/* ---- description of the protocol of a node ----------------------------------------------------------------------- */
 
 typedef enum { ICD_BUS_UART = 0, ICD_BUS_I2C = 1, ICD_BUS_CAN = 2 } icd_bus_t;
 
@@ -12,9 +12,9 @@ typedef enum { ICD_TELECOMMAND = 0, ICD_TELEMETRY = 1 } icd_direction_t;
 /** Flags of a telecommand. */
 #define ICD_ACKNOWLEDGED 1u  /**< The node acknowledges it. */
 #define ICD_EXPECTS_RESET 2u /**< The node restarts instead. */
-#define ICD_SETTING 4u       /**< It sets what can be got back, so it may be sent again. */
+#define ICD_SETTING 4u       /**< It sets a configuration that can be read back, so it may be sent again. */
 
-/** A message under its id in one direction. */
+/** A message with its id in one direction. */
 typedef struct {
     uint8_t id;
     uint8_t flags;
@@ -63,14 +63,14 @@ typedef struct {
     uint32_t code;
 } icd_error_code_t;
 
-/* A table of checksums, unless there are to be none. */
+/* Lookup table of a CRC; NULL if tables are disabled. */
 #ifdef ICDGEN_NO_TABLES
 #define ICDGEN_TABLE(table) NULL
 #else
 #define ICDGEN_TABLE(table) (table)
 #endif
 
-/* Parts that a program may leave out: for it the ICD does not describe them. */
+/* Optional parts. A part that is left out is treated as if the ICD did not describe it. */
 #ifdef ICDGEN_NO_FILES
 #define ICDGEN_OF_FILES(part) NULL
 #else
@@ -100,8 +100,8 @@ typedef struct {
     bool has_empty;
     /** Checksum of no bytes, if it is not the result of the algorithm. */
     uint32_t empty;
-    const uint8_t *table8;   /**< Of a width of up to 8 bits. */
-    const uint16_t *table16; /**< Of a greater one; both NULL: it is computed without. */
+    const uint8_t *table8;   /**< For a width of up to 8 bits. */
+    const uint16_t *table16; /**< For a greater width. Both NULL: computed without a table. */
 } icd_crc_form_t;
 
 /** The optional checksum of telecommands and frames. */
@@ -157,7 +157,7 @@ typedef struct {
     uint32_t packet_timeout;
 } icd_can_extended_t;
 
-/** CAN. Message types are -1 where the ICD has none; they stand in the order of icd_can_kind_t. */
+/** CAN. The types are indexed by icd_can_kind_t; -1: the ICD has no such type. */
 typedef struct {
     /** Address of the node. */
     uint8_t node_address;
@@ -172,13 +172,13 @@ typedef struct {
     const icd_can_extended_t *extended; /**< NULL if there are no messages of several packets. */
 } icd_can_form_t;
 
-/** A bit of the log mask: the frame that it selects, id -1 for none, and its bytes. */
+/** A bit of the log mask: id and length of the frame that it selects. The id is -1 if it selects none. */
 typedef struct {
     int16_t id;
     uint16_t length;
 } icd_log_bit_t;
 
-/** The mask of a log. Frames stand in slots, in the order of rising bits. */
+/** The mask of a log. Each selected frame has a slot, in ascending order of the bits. */
 typedef struct {
     /** Length of the mask. */
     uint8_t size;
@@ -188,7 +188,7 @@ typedef struct {
     uint16_t slot_bytes;
     /** Value of the bytes after a short frame. */
     uint8_t fill;
-    const icd_log_bit_t *bits; /**< One for every bit of the mask. */
+    const icd_log_bit_t *bits; /**< One entry for each bit of the mask. */
 } icd_log_mask_form_t;
 
 /** A number of several bytes. */
@@ -245,7 +245,7 @@ typedef struct {
     icd_part_t type, counter, checksum, size, time, meta;
 } icd_index_form_t;
 
-/** What a field means for a procedure. */
+/** Role of a field in a procedure. */
 typedef enum {
     ICD_ROLE_TYPE,
     ICD_ROLE_COUNTER,
@@ -271,21 +271,21 @@ typedef enum {
     ICD_ROLE_PROGRAM
 } icd_role_t;
 
-/** Where the field of a role lies, in bits. */
+/** Position of the field with a role, in bits. */
 typedef struct {
     icd_role_t role;
     uint16_t at;
     uint16_t bits;
 } icd_place_t;
 
-/** A message that plays a part in a procedure; an id is -1 where it has none in that direction. */
+/** A message used in a procedure. An id is -1 if the message does not exist in this direction. */
 typedef struct {
     int16_t telecommand;
     int16_t telemetry;
     uint16_t length;
     uint8_t place_count;
     const icd_place_t *places;
-    const uint8_t *fresh; /**< The frame before values are put into it. */
+    const uint8_t *fresh; /**< Initial content of the frame. */
 } icd_step_t;
 
 /** A message that carries a piece of the hole map. */
@@ -296,7 +296,7 @@ typedef struct {
     uint16_t at;
 } icd_hole_map_message_t;
 
-/** A bit for each packet of a block. */
+/** Hole map: one bit for each packet of a block. */
 typedef struct {
     /** Length of the map. */
     uint16_t bytes;
@@ -312,7 +312,7 @@ typedef struct {
     const icd_hole_map_message_t *messages;
 } icd_hole_map_form_t;
 
-/** Files and their blocks. An id is -1 where there are no download packets on that bus. */
+/** Files and their blocks. `packet_ids` are indexed by icd_bus_t; -1: no download packets on this bus. */
 typedef struct {
     /** Bytes of the file in a packet. */
     uint16_t packet_bytes;

@@ -9,10 +9,10 @@
 
 /* ---- I2C --------------------------------------------------------------------------------------------------------- */
 
-/** The checksum of a message's data. The node has checksums. */
+/** Compute the checksum of the data of a message. The link must describe checksums. */
 ICDGEN_API uint32_t icd_checksum(const icd_link_t *link, uint8_t id, const uint8_t *data, size_t length);
 
-/** Id, data and, if asked for, the checksum of a telecommand: what is written on I2C, and framed on the UART. */
+/** Encode a telecommand: id, data and, if `checked`, the checksum. I2C writes these bytes; the UART frames them. */
 ICDGEN_API icd_status_t icd_i2c_write(
     const icd_link_t *link,
     uint8_t id,
@@ -23,10 +23,13 @@ ICDGEN_API icd_status_t icd_i2c_write(
     size_t capacity,
     size_t *written);
 
-/** Bytes to read for a frame. */
+/** Get the number of bytes to read for a frame. */
 ICDGEN_API icd_status_t icd_i2c_read_length(const icd_link_t *link, uint8_t id, bool checked, size_t *length);
 
-/** The bytes of the frame in what was read; ICD_ERROR_LENGTH or ICD_ERROR_CHECKSUM if it is not as it must be. */
+/**
+ * Check the bytes that were read and get the length of the frame at their beginning. Return ICD_ERROR_LENGTH or
+ * ICD_ERROR_CHECKSUM if the reply is not valid.
+ */
 ICDGEN_API icd_status_t icd_i2c_reply(
     const icd_link_t *link, uint8_t id, const uint8_t *bytes, size_t length, bool checked, size_t *frame_length);
 

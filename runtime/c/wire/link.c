@@ -40,7 +40,7 @@ ICDGEN_API const icd_message_t *icd_find_message(const icd_link_t *link, icd_dir
     return NULL;
 }
 
-/* A number of several bytes in the node's byte order. */
+/* Read a number of several bytes in the byte order of the node. */
 static inline uint32_t icdgen_number(const icd_link_t *link, const uint8_t *bytes, size_t count)
 {
     uint32_t number = 0;
@@ -50,7 +50,7 @@ static inline uint32_t icdgen_number(const icd_link_t *link, const uint8_t *byte
     return number;
 }
 
-/* The reverse; ICD_ERROR_RANGE if it does not fit. */
+/* Write a number of several bytes. Return ICD_ERROR_RANGE if it does not fit. */
 static inline icd_status_t icdgen_put_number(const icd_link_t *link, uint8_t *bytes, size_t count, uint32_t number)
 {
     for (size_t i = 0; i < count; ++i) {
@@ -70,7 +70,7 @@ static inline const icd_place_t *icdgen_place(const icd_step_t *step, icd_role_t
     return NULL;
 }
 
-/* The raw value of a role in a frame, 0 if the frame has no such role. */
+/* Return the raw value of the field with a role; 0 if the frame has no such field. */
 static inline uint32_t icdgen_get(const icd_link_t *link, const icd_step_t *step, const uint8_t *frame, icd_role_t role)
 {
     const icd_place_t *const place = icdgen_place(step, role);
@@ -90,7 +90,7 @@ static inline uint32_t icdgen_get(const icd_link_t *link, const icd_step_t *step
     return value;
 }
 
-/* Puts the raw value of a role into a frame in which its bits are 0. */
+/* Write the raw value of the field with a role. Its bits in the frame must be 0. */
 static inline void icdgen_put(
     const icd_link_t *link, const icd_step_t *step, uint8_t *frame, icd_role_t role, uint32_t value)
 {
@@ -109,7 +109,7 @@ static inline void icdgen_put(
     }
 }
 
-/* Whether a number is one of those that are allowed, of which NULL stands for all. */
+/* Return whether a number is in the list. NULL allows all numbers. */
 static inline bool icdgen_allowed(const uint8_t *allowed, size_t count, uint8_t number)
 {
     bool found = allowed == NULL;

@@ -7,7 +7,7 @@
 #include "procedure_forms.h"
 #include "stream_form.h"
 
-/** How a client waits and tries again, in milliseconds. */
+/** Timeouts (in milliseconds) and retries of a client. */
 typedef struct {
     /** Time-out of a reply, in milliseconds. */
     uint32_t reply_timeout;
@@ -19,20 +19,20 @@ typedef struct {
     uint32_t poll_timeout;
 } icd_client_settings_t;
 
-/** Everything about the protocol of a node. What the ICD does not describe is NULL. */
+/** Description of the protocol of a node. Parts that the ICD does not describe are NULL. */
 typedef struct {
-    const char *const *nodes; /**< Whose messages it has: its own, then those of the nodes that it includes. */
+    const char *const *nodes; /**< Names of the node and of the nodes that it includes. */
     uint16_t node_count;
     bool little; /**< Byte order of numbers. */
     bool msb0;   /**< Bit 0 of a byte is the most significant one. */
     uint8_t telemetry_first, telemetry_last;
-    const icd_message_t *telecommands; /**< By rising id. */
-    const icd_message_t *telemetry;    /**< By rising id. */
+    const icd_message_t *telecommands; /**< In ascending order of the ids. */
+    const icd_message_t *telemetry;    /**< In ascending order of the ids. */
     uint16_t telecommand_count, telemetry_count;
-    uint32_t longest_telecommand; /**< Bytes with id and checksum, and so the next two. */
+    uint32_t longest_telecommand; /**< Largest size in bytes, with id and checksum. */
     uint32_t longest_reply;
     uint32_t longest;
-    uint32_t longest_data; /**< Without. */
+    uint32_t longest_data; /**< Largest size in bytes, without id and checksum. */
     int32_t node_type;     /**< -1 if the ICD has none. */
     int32_t interface_version;
     icd_client_settings_t client;
@@ -41,10 +41,10 @@ typedef struct {
     uint32_t no_error;
     const icd_framing_t *framing;
     const icd_acknowledge_t *acknowledge;
-    int16_t i2c_address;      /**< Of 7 bits, -1 if the ICD has none. */
-    bool i2c_repeated_start;  /**< A read may follow its write without a stop; else there must be one. */
-    int32_t boot_ms;          /**< How long the boot program waits, -1 if the ICD does not say. */
-    const icd_step_t *polled; /**< The frame that tells what became of a telecommand. */
+    int16_t i2c_address;      /**< 7-bit address, -1 if the ICD has none. */
+    bool i2c_repeated_start;  /**< Whether a read may follow its write without a stop. */
+    int32_t boot_ms;          /**< Waiting time of the boot program in ms, -1 if unknown. */
+    const icd_step_t *polled; /**< Frame that reports the result of a telecommand. */
     const icd_can_form_t *can;
     const icd_checksum_form_t *checksum;
     const icd_crc_form_t *crc16;
@@ -63,23 +63,23 @@ typedef struct {
     const icd_operation_form_t *program_copy;
     const icd_operation_form_t *program_information;
     const icd_step_t *identification;
-    const icd_stream_form_t *stream; /**< Then ids have up to 32 bits, and nothing else of the link is described. */
+    const icd_stream_form_t *stream; /**< Framing. If present, ids have up to 32 bits and the other parts are NULL. */
 } icd_link_t;
 
-/** Whether the node has the messages of that one, which is so of itself and of those that it includes. */
+/** Return whether `node` is the node of this link or a node that it includes. */
 ICDGEN_API bool icd_has_messages_of(const icd_link_t *link, const char *node);
 
-/** The message of an id; NULL if the node has none. */
+/** Return the message with this id; NULL if the node has none. */
 ICDGEN_API const icd_message_t *icd_find_message(const icd_link_t *link, icd_direction_t direction, unsigned id);
 
-/** Who the node is. */
+/** Identity of a node. */
 typedef struct {
     uint32_t node_type;
     uint32_t interface_version;
-    bool matches; /**< Whether both are those of the ICD, as far as it has them. */
+    bool matches; /**< Whether both equal the values of the ICD, if it has them. */
 } icd_identity_t;
 
-/** What an identification frame tells, to be called before anything else is believed. */
+/** Decode an identification frame. Call this first and check `matches` before you use other messages of the node. */
 ICDGEN_API icd_status_t
 icd_identify(const icd_link_t *link, const uint8_t *frame, size_t length, icd_identity_t *identity);
 

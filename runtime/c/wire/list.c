@@ -45,12 +45,12 @@ static inline void icdgen_list_frame(icd_list_t *list, const uint8_t *frame, siz
         icdgen_end(procedure, ICD_TIMED_OUT);
         return;
     } else {
-        /* perhaps the node has not gone on yet */
+        /* the node may not have advanced yet */
     }
     (void)memcpy(list->last, frame, length);
     list->has_last = true;
     list->again++;
-    /* Sent once: if only its acknowledge was lost, the next frame tells that it arrived. */
+    /* Sent only once: the next frame shows whether it arrived, even if the acknowledge is lost. */
     icdgen_command(procedure, &procedure->link->list->advance, false, ICDGEN_LIST_ADVANCED);
     procedure->tolerant = true;
 }

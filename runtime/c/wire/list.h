@@ -9,7 +9,7 @@
 #include "sizes.h"
 #include "procedure.h"
 
-/** A file of the node; `time` is packed. */
+/** A file of the node. `size` is in bytes; `time` is packed, see icd_dos_time_unpack(). */
 typedef struct {
     uint32_t type;
     uint32_t counter;
@@ -18,15 +18,15 @@ typedef struct {
     uint32_t checksum;
 } icd_file_t;
 
-/** Is told of each file. */
+/** Callback for each file. `file` is valid during the call. */
 typedef void icd_file_fn(void *context, const icd_file_t *file);
 
-/** Lists the files. `procedure` goes to the functions of icd_procedure_t. */
+/** Listing of the files. Pass `&list.procedure` to the icd_procedure_...() functions. */
 typedef struct {
     icd_procedure_t procedure;
     icd_file_fn *on_file;
     void *context;
-    uint32_t again; /* how often the same frame came in a row */
+    uint32_t again; /* number of identical frames in a row */
     bool has_last;
     uint8_t last[ICD_STEP_BYTES];
 } icd_list_t;

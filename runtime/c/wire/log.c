@@ -122,7 +122,7 @@ ICDGEN_API icd_status_t icd_log_write_header(
     return ICD_OK;
 }
 
-/* Frames into their slots; ICD_ERROR_LENGTH if there are more or fewer, or one has another length. */
+/* Write frames into their slots. Return ICD_ERROR_LENGTH if their number or the length of a frame is wrong. */
 static inline icd_status_t icdgen_log_slots_write(
     const icd_link_t *link,
     const uint8_t *mask,

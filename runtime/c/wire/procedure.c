@@ -18,7 +18,7 @@ static inline void icdgen_wait(icd_procedure_t *procedure, uint32_t until)
     procedure->until = until;
 }
 
-/* Requests a frame. */
+/* Request a frame. */
 static inline void icdgen_ask(icd_procedure_t *procedure, int16_t id, uint8_t state)
 {
     (void)memset(&procedure->request, 0, sizeof procedure->request);
@@ -30,7 +30,7 @@ static inline void icdgen_ask(icd_procedure_t *procedure, int16_t id, uint8_t st
     procedure->state = state;
 }
 
-/* A telecommand as a fresh message has it; values are put into `data` then. */
+/* Prepare a telecommand with its initial content. The caller then writes values into `data`. */
 static inline void icdgen_command(icd_procedure_t *procedure, const icd_step_t *step, bool repeat, uint8_t state)
 {
     if (step->fresh != NULL) {
@@ -48,7 +48,10 @@ static inline void icdgen_command(icd_procedure_t *procedure, const icd_step_t *
     procedure->state = state;
 }
 
-/* Requests the frame until its flag is as wanted, or its error flag is set; `state` is told of that frame. */
+/*
+ * Poll a frame until its flag has the wanted value or its error flag is set. The procedure then continues in `state`
+ * with this frame.
+ */
 static inline void icdgen_poll(
     icd_procedure_t *procedure,
     const icd_step_t *step,
@@ -66,7 +69,7 @@ static inline void icdgen_poll(
     procedure->poll_end = procedure->now + timeout;
 }
 
-/* Whether the frame is about what was asked for. */
+/* Return whether the frame belongs to the requested program. */
 static inline bool icdgen_is_meant(const icd_procedure_t *procedure, const uint8_t *frame)
 {
     const icd_step_t *const step = procedure->polled;
@@ -74,7 +77,7 @@ static inline bool icdgen_is_meant(const icd_procedure_t *procedure, const uint8
         icdgen_get(procedure->link, step, frame, ICD_ROLE_PROGRAM) == procedure->program;
 }
 
-/* Whether polling goes on after this outcome. */
+/* Return whether polling continues after this outcome. */
 static inline bool icdgen_polls_on(icd_procedure_t *procedure, const icd_event_t *outcome)
 {
     const icd_step_t *const step = procedure->polled;
@@ -132,8 +135,8 @@ ICDGEN_API bool icd_procedure_next(icd_procedure_t *procedure, uint32_t now, icd
 }
 
 /*
- * A refusal with a code that the ICD does not have is a damaged acknowledge, which tells nothing: what may be repeated
- * is asked again, and else it is as if none had come.
+ * A negative acknowledge with a code that the ICD does not have is treated as damaged: a request that may be repeated
+ * is sent again, any other is treated as if no acknowledge was received.
  */
 static inline void icdgen_damaged(icd_procedure_t *procedure, const icd_event_t *event)
 {
@@ -165,7 +168,7 @@ ICDGEN_API void icd_procedure_event(icd_procedure_t *procedure, uint32_t now, co
             icdgen_resume(procedure, event);
         }
     } else {
-        /* it is of no concern */
+        /* not related to this procedure */
     }
 }
 

@@ -11,63 +11,70 @@
 
 /* ---- procedures -------------------------------------------------------------------------------------------------- */
 
-/** How a procedure ended. */
+/** State and result of a procedure. */
 typedef enum {
     ICD_RUNNING,
     ICD_DONE,
-    ICD_REFUSED,   /**< The node refused a request without which it cannot go on. */
-    ICD_TIMED_OUT, /**< No reply to such a request, or a flag never became what was waited for. */
-    ICD_PARAMETER, /**< The node cannot load this block. */
-    ICD_LENGTH,    /**< The block, or a frame, has another length than was asked for. */
-    ICD_ROUNDS,    /**< Packets were still missing after so many rounds. */
-    ICD_CHECKSUM,  /**< After so many rounds the checksum was still wrong. */
-    ICD_FAILED     /**< The node tells that what it was asked for failed. */
+    ICD_REFUSED,   /**< The node rejected a necessary request. */
+    ICD_TIMED_OUT, /**< No reply to a necessary request, or a flag did not change in time. */
+    ICD_PARAMETER, /**< The node cannot load the block. */
+    ICD_LENGTH,    /**< A block or frame has a different length than requested. */
+    ICD_ROUNDS,    /**< Packets are still missing after the maximum number of rounds. */
+    ICD_CHECKSUM,  /**< The checksum is still wrong after the maximum number of rounds. */
+    ICD_FAILED     /**< The node reports that the operation failed. */
 } icd_result_t;
 
 typedef enum { ICDGEN_WANT_NOTHING, ICDGEN_WANT_REQUEST, ICDGEN_WANT_TIME } icdgen_want_t;
 
 typedef struct icd_procedure icd_procedure_t;
 
-/** What all procedures share. It says which request comes next and is told what became of it. */
+/**
+ * Common state of all procedures. A procedure returns the next request and processes its outcome. All members except
+ * `result` are internal.
+ */
 struct icd_procedure {
     const icd_link_t *link;
     icd_result_t result;
     uint32_t now;
-    uint32_t until;        /* when a wait ends */
-    icd_request_t request; /* that comes next, or whose outcome is waited for */
+    uint32_t until;        /* time at which a wait ends */
+    icd_request_t request; /* the next request, or the request in progress */
     icdgen_want_t want;
     bool started;
-    bool asked;               /* the request was given out */
-    bool tolerant;            /* it may end in any way */
-    uint32_t damaged;         /* acknowledges of it that were */
-    const icd_step_t *polled; /* the frame that is polled until a flag is as wanted */
+    bool asked;               /* the request was returned to the caller */
+    bool tolerant;            /* the procedure continues after any outcome of the request */
+    uint32_t damaged;         /* number of damaged acknowledges of the request */
+    const icd_step_t *polled; /* frame that is polled until its flag has the value `wanted` */
     icd_role_t flag;
     bool wanted;
-    uint8_t program; /* of which the frame must be, if it says of which one it is */
+    uint8_t program; /* expected program, if the frame contains its number */
     uint32_t interval;
     uint32_t poll_end;
     uint8_t state;
-    uint8_t data[ICD_STEP_BYTES]; /* of the request */
+    uint8_t data[ICD_STEP_BYTES]; /* data of the request */
     void (*resume)(
-        icd_procedure_t *procedure, const icd_event_t *outcome); /* outcome NULL: at the start, after a wait */
+        icd_procedure_t *procedure, const icd_event_t *outcome); /* outcome is NULL at the start and after a wait */
     void (*packet)(icd_procedure_t *procedure, uint32_t number, const uint8_t *data, size_t length);
 };
 
-/** The next request, once; false while there is nothing to send. It lasts until the next call. */
+/**
+ * Get the next request. Each request is returned once and is valid until the next call. `now` is in milliseconds.
+ * Return false if there is nothing to send.
+ */
 ICDGEN_API bool icd_procedure_next(icd_procedure_t *procedure, uint32_t now, icd_request_t *request);
 
-/** Takes an event of the client; those that are of no concern are ignored. */
+/** Pass an event of the client to the procedure. Unrelated events are ignored. */
 ICDGEN_API void icd_procedure_event(icd_procedure_t *procedure, uint32_t now, const icd_event_t *event);
 
 /**
- * When icd_procedure_next() wants to be called again. False while a request is ready, which is before the first call
- * and after an outcome: it may be called at once; false also while an outcome is awaited, and at the end.
+ * Get the time in milliseconds at which icd_procedure_next() must be called again. Return false if the procedure is not
+ * waiting for a time: before the first call and after an outcome (call icd_procedure_next() at once), while a request
+ * is in progress, and at the end.
  */
 ICDGEN_API bool icd_procedure_deadline(const icd_procedure_t *procedure, uint32_t *deadline);
 
 /**
- * Gives the client the next request as soon as there is one and the client is free. `on_event` is that of the client,
- * and hands each event to icd_procedure_event().
+ * Start the next request of the procedure if there is one and the client is idle. `on_event` is the callback that is
+ * also passed to the client; it must pass each event to icd_procedure_event().
  */
 ICDGEN_API icd_status_t icd_procedure_step(
     icd_procedure_t *procedure, icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context);

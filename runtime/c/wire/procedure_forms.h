@@ -4,7 +4,7 @@
 #include "../icdgen.h"
 #include "forms.h"
 
-/** Listing files. Times are in milliseconds, here and below. */
+/** Listing files. */
 typedef struct {
     /** Returns to the first file. */
     icd_step_t reset;
@@ -72,9 +72,9 @@ typedef struct {
     uint32_t rounds;
     /** Size of a destination in bytes: no file may be larger; 0 if the ICD does not say. */
     uint32_t destination_bytes;
-    /** The destinations that are supported; NULL: all. */
+    /** Supported destinations; NULL: all. */
     const uint8_t *destinations;
-    /** How many they are. */
+    /** Their number. */
     uint16_t destinations_count;
 } icd_upload_form_t;
 
@@ -90,7 +90,7 @@ typedef struct {
     uint32_t timeout;
 } icd_erase_form_t;
 
-/** What a telecommand starts for a stored program, and a frame tells the end of. */
+/** An operation on a stored program: a telecommand starts it, and a frame reports its end. */
 typedef struct {
     /** Starts it. */
     icd_step_t request;
@@ -100,9 +100,9 @@ typedef struct {
     uint32_t poll_interval;
     /** Longest duration, in milliseconds. */
     uint32_t timeout;
-    /** The programs for which this is supported; NULL: all. */
+    /** Supported programs; NULL: all. */
     const uint8_t *programs;
-    /** How many they are. */
+    /** Their number. */
     uint16_t programs_count;
 } icd_operation_form_t;
 

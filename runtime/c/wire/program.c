@@ -7,7 +7,7 @@
 
 enum { ICDGEN_PROGRAM_START, ICDGEN_PROGRAM_BEGUN, ICDGEN_PROGRAM_ENDED };
 
-/* The node says that it is done, or that it failed. */
+/* Process the frame in which the node reports success or failure. */
 static inline void icdgen_program_ended(icd_program_operation_t *operation, const uint8_t *frame)
 {
     const icd_link_t *const link = operation->procedure.link;

@@ -8,24 +8,24 @@
 #include "events.h"
 #include "procedure.h"
 
-/** What a node does with a stored program. `procedure` goes to the functions of icd_procedure_t. */
+/** Operation on a stored program. Pass `&operation.procedure` to the icd_procedure_...() functions. */
 typedef struct {
     icd_procedure_t procedure;
     const icd_operation_form_t *form;
-    uint32_t size;     /**< Of the program in bytes, once the information is ICD_DONE. */
-    uint32_t checksum; /**< Likewise. */
+    uint32_t size;     /**< Size of the program in bytes. Valid if icd_program_information_t ended with ICD_DONE. */
+    uint32_t checksum; /**< Checksum of the program. Valid as `size`. */
 } icd_program_operation_t;
 
 typedef icd_program_operation_t icd_program_copy_t;
 typedef icd_program_operation_t icd_program_information_t;
 
 /**
- * Copies a stored program to where it can run. ICD_ERROR_RANGE if it may not be asked for, ICD_ERROR_UNSUPPORTED if the
- * node has no such operation.
+ * Initialize copying of a stored program to the memory from which it runs. Return ICD_ERROR_RANGE if the program is not
+ * supported, ICD_ERROR_UNSUPPORTED if the node has no such operation.
  */
 ICDGEN_API icd_status_t icd_program_copy_init(icd_program_copy_t *copy, const icd_link_t *link, uint8_t program);
 
-/** Reads `size` and `checksum` of a stored program; refuses as icd_program_copy_init() does. */
+/** Initialize reading of `size` and `checksum` of a stored program. Errors: see icd_program_copy_init(). */
 ICDGEN_API icd_status_t
 icd_program_information_init(icd_program_information_t *information, const icd_link_t *link, uint8_t program);
 

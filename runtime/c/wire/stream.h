@@ -6,20 +6,21 @@
 #include "link.h"
 #include "crc.h"
 
-/* ---- messages in an envelope, in a stream of bytes or in packets ------------------------------------------------- */
+/* ---- messages with header and trailer, in a stream of bytes or in packets ---------------------------------------- */
 
-/** Values of the fields that the sender chooses, by icd_envelope_role_t. */
+/** Values of the header and trailer fields that the sender chooses, indexed by icd_envelope_role_t. */
 typedef struct {
     uint32_t of[ICD_ENVELOPE_VALUES];
 } icd_envelope_values_t;
 
-/** Those of the ICD, and 0. */
+/** Return the values of the ICD for this direction. Fields without a value in the ICD are 0. */
 ICDGEN_API icd_envelope_values_t icd_envelope_values(const icd_link_t *link, icd_direction_t direction);
 
 /**
- * A message as it is sent; `values` NULL: those of the ICD. ICD_ERROR_UNKNOWN_ID if there is none of that id,
- * ICD_ERROR_LENGTH if its data have another length or the buffer is too small (NODE_LINE_BYTES are enough),
- * ICD_ERROR_RANGE if a value does not fit its field.
+ * Encode a message with header, trailer and delimiters. `values`: fields that the sender chooses, or NULL for the
+ * values of the ICD. A buffer of NODE_LINE_BYTES is always enough.
+ * Return ICD_ERROR_UNKNOWN_ID if there is no message with this id, ICD_ERROR_LENGTH if the data have the wrong length
+ * or the buffer is too small, ICD_ERROR_RANGE if a value does not fit into its field.
  */
 ICDGEN_API icd_status_t icd_stream_encode(
     const icd_link_t *link,
@@ -32,18 +33,19 @@ ICDGEN_API icd_status_t icd_stream_encode(
     size_t capacity,
     size_t *written);
 
-/** Sends messages of a direction, and counts them. */
+/** Encoder of the messages of one direction, with sequence numbers. */
 typedef struct {
     const icd_link_t *link;
     icd_direction_t direction;
-    icd_envelope_values_t values; /**< Those of the ICD, until others are set; the sequence is the first one. */
+    icd_envelope_values_t values; /**< Initially those of the ICD. The sequence is the first number. */
     uint32_t *sequences;
     size_t sequence_count;
 } icd_stream_sender_t;
 
 /**
- * `sequences` are NODE_SEQUENCES numbers, the last ones that were sent; with less, some messages are not counted.
- * ICD_ERROR_UNSUPPORTED if the ICD describes no envelope.
+ * Initialize a sender. `sequences` is an array for the last sequence numbers sent, with NODE_SEQUENCES elements; with
+ * fewer elements, some messages are not counted. It must stay valid while the sender is in use.
+ * Return ICD_ERROR_UNSUPPORTED if the ICD describes no framing.
  */
 ICDGEN_API icd_status_t icd_stream_sender_init(
     icd_stream_sender_t *sender,
@@ -52,7 +54,7 @@ ICDGEN_API icd_status_t icd_stream_sender_init(
     uint32_t *sequences,
     size_t sequence_count);
 
-/** A message as it is sent, with the next sequence number, as icd_stream_encode(). */
+/** Encode a message with the next sequence number. For the other parameters and errors see icd_stream_encode(). */
 ICDGEN_API icd_status_t icd_stream_send(
     icd_stream_sender_t *sender,
     uint32_t id,
@@ -64,58 +66,59 @@ ICDGEN_API icd_status_t icd_stream_send(
 
 typedef enum {
     ICD_STREAM_MESSAGE = 0,
-    ICD_STREAM_GAP = 1,        /**< Before this message `missing` others did not come; 0: it came again. */
-    ICD_STREAM_CHECKSUM = 2,   /**< Dropped: the checksum is wrong. */
-    ICD_STREAM_LENGTH = 3,     /**< Dropped: no message, or not that one, has such a length. */
-    ICD_STREAM_UNKNOWN_ID = 4, /**< Dropped: the node has no such message. */
-    ICD_STREAM_OVERRUN = 5,    /**< Dropped: longer than the buffer. */
-    ICD_STREAM_FRAMING = 6,    /**< Dropped: a constant or a delimiter is not what it must be. */
-    ICD_STREAM_DONE = 7,       /**< Client: the request succeeded; with its reply, if it has one. */
+    ICD_STREAM_GAP = 1,        /**< `missing` messages were lost before this one; 0: this message is a repetition. */
+    ICD_STREAM_CHECKSUM = 2,   /**< Dropped: wrong checksum. */
+    ICD_STREAM_LENGTH = 3,     /**< Dropped: wrong length of the message. */
+    ICD_STREAM_UNKNOWN_ID = 4, /**< Dropped: the node has no message with this id. */
+    ICD_STREAM_OVERRUN = 5,    /**< Dropped: the message is longer than the buffer. */
+    ICD_STREAM_FRAMING = 6,    /**< Dropped: wrong constant or delimiter. */
+    ICD_STREAM_DONE = 7,       /**< Client: the request succeeded; `data` is its reply, if it has one. */
     ICD_STREAM_TIMEOUT = 8     /**< Client: no reply. */
 } icd_stream_kind_t;
 
-/** What a decoder or a client found, valid during the call that tells of it. */
+/** An event of a decoder or a client. The event and its data are valid only during the call of the callback. */
 typedef struct {
     icd_stream_kind_t kind;
-    bool has_id; /**< Whether so much of it could be read. */
+    bool has_id; /**< Whether the id could be read. */
     uint32_t id;
     const uint8_t *data;
     size_t length;
     icd_envelope_values_t values;
     uint32_t missing;
-    const icd_link_t *link;    /**< Of a client: that of the node, else NULL. */
-    icd_direction_t direction; /**< Of DONE and TIMEOUT: that of the request, and so the id. */
-    uint32_t attempts;         /**< Of DONE and TIMEOUT: how often it was sent. */
-    bool has_reply;            /**< Of DONE: whether telemetry answered it, ... */
-    uint32_t reply;            /**< ... its id. */
+    const icd_link_t *link;    /**< Client: link of the node; otherwise NULL. */
+    icd_direction_t direction; /**< DONE, TIMEOUT: direction of the request; `id` is its id. */
+    uint32_t attempts;         /**< DONE, TIMEOUT: number of times the request was sent. */
+    bool has_reply;            /**< DONE: whether the reply is telemetry. */
+    uint32_t reply;            /**< DONE: id of this telemetry. */
 } icd_stream_event_t;
 
 typedef void icd_stream_event_fn(void *context, const icd_stream_event_t *event);
 
-/** Finds the messages of a direction in a stream. */
+/** Decoder that finds the messages of one direction in a stream. */
 typedef struct {
     const icd_link_t *link;
     const icd_stream_form_t *form;
     icd_direction_t direction;
     uint8_t *buffer;
     size_t capacity;
-    size_t length; /**< Bytes in the buffer. */
-    size_t needed; /* bytes in the buffer with which the next thing is decided, where a field tells the length */
+    size_t length; /**< Number of bytes in the buffer. */
+    size_t needed; /* with a length field: number of bytes in the buffer that the next step needs */
     uint32_t *sequences;
     size_t sequence_count;
-    size_t pending;     /**< Bytes of the stream about which nothing is decided yet. */
-    uint64_t discarded; /**< Bytes of the stream that became part of no message. */
+    size_t pending;     /**< Received bytes that may still become part of a message. */
+    uint64_t discarded; /**< Number of received bytes that are not part of a message. */
     bool escaped;
-    bool zero;    /* whether a zero follows the block of COBS */
-    uint8_t left; /* bytes that the block of COBS still has */
+    bool zero;    /* COBS: whether a zero follows the block */
+    uint8_t left; /* COBS: remaining bytes of the block */
     bool faulty;
     icd_stream_kind_t fault;
 } icd_stream_decoder_t;
 
 /**
- * `buffer` holds the longest message that is taken; that of the node is NODE_LONGEST bytes long. `sequences` are
- * NODE_SEQUENCES numbers, by which gaps are noticed; with less, gaps of some messages are not. ICD_ERROR_LENGTH if
- * header and trailer do not fit the buffer.
+ * Initialize a decoder. `buffer` must be large enough for the longest message to be received; NODE_LONGEST bytes are
+ * enough for all. `sequences` has NODE_SEQUENCES elements and serves to detect gaps; with fewer elements, some gaps are
+ * not detected. Both must stay valid while the decoder is in use.
+ * Return ICD_ERROR_LENGTH if header and trailer do not fit into the buffer.
  */
 ICDGEN_API icd_status_t icd_stream_decoder_init(
     icd_stream_decoder_t *decoder,
@@ -126,7 +129,10 @@ ICDGEN_API icd_status_t icd_stream_decoder_init(
     uint32_t *sequences,
     size_t sequence_count);
 
-/** Takes the next bytes of the stream, or a packet. Events do not depend on how a stream was cut. */
+/**
+ * Pass received bytes to the decoder: a piece of the stream of any size, or one packet. Events do not depend on how a
+ * stream is divided into pieces.
+ */
 ICDGEN_API void icd_stream_feed(
     icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, icd_stream_event_fn *on_event, void *context);
 

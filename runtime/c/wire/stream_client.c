@@ -5,7 +5,7 @@
 #include "events.c"
 #include "stream_decode.c"
 
-/* Most bytes of data that a telecommand has. */
+/* Return the largest number of data bytes of a telecommand. */
 static inline size_t icdgen_request_bytes(const icd_stream_form_t *form)
 {
     size_t most = 0;
@@ -74,7 +74,7 @@ ICDGEN_API bool icd_stream_client_deadline(const icd_stream_client_t *client, ui
     return waits;
 }
 
-/* Who is told of the events of a client. */
+/* A client and its event callback. */
 typedef struct {
     icd_stream_client_t *client;
     uint32_t now;
@@ -88,7 +88,7 @@ static inline void icdgen_stream_ignore(void *context, const icd_stream_event_t 
     (void)event;
 }
 
-/* Tells how a request ended. */
+/* Report the outcome of a request. */
 static inline void icdgen_stream_outcome(
     const icdgen_stream_call_t *call, icd_stream_kind_t kind, const icd_stream_slot_t *slot, icd_stream_event_t event)
 {
@@ -102,7 +102,7 @@ static inline void icdgen_stream_outcome(
     call->on_event(call->context, &told);
 }
 
-/* The reply may still come, or come again. */
+/* Remember that the reply may still arrive, or arrive again. */
 static inline void icdgen_stream_remember(const icd_stream_client_t *client, icd_stream_slot_t *slot, uint32_t since)
 {
     if (slot->was_taken && slot->has_reply) {
@@ -112,7 +112,7 @@ static inline void icdgen_stream_remember(const icd_stream_client_t *client, icd
     }
 }
 
-/* Sends a request, for the first time or again. */
+/* Send a request, for the first time or again. */
 static inline void icdgen_stream_transmit(const icdgen_stream_call_t *call, icd_stream_slot_t *slot)
 {
     icd_stream_client_t *const client = call->client;
@@ -131,7 +131,7 @@ static inline void icdgen_stream_transmit(const icdgen_stream_call_t *call, icd_
     }
 }
 
-/* The telecommand that asks for telemetry: the first one that it answers and that can have no data. */
+/* Return the telecommand that requests telemetry: the first one without data whose reply it is. */
 static inline const icd_stream_row_t *icdgen_stream_asking(const icd_stream_form_t *form, uint32_t id)
 {
     for (size_t i = 0; i < form->row_counts[ICD_TELECOMMAND]; ++i) {
@@ -143,7 +143,9 @@ static inline const icd_stream_row_t *icdgen_stream_asking(const icd_stream_form
     return NULL;
 }
 
-/* Room for a request with that reply; NULL if there is none, or another one waits for it. */
+/*
+ * Return a free slot for a request with this reply; NULL if there is none, or another request waits for the same reply.
+ */
 static inline icd_stream_slot_t *icdgen_stream_free(const icd_stream_client_t *client, bool has_reply, uint32_t reply)
 {
     icd_stream_slot_t *found = NULL;
@@ -154,13 +156,13 @@ static inline icd_stream_slot_t *icdgen_stream_free(const icd_stream_client_t *c
         } else if (has_reply && slot->reply == reply) {
             return NULL;
         } else {
-            /* it waits for something else */
+            /* it waits for another reply */
         }
     }
     return found;
 }
 
-/* Whether values of the envelope fit. */
+/* Return whether header and trailer values fit into their fields. */
 static inline bool icdgen_stream_fits(const icd_stream_client_t *client, uint32_t id, size_t length)
 {
     const icd_stream_sender_t *const sender = &client->sender;
@@ -169,7 +171,7 @@ static inline bool icdgen_stream_fits(const icd_stream_client_t *client, uint32_
     return icdgen_envelope_fill(client->link->stream, ICD_TELECOMMAND, id, length, &sender->values, header, trailer);
 }
 
-/* For how long that telemetry may be a late reply to another request. */
+/* Return how long telemetry may be a late reply to a previous request. */
 static inline uint32_t icdgen_stream_late(const icd_stream_client_t *client, uint32_t now, uint32_t reply)
 {
     uint32_t longest = 0;

@@ -7,60 +7,70 @@
 #include "stream.h"
 #include "client.h"
 
-/* ---- client over envelopes --------------------------------------------------------------------------------------- */
+/* ---- client for messages with header and trailer ----------------------------------------------------------------- */
 
-/** A request. `repeat`: whether it may be sent again although it may have arrived; of telemetry it always may. */
+/**
+ * A request. `repeat`: whether the client may send it again if the node may already have received it. Telemetry
+ * requests are always repeated.
+ */
 typedef struct {
     icd_direction_t direction;
     uint32_t id;
     bool repeat;
-    bool has_reply; /**< Whether `reply` is the id of the telemetry that answers a telecommand; else as the ICD says. */
+    bool has_reply; /**< Whether `reply` is the id of the reply to a telecommand. If not, the ICD decides. */
     uint32_t reply;
     const uint8_t *data;
     size_t length;
 } icd_stream_request_t;
 
-/** Room for a request, and the memory of the one before that may still be answered. */
+/** Memory for a request, and for the previous request if its reply may still arrive. */
 typedef struct {
     icd_client_state_t state;
     icd_direction_t direction;
     uint32_t id;
     uint32_t sent; /* id of the telecommand */
-    uint8_t *data; /* of the telecommand */
+    uint8_t *data; /* data of the telecommand */
     size_t length;
     bool repeat;
     bool has_reply;
     uint32_t reply;
     uint32_t attempts;
-    uint32_t until;  /* when the state ends by itself */
-    bool untaken;    /* to be sent, ... */
-    uint32_t ticket; /* ... in this order */
+    uint32_t until;  /* time at which the state ends */
+    bool untaken;    /* the request is still to be sent */
+    uint32_t ticket; /* order of sending */
     bool was_taken;  /* sent at least once */
-    bool late;       /* telemetry of late_id may come until late_end */
+    bool late;       /* telemetry with late_id may arrive until late_end */
     uint32_t late_id;
     uint32_t late_end;
 } icd_stream_slot_t;
 
-/** Requests that different telemetry answers, each from sending to its outcome, and what comes unasked. */
+/**
+ * A client for messages with framing. Several requests may be in progress if their replies differ. Also reports
+ * unsolicited telemetry.
+ */
 typedef struct {
     const icd_link_t *link;
-    icd_client_settings_t settings; /**< May be changed while no request is going on, and so `sender.values`. */
+    icd_client_settings_t
+        settings; /**< Timeouts and retries. They and `sender.values` may be changed while no request is in progress. */
     icd_stream_sender_t sender;
     icd_stream_decoder_t decoder;
     icd_stream_slot_t *slots;
     size_t slot_count;
     uint32_t tickets;
-    bool ready; /* it was begun without an error */
+    bool ready; /* initialized without an error */
 } icd_stream_client_t;
 
-/** Bytes of buffer for so many requests: NODE_LONGEST, and NODE_REQUEST_BYTES for each. */
+/**
+ * Return the buffer size in bytes for this number of requests: NODE_LONGEST, plus NODE_REQUEST_BYTES for each request.
+ */
 ICDGEN_API size_t icd_stream_client_bytes(const icd_link_t *link, size_t requests);
 
 /**
- * Begins a client that has as many requests under way as there are `slots`, with the times and the values of the ICD.
- * `sequences` are twice NODE_SEQUENCES numbers; with less, some messages are not counted. ICD_ERROR_UNSUPPORTED if the
- * ICD describes no envelope, ICD_ERROR_LENGTH if the buffer is smaller than icd_stream_client_bytes(); it refuses every
- * request then.
+ * Initialize a client with the timeouts and values of the ICD. `slot_count` is the number of requests that can be in
+ * progress at the same time. `sequences` has twice NODE_SEQUENCES elements; with fewer elements, some messages are not
+ * counted. All three arrays must stay valid while the client is in use.
+ * Return ICD_ERROR_UNSUPPORTED if the ICD describes no framing, ICD_ERROR_LENGTH if `size` is less than
+ * icd_stream_client_bytes(). After an error the client rejects all requests.
  */
 ICDGEN_API icd_status_t icd_stream_client_init(
     icd_stream_client_t *client,
@@ -72,15 +82,19 @@ ICDGEN_API icd_status_t icd_stream_client_init(
     uint32_t *sequences,
     size_t sequence_count);
 
-/** When icd_stream_client_tick() wants to be called at the latest; false: not at all. */
+/**
+ * Get the time in milliseconds at which icd_stream_client_tick() must be called at the latest. Return false if no
+ * request is in progress.
+ */
 ICDGEN_API bool icd_stream_client_deadline(const icd_stream_client_t *client, uint32_t *deadline);
 
 /**
- * Begins a request; its data are copied. One that nothing answers is ICD_STREAM_DONE at once, which nobody is told of
- * if `on_event` is NULL. ICD_ERROR_UNKNOWN_ID; ICD_ERROR_BUSY while another one waits for the same reply, or no slot is
- * free; ICD_ERROR_LENGTH; ICD_ERROR_RANGE if a value of the envelope does not fit; ICD_ERROR_UNSUPPORTED for telemetry
- * that no telecommand without parameters is answered with, and if the client could not be begun. Nothing has happened
- * then.
+ * Start a request. The data are copied. `now` is in milliseconds. A request without a reply is reported at once as
+ * ICD_STREAM_DONE; `on_event` may be NULL to ignore this.
+ * Return ICD_ERROR_UNKNOWN_ID if the node has no such message, ICD_ERROR_BUSY if another request waits for the same
+ * reply or no slot is free, ICD_ERROR_LENGTH if the data have the wrong length, ICD_ERROR_RANGE if a header or trailer
+ * value does not fit into its field, or ICD_ERROR_UNSUPPORTED if no telecommand without parameters requests this
+ * telemetry or the client is not initialized. After an error the client is unchanged.
  */
 ICDGEN_API icd_status_t icd_stream_client_start(
     icd_stream_client_t *client,
@@ -89,10 +103,10 @@ ICDGEN_API icd_status_t icd_stream_client_start(
     icd_stream_event_fn *on_event,
     void *context);
 
-/** Asks for telemetry by the telecommand that it answers. */
+/** Request telemetry by sending the telecommand that it replies to. Errors: see icd_stream_client_start(). */
 ICDGEN_API icd_status_t icd_stream_client_request(icd_stream_client_t *client, uint32_t now, uint32_t id);
 
-/** Sends a telecommand, which is answered as the ICD says. */
+/** Send a telecommand. The ICD decides which reply it has. Errors: see icd_stream_client_start(). */
 ICDGEN_API icd_status_t icd_stream_client_send(
     icd_stream_client_t *client,
     uint32_t now,
@@ -103,15 +117,21 @@ ICDGEN_API icd_status_t icd_stream_client_send(
     icd_stream_event_fn *on_event,
     void *context);
 
-/** Sends a telecommand that telemetry `reply` answers, whatever the ICD says. */
+/** Send a telecommand and wait for telemetry `reply`, regardless of the ICD. Errors: see icd_stream_client_start(). */
 ICDGEN_API icd_status_t icd_stream_client_ask(
     icd_stream_client_t *client, uint32_t now, uint32_t id, const uint8_t *data, size_t length, uint32_t reply);
 
-/** Writes the next message to be sent; false if there is none, or it does not fit: NODE_LINE_BYTES always do. */
+/**
+ * Write the next message to send into the buffer. Return false if there is none or the buffer is too small;
+ * NODE_LINE_BYTES are always enough.
+ */
 ICDGEN_API bool icd_stream_client_output(
     icd_stream_client_t *client, uint8_t *buffer, size_t capacity, size_t *written);
 
-/** Takes the next bytes of the stream, or a packet. Telemetry that nobody waits for is ICD_STREAM_MESSAGE. */
+/**
+ * Pass received bytes to the client: a piece of the stream of any size, or one packet. Unsolicited telemetry is
+ * reported as ICD_STREAM_MESSAGE. `now` is in milliseconds.
+ */
 ICDGEN_API void icd_stream_client_received(
     icd_stream_client_t *client,
     uint32_t now,
@@ -120,17 +140,25 @@ ICDGEN_API void icd_stream_client_received(
     icd_stream_event_fn *on_event,
     void *context);
 
-/** Lets time pass. */
+/**
+ * Process timeouts: send again or end the request whose time is up. Call at the time of the deadline function at the
+ * latest; calling more often is harmless. `now` is the current time in milliseconds.
+ */
 ICDGEN_API void icd_stream_client_tick(
     icd_stream_client_t *client, uint32_t now, icd_stream_event_fn *on_event, void *context);
 
-/** Gives up all requests, without events, and what of them has not been taken. A late reply is ICD_STREAM_MESSAGE. */
+/**
+ * Cancel all requests without events, and drop their remaining output. A late reply is reported as ICD_STREAM_MESSAGE.
+ */
 ICDGEN_API void icd_stream_client_cancel(icd_stream_client_t *client);
 
-/** Gives up the requests of that message only. */
+/** Cancel only the requests of this message. */
 ICDGEN_API void icd_stream_client_cancel_request(icd_stream_client_t *client, icd_direction_t direction, uint32_t id);
 
-/** Whether the event brings that telemetry of that node, or of one that includes it: unasked, or as a reply. */
+/**
+ * Return whether the event contains telemetry `id` of `node`, or of a node that includes `node`, unsolicited or as a
+ * reply.
+ */
 ICDGEN_API bool icd_is_telemetry(const icd_stream_event_t *event, const char *node, uint32_t id);
 
 #endif /* ICDGEN_WIRE_STREAM_CLIENT_H */

@@ -4,10 +4,10 @@
 #include "envelope.h"
 #include "stream_encode.c"
 
-/* What a frame turned out to be: taken; one beyond doubt, though of no use; perhaps none at all. */
+/* Result of checking a frame: accepted; certainly a frame, but not usable; possibly not a frame. */
 typedef enum { ICDGEN_TAKEN, ICDGEN_PROVEN, ICDGEN_DOUBTFUL } icdgen_verdict_t;
 
-/* Who is told. */
+/* The event callback. */
 typedef struct {
     icd_stream_event_fn *on_event;
     void *context;
@@ -73,7 +73,7 @@ ICDGEN_API icd_status_t icd_stream_decoder_init(
     return ICD_OK;
 }
 
-/* Tells of sequence numbers that did not come. */
+/* Report missing sequence numbers. */
 static inline void icdgen_stream_count(
     icd_stream_decoder_t *decoder, const icd_stream_row_t *row, uint32_t number, const icdgen_listener_t *listener)
 {
@@ -118,7 +118,7 @@ static inline void icdgen_stream_message(
     listener->on_event(listener->context, &event);
 }
 
-/* Whether the constants of the header, as far as it came, and of the trailer, if `trailer` is given, are right. */
+/* Return whether the constants are correct in the received part of the header and, unless NULL, in the trailer. */
 static inline bool icdgen_stream_constants(
     const icd_stream_decoder_t *decoder, const uint8_t *frame, size_t count, const uint8_t *trailer)
 {
@@ -135,7 +135,7 @@ static inline bool icdgen_stream_constants(
     return true;
 }
 
-/* Bytes of a header of which `left` came with which more can be said of it: those up to the next constant, or all. */
+/* Return the number of header bytes needed for the next check after `left` bytes: up to the next constant, or all. */
 static inline size_t icdgen_stream_next(const icd_stream_form_t *form, size_t left)
 {
     size_t next = form->header_bytes;
@@ -149,14 +149,14 @@ static inline size_t icdgen_stream_next(const icd_stream_form_t *form, size_t le
     return next;
 }
 
-/* What the field of the length says that the data have; negative if that is none. */
+/* Return the data length according to the length field; negative if it is invalid. */
 static inline int64_t icdgen_stream_length(
     const icd_stream_form_t *form, const icd_envelope_field_t *field, const uint8_t *frame, const uint8_t *trailer)
 {
     return ICDGEN_I64(icdgen_envelope_get(field, field->in_trailer ? trailer : frame)) - form->length_plus;
 }
 
-/* Tells of a frame. */
+/* Report a frame. */
 static inline icdgen_verdict_t icdgen_stream_judge(
     icd_stream_decoder_t *decoder, const uint8_t *frame, size_t count, const icdgen_listener_t *listener)
 {
@@ -211,7 +211,7 @@ static inline icdgen_verdict_t icdgen_stream_judge(
     return ICDGEN_TAKEN;
 }
 
-/* What the buffer has from `at` on: bytes to go on, 0 while that is not decided. */
+/* Check the buffer from `at` on. Return the number of bytes to advance; 0 if more bytes are needed. */
 static inline size_t icdgen_stream_front(icd_stream_decoder_t *decoder, size_t at, const icdgen_listener_t *listener)
 {
     const icd_stream_form_t *const form = decoder->form;
@@ -245,7 +245,7 @@ static inline size_t icdgen_stream_front(icd_stream_decoder_t *decoder, size_t a
     return taken;
 }
 
-/* Bytes where a field of the length delimits messages. There is room: a whole buffer is always decided. */
+/* Process bytes of a stream with a length field. There is always room: a full buffer can always be decided. */
 static inline void icdgen_stream_append(
     icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, const icdgen_listener_t *listener)
 {
@@ -291,7 +291,7 @@ static inline void icdgen_stream_put(icd_stream_decoder_t *decoder, uint32_t byt
     }
 }
 
-/* A byte of a frame between delimiters. */
+/* Process a byte of a frame between delimiters. */
 static inline void icdgen_stream_inside(icd_stream_decoder_t *decoder, uint8_t byte)
 {
     const icd_delimiter_t delimiter = decoder->form->delimited_by;
@@ -324,7 +324,7 @@ static inline void icdgen_stream_inside(icd_stream_decoder_t *decoder, uint8_t b
     }
 }
 
-/* A delimiter came. */
+/* Process a delimiter. */
 static inline void icdgen_stream_end(icd_stream_decoder_t *decoder, const icdgen_listener_t *listener)
 {
     bool taken = false;
@@ -336,7 +336,7 @@ static inline void icdgen_stream_end(icd_stream_decoder_t *decoder, const icdgen
     } else if (decoder->length != 0u) {
         taken = icdgen_stream_judge(decoder, decoder->buffer, decoder->length, listener) == ICDGEN_TAKEN;
     } else {
-        taken = true; /* there was nothing */
+        taken = true; /* empty frame between two delimiters */
     }
     decoder->discarded += taken ? 0u : decoder->pending;
     decoder->pending = 0;
@@ -355,7 +355,7 @@ ICDGEN_API void icd_stream_feed(
         } else if (icdgen_stream_judge(decoder, bytes, count, &listener) != ICDGEN_TAKEN) {
             decoder->discarded += count;
         } else {
-            /* it was a message */
+            /* the frame was a message */
         }
         return;
     }
@@ -373,7 +373,7 @@ ICDGEN_API void icd_stream_feed(
         } else if (!decoder->faulty) {
             icdgen_stream_inside(decoder, bytes[i]);
         } else {
-            /* until the next delimiter all is dropped */
+            /* all bytes up to the next delimiter are dropped */
         }
     }
 }

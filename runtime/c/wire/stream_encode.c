@@ -3,7 +3,7 @@
 
 #include "envelope.h"
 
-#define ICDGEN_ENVELOPE_BYTES 64u /* of a header or trailer, at most */
+#define ICDGEN_ENVELOPE_BYTES 64u /* largest header or trailer */
 
 #define ICDGEN_SLIP_END 0xC0u
 #define ICDGEN_SLIP_ESCAPE 0xDBu
@@ -12,16 +12,16 @@
 #define ICDGEN_HDLC_FLAG 0x7Eu
 #define ICDGEN_HDLC_ESCAPE 0x7Du
 #define ICDGEN_HDLC_FLIP 0x20u
-#define ICDGEN_COBS_WHOLE 0xFFu /* a block that has no zero behind it */
+#define ICDGEN_COBS_WHOLE 0xFFu /* length byte of a full block, which no zero follows */
 
-/* Where a message is written, with what delimits it. */
+/* Output buffer for a message with its delimiters. */
 typedef struct {
     icd_delimiter_t delimiter;
     uint8_t *buffer;
     size_t capacity;
     size_t count;
-    size_t block; /* of COBS: where its length stands */
-    bool ended;   /* of COBS: the last block was a whole one */
+    size_t block; /* COBS: position of the length byte of the block */
+    bool ended;   /* COBS: the last block was a full one */
     bool full;
 } icdgen_line_t;
 
@@ -35,7 +35,7 @@ static inline void icdgen_line_byte(icdgen_line_t *line, uint32_t byte)
     }
 }
 
-/* Ends a block of COBS, whose length stands before it, and begins the next one. */
+/* COBS: write the length byte in front of the block and start the next block. */
 static inline void icdgen_line_block(icdgen_line_t *line)
 {
     if (!line->full) {
@@ -82,14 +82,14 @@ static inline void icdgen_line_delimiter(icdgen_line_t *line, bool begins)
     } else if (line->delimiter == ICD_DELIMITED_BY_HDLC) {
         icdgen_line_byte(line, ICDGEN_HDLC_FLAG);
     } else if (line->delimiter == ICD_DELIMITED_BY_COBS && begins) {
-        icdgen_line_byte(line, 0); /* becomes the length of the first block */
+        icdgen_line_byte(line, 0); /* placeholder for the length of the first block */
     } else if (line->delimiter == ICD_DELIMITED_BY_COBS) {
         if (!line->ended) {
             icdgen_line_block(line);
         }
         icdgen_line_byte(line, 0);
     } else {
-        /* nothing delimits it but its length */
+        /* delimited by its length only */
     }
 }
 
@@ -115,7 +115,7 @@ ICDGEN_API icd_envelope_values_t icd_envelope_values(const icd_link_t *link, icd
     return values;
 }
 
-/* Writes all fields but the checksum; false if a value does not fit. */
+/* Write all fields except the checksum. Return false if a value does not fit. */
 static inline bool icdgen_envelope_fill(
     const icd_stream_form_t *form,
     icd_direction_t direction,
@@ -148,7 +148,7 @@ static inline bool icdgen_envelope_fill(
     return true;
 }
 
-/* Bytes of the data without the zeros at their end, but for one. */
+/* Return the data length without trailing zeros, at least 1. */
 static inline size_t icdgen_without_zeros(const uint8_t *data, size_t length)
 {
     size_t left = length;

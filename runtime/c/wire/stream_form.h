@@ -4,9 +4,9 @@
 #include "../icdgen.h"
 #include "forms.h"
 
-/* ---- the envelope of a link, as fields with roles around the data ------------------------------------------------ */
+/* ---- framing of a link: header and trailer fields with roles ----------------------------------------------------- */
 
-/** What tells where a message ends; ICD_DELIMITED_BY_PACKET: whatever carries it. */
+/** How messages are delimited. ICD_DELIMITED_BY_PACKET: by the packets of the transport. */
 typedef enum {
     ICD_DELIMITED_BY_LENGTH = 0,
     ICD_DELIMITED_BY_SLIP = 1,
@@ -15,7 +15,7 @@ typedef enum {
     ICD_DELIMITED_BY_PACKET = 4
 } icd_delimiter_t;
 
-/** What a field of the envelope is. The first ones are those whose values the sender chooses. */
+/** Role of a header or trailer field. The sender chooses the values of the first ICD_ENVELOPE_VALUES roles. */
 typedef enum {
     ICD_ENVELOPE_SEQUENCE = 0,
     ICD_ENVELOPE_SOURCE = 1,
@@ -29,9 +29,12 @@ typedef enum {
     ICD_ENVELOPE_CHECKSUM = 9
 } icd_envelope_role_t;
 
-#define ICD_ENVELOPE_VALUES 6 /**< Roles whose values the sender chooses. */
+#define ICD_ENVELOPE_VALUES 6 /**< Number of roles whose values the sender chooses. */
 
-/** A field: `size` bytes from byte `at` of the header or trailer on are a number, shifted and cut to `bits`. */
+/**
+ * A header or trailer field. The number in the `size` bytes from byte `at` on is shifted right by `shift` and masked to
+ * `bits` bits.
+ */
 typedef struct {
     icd_envelope_role_t role;
     bool in_trailer;
@@ -40,7 +43,7 @@ typedef struct {
     uint8_t shift;
     uint8_t bits;
     bool little;
-    uint32_t values[2]; /**< Of a constant, or unless another is chosen: in telecommands, in telemetry. */
+    uint32_t values[2]; /**< Constant or default value in telecommands and in telemetry. */
 } icd_envelope_field_t;
 
 typedef enum {
@@ -51,37 +54,37 @@ typedef enum {
     ICD_CHECK_XOR = 4
 } icd_check_kind_t;
 
-/** The checksum; kinds other than a CRC use init, xor_out and width of the form. */
+/** The checksum. Kinds other than a CRC use `init`, `xor_out` and `width` of `crc`. */
 typedef struct {
     icd_check_kind_t kind;
     icd_crc_form_t crc;
-    uint8_t covered_from;    /**< The byte of the header from which on it is computed. */
-    uint8_t covered_trailer; /**< Bytes of the trailer that it covers. */
-    bool is_seeded;          /**< Whether the seed of the message is covered, as a byte after all others. */
+    uint8_t covered_from;    /**< First byte of the header that it covers. */
+    uint8_t covered_trailer; /**< Number of bytes of the trailer that it covers. */
+    bool is_seeded;          /**< Whether the seed of the message is appended as the last byte that it covers. */
 } icd_check_form_t;
 
-/** A message: its id, the lengths that its data can have, and its seed. */
+/** A message: id, shortest and longest data length in bytes, and seed. */
 typedef struct {
     uint32_t id;
     uint16_t least;
     uint16_t most;
-    bool cuts_zeros; /**< Whether zeros at the end of the data are not sent, but for one byte. */
+    bool cuts_zeros; /**< Whether trailing zeros of the data are not sent, except for the first byte. */
     uint8_t seed;
-    bool is_answered; /**< Whether it is a telecommand that is answered with telemetry, that of the id `reply`. */
+    bool is_answered; /**< Telecommand: whether telemetry `reply` is its reply. */
     uint32_t reply;
 } icd_stream_row_t;
 
-/** How messages are put into a stream of bytes, or into packets. */
+/** Framing of messages in a stream of bytes or in packets. */
 typedef struct {
     icd_delimiter_t delimited_by;
     uint8_t header_bytes;
     uint8_t trailer_bytes;
-    int32_t length_plus; /**< What the field of the length has more than the data have bytes. */
-    bool per_id;         /**< Whether each id counts its own sequence. */
+    int32_t length_plus; /**< Value of the length field minus the number of data bytes. */
+    bool per_id;         /**< Whether each id has its own sequence counter. */
     const icd_envelope_field_t *fields;
     uint8_t field_count;
     const icd_check_form_t *check;
-    const icd_stream_row_t *rows[2]; /**< Telecommands and telemetry, by rising id. */
+    const icd_stream_row_t *rows[2]; /**< Telecommands and telemetry, in ascending order of the ids. */
     uint16_t row_counts[2];
 } icd_stream_form_t;
 

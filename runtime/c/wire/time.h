@@ -18,15 +18,15 @@ typedef struct {
     uint16_t second;
 } icd_dos_time_t;
 
-/** The name of the first part that the calendar or the clock does not have; NULL if all is well. */
+/** Return the name of the first invalid part, such as "month"; NULL if the date and time are valid. */
 ICDGEN_API const char *icd_dos_time_wrong(const icd_dos_time_t *time);
 
-/** Unpacks a time, whatever it is; icd_dos_time_wrong() tells whether it exists. */
+/** Unpack a time without checking it. Use icd_dos_time_wrong() to check it. */
 ICDGEN_API icd_status_t icd_dos_time_unpack(const icd_link_t *link, uint32_t value, icd_dos_time_t *time);
 
 /**
- * Packs a time; what is finer than its resolution is cut off. ICD_ERROR_RANGE, with the name of the first part that
- * does not exist or does not fit in `wrong`.
+ * Pack a time, rounded down to the resolution of the format. Return ICD_ERROR_RANGE, and set `wrong` to the name of the
+ * first part that is invalid or does not fit.
  */
 ICDGEN_API icd_status_t
 icd_dos_time_pack(const icd_link_t *link, const icd_dos_time_t *time, uint32_t *value, const char **wrong);

@@ -83,14 +83,14 @@ icd_uart_decoder_init(icd_uart_decoder_t *decoder, const icd_link_t *link, uint8
 
 static inline void icdgen_uart_start(icd_uart_decoder_t *decoder)
 {
-    decoder->discarded += decoder->pending - 2u; /* all but the two bytes of the start itself */
+    decoder->discarded += decoder->pending - 2u; /* all except the two bytes of the start sequence */
     decoder->pending = 2;
     decoder->inside = true;
     decoder->escaped = false;
     decoder->length = 0;
 }
 
-/* Drops what was decided to be no message; an escape byte may still begin one. */
+/* Drop bytes that are not part of a message. A final escape byte is kept because it may start one. */
 static inline void icdgen_uart_outside(icd_uart_decoder_t *decoder, bool escaped)
 {
     decoder->discarded += decoder->pending - (escaped ? 1u : 0u);
@@ -134,7 +134,7 @@ static inline void icdgen_uart_end(icd_uart_decoder_t *decoder, icd_event_fn *on
     icdgen_uart_outside(decoder, false);
 }
 
-/* A byte that follows an escape byte within a message. */
+/* Process the byte after an escape byte within a message. */
 static inline void icdgen_uart_escaped(icd_uart_decoder_t *decoder, uint8_t byte, icd_event_fn *on_event, void *context)
 {
     const icd_framing_t *const framing = decoder->framing;
@@ -177,7 +177,7 @@ ICDGEN_API void icd_uart_feed(
     }
 }
 
-/* The slots of a log that a mask selects; what the mask lacks of its length counts as not selected. */
+/* Return the number of slots that a mask selects. Missing bytes of an incomplete mask count as 0. */
 static inline size_t icdgen_log_slots(const icd_link_t *link, const uint8_t *mask, size_t length)
 {
     size_t count = 0;

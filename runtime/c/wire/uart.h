@@ -9,55 +9,59 @@
 
 /* ---- UART -------------------------------------------------------------------------------------------------------- */
 
-/** Writes a message to the line piece by piece, so that no buffer must hold the whole. */
+/** Encoder that frames a message piece by piece, so that no buffer for the whole message is needed. */
 typedef struct {
     const icd_framing_t *framing;
     const uint8_t *message;
     size_t length;
     size_t at;
-    uint8_t next[2]; /* what comes next, begun with the start */
+    uint8_t next[2]; /* bytes to be written next, initially the start sequence */
     uint8_t pending;
     bool ended;
 } icd_uart_encoder_t;
 
-/** Begins a message: id and data, which must stay where they are until all is written. */
+/** Start to encode a message (id and data). `message` must stay valid until it is written completely. */
 ICDGEN_API icd_status_t
 icd_uart_encode_begin(icd_uart_encoder_t *encoder, const icd_link_t *link, const uint8_t *message, size_t length);
 
-/** Writes what fits the buffer; the count, 0 at the end of the message. */
+/** Write as many bytes as fit into the buffer. Return their number; 0 at the end of the message. */
 ICDGEN_API size_t icd_uart_encode_some(icd_uart_encoder_t *encoder, uint8_t *buffer, size_t capacity);
 
-/** The most bytes that a message of `length` bytes takes on the line. */
+/** Largest size in bytes of a framed message of `length` bytes. */
 #define ICD_UART_BYTES(length) (2u * (length) + 4u)
 
-/** A message, id and data, on the line; ICD_ERROR_LENGTH if it has no id or does not fit the buffer. */
+/** Frame a message (id and data). Return ICD_ERROR_LENGTH if the message is empty or the buffer is too small. */
 ICDGEN_API icd_status_t icd_uart_encode(
     const icd_link_t *link, const uint8_t *message, size_t length, uint8_t *buffer, size_t capacity, size_t *written);
 
-/** Finds the messages in a stream. */
+/** Decoder that finds the messages in a stream. */
 typedef struct {
     const icd_framing_t *framing;
     uint8_t *buffer;
     size_t capacity;
-    size_t length;      /**< Of the message so far. */
-    size_t pending;     /**< Bytes of the stream about which nothing is decided yet. */
-    uint64_t discarded; /**< Bytes of the stream that became part of no message. */
+    size_t length;      /**< Bytes of the current message received so far. */
+    size_t pending;     /**< Received bytes that may still become part of a message. */
+    uint64_t discarded; /**< Number of received bytes that are not part of a message. */
     bool inside;
     bool escaped;
 } icd_uart_decoder_t;
 
-/** `buffer` holds the longest message that is taken; that of the node is NODE_LONGEST bytes long. */
+/**
+ * Initialize a decoder. `buffer` must be large enough for the longest message to be received (NODE_LONGEST bytes are
+ * enough for all) and must stay valid while the decoder is in use.
+ */
 ICDGEN_API icd_status_t
 icd_uart_decoder_init(icd_uart_decoder_t *decoder, const icd_link_t *link, uint8_t *buffer, size_t capacity);
 
 /**
- * Takes the next bytes of the stream and tells of ICD_EVENT_MESSAGE, whose data begin with the id, UNEXPECTED_START,
- * PROTOCOL_ERROR, OVERRUN and EMPTY. Events do not depend on how the stream was cut.
+ * Pass received bytes to the decoder, in pieces of any size.
+ * Events: ICD_EVENT_MESSAGE (`data` starts with the id), UNEXPECTED_START, PROTOCOL_ERROR, OVERRUN and EMPTY. They do
+ * not depend on how the stream is divided into pieces.
  */
 ICDGEN_API void icd_uart_feed(
     icd_uart_decoder_t *decoder, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context);
 
-/** What a message from the node is, as far as its id and its length tell. `length` is not 0. */
+/** Return the kind of a message from the node, determined from its id and length. `length` must not be 0. */
 ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *message, size_t length);
 
 #endif /* ICDGEN_WIRE_UART_H */

@@ -19,14 +19,14 @@ enum {
     ICDGEN_UPLOAD_FINALIZED
 };
 
-/* Bytes of this block. */
+/* Return the number of bytes of the current block. */
 static inline uint32_t icdgen_upload_length(const icd_upload_t *upload)
 {
     const uint32_t left = upload->size - upload->sent;
     return left < upload->block ? left : upload->block;
 }
 
-/* Begins the block, for the first time or again. */
+/* Start the block, for the first time or again. */
 static inline void icdgen_upload_begin(icd_upload_t *upload)
 {
     icd_procedure_t *const procedure = &upload->procedure;
@@ -46,7 +46,7 @@ static inline void icdgen_upload_block(icd_upload_t *upload)
     }
 }
 
-/* The filled packet of that position. */
+/* Write the packet at this position, padded to full length. */
 static inline void icdgen_upload_packet(const icd_upload_t *upload, uint32_t position, uint8_t *packet)
 {
     const icd_files_form_t *const files = upload->procedure.link->files;
@@ -57,7 +57,7 @@ static inline void icdgen_upload_packet(const icd_upload_t *upload, uint32_t pos
         packet, upload->file + upload->sent + at, ICDGEN_SIZE(left < files->packet_bytes ? left : files->packet_bytes));
 }
 
-/* Sends the next packet that is missing; false if there is none behind those that were sent. */
+/* Send the next missing packet. Return false if none is left in this round. */
 static inline bool icdgen_upload_send(icd_upload_t *upload)
 {
     icd_procedure_t *const procedure = &upload->procedure;
@@ -77,7 +77,7 @@ static inline bool icdgen_upload_send(icd_upload_t *upload)
     return true;
 }
 
-/* Begins another round, or reads the checksum if no packet is missing. */
+/* Start another round, or request the checksum if no packet is missing. */
 static inline void icdgen_upload_round(icd_upload_t *upload)
 {
     icd_procedure_t *const procedure = &upload->procedure;
@@ -98,7 +98,7 @@ static inline void icdgen_upload_round(icd_upload_t *upload)
     (void)icdgen_upload_send(upload);
 }
 
-/* Reads the next piece of the hole map, and what it tells once all is read. */
+/* Request the next piece of the hole map. Evaluate it after the last piece. */
 static inline void icdgen_upload_map(icd_upload_t *upload)
 {
     const icd_hole_map_form_t *const form = upload->procedure.link->hole_map;
@@ -109,7 +109,7 @@ static inline void icdgen_upload_map(icd_upload_t *upload)
     }
 }
 
-/* Sends the next packet that is missing, or reads the hole map. */
+/* Send the next missing packet, or request the hole map. */
 static inline void icdgen_upload_next(icd_upload_t *upload)
 {
     if (!icdgen_upload_send(upload)) {
@@ -149,7 +149,7 @@ static inline uint32_t icdgen_upload_checksum(const icd_upload_t *upload)
     return icd_crc_result(&crc);
 }
 
-/* The block is not as it should be: once more, or the end. */
+/* Process a damaged block: start it again, or end the upload. */
 static inline void icdgen_upload_again(icd_upload_t *upload)
 {
     if (upload->rounds == upload->procedure.link->upload->rounds) {

@@ -11,24 +11,25 @@
 #include "procedure.h"
 #include "download.h"
 
-/** Uploads a file block by block. `procedure` goes to the functions of icd_procedure_t. */
+/** Upload of a file block by block. Pass `&upload.procedure` to the icd_procedure_...() functions. */
 typedef struct {
     icd_procedure_t procedure;
     uint8_t destination;
     const uint8_t *file;
     uint32_t size;
     uint32_t block;
-    uint8_t *missing; /* a bit for each packet of the block */
+    uint8_t *missing; /* one bit for each packet of the block */
     uint32_t sent;    /**< Progress: bytes committed. */
-    uint32_t count;   /* packets of this block */
-    uint32_t next;    /* the packet, or the message of the hole map, that comes next */
+    uint32_t count;   /* packets of the current block */
+    uint32_t next;    /* next packet, or next message of the hole map */
     uint32_t rounds;
 } icd_upload_t;
 
 /**
- * The file must stay where it is. `block`: bytes a block, 0 for those of the ICD. `bitmap` holds icd_block_bitmap()
- * bytes. ICD_ERROR_UNSUPPORTED if the node takes no uploads, ICD_ERROR_RANGE if the destination is not supported,
- * ICD_ERROR_LENGTH if it holds less than the file, or the bitmap is smaller.
+ * Initialize an upload of `size` bytes from `file`. `block`: bytes per block, or 0 for the block size of the ICD.
+ * `bitmap` needs icd_block_bitmap() bytes. `file` and `bitmap` must stay valid during the upload.
+ * Return ICD_ERROR_UNSUPPORTED if the node has no uploads, ICD_ERROR_RANGE if the destination is not supported,
+ * ICD_ERROR_LENGTH if the file is larger than the destination or the bitmap is too small.
  */
 ICDGEN_API icd_status_t icd_upload_init(
     icd_upload_t *upload,

@@ -193,7 +193,7 @@ def _link(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
 
     return {
         "node": node.name,
-        "about": comment([FILE, f"{words(node.model.title)}: how its messages travel."]),
+        "about": comment([FILE, f"{words(node.model.title)}: description of its protocol and sizes of buffers."]),
         "sizes": links.sizes(link),
         "tables": links.tables(link),
     }
@@ -205,7 +205,7 @@ def _client(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
     )
     common = {
         "node": node.name,
-        "about": comment([FILE, f"{words(node.model.title)}: a client that takes its messages only."]),
+        "about": comment([FILE, f"{words(node.model.title)}: client with one function per message."]),
         "includes": ["link.h", *headers],
         "telecommands": [(message, message.telecommand_id_name) for message in node.telecommands],
     }

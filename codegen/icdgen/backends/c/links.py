@@ -53,31 +53,39 @@ def sizes(link: LinkDescription) -> list[tuple[str, int, str]]:
     facts = link.facts
     if facts.stream:
         return _stream_sizes(facts.stream)
-    rows = [("LONGEST", facts.longest, "Bytes of the longest message of either direction, with id and checksum.")]
+    rows = [
+        ("LONGEST", facts.longest, "Size in bytes of the longest message in either direction, with id and checksum.")
+    ]
     slot = 1 + link.joined_bytes if facts.can else 0
     if facts.can:
-        rows.append(("CAN_SLOT_BYTES", slot, "Bytes that joining CAN packets takes for each sender at once."))
-    rows.append(("CLIENT_BYTES", facts.longest_telecommand + max(slot, facts.longest), "Bytes of a client's buffer."))
+        rows.append(("CAN_SLOT_BYTES", slot, "Buffer size in bytes of a CAN joiner, per slot."))
+    rows.append(
+        ("CLIENT_BYTES", facts.longest_telecommand + max(slot, facts.longest), "Buffer size of a client in bytes.")
+    )
     if facts.log_file and facts.mask:
         most = max(facts.mask.size + link.log_entry_bytes, facts.log_file.header_bytes)
-        rows.append(("LOG_BYTES", most, "Bytes of a log reader's buffer."))
+        rows.append(("LOG_BYTES", most, "Buffer size of a log reader in bytes."))
     if facts.files:
         packets = facts.packets_of(facts.files.block_bytes)
-        rows.append(("BLOCK_BYTES", packets * facts.files.packet_bytes, "Bytes of the largest block of a file."))
-        rows.append(("BLOCK_BITMAP_BYTES", -(-packets // 8), "Bytes of a bit for each packet of such a block."))
+        rows.append(
+            ("BLOCK_BYTES", packets * facts.files.packet_bytes, "Size in bytes of the largest block of a file.")
+        )
+        rows.append(
+            ("BLOCK_BITMAP_BYTES", -(-packets // 8), "Size in bytes of a bitmap for the packets of this block.")
+        )
     return rows
 
 
 def _stream_sizes(form: Stream) -> list[tuple[str, int, str]]:
     """Return the sizes of buffers of a node with packets."""
     return [
-        ("LONGEST", form.longest, "Bytes of a decoder's buffer: the longest message with its envelope."),
-        ("LINE_BYTES", form.longest_line, "Most bytes of a message on the line."),
-        ("SEQUENCES", form.sequences, "Numbers that a decoder remembers to notice gaps."),
+        ("LONGEST", form.longest, "Buffer size of a decoder in bytes: the longest message with header and trailer."),
+        ("LINE_BYTES", form.longest_line, "Largest size in bytes of an encoded message."),
+        ("SEQUENCES", form.sequences, "Number of sequence counters that a decoder or a sender needs."),
         (
             "REQUEST_BYTES",
             form.longest_request,
-            "Bytes of a client's buffer per request, in addition to the longest message.",
+            "Buffer size of a client per request in bytes, in addition to LONGEST.",
         ),
     ]
 

@@ -6,7 +6,7 @@ use crate::support::enumeration;
 
 /// BootSetProgramsList: an enumeration. Table 63.
 ///
-/// Held by Program Index in Set Boot Index.
+/// Used by Program Index in Set Boot Index.
 ///
 /// Note BOOT-009 (certain): Three enumerations of program places. BootSetProgramsList, ProgramsList
 /// and BootProgramsList overlap. The internal program is 1 in all, the bootloader 0 in one and 2 in
@@ -71,7 +71,7 @@ enumeration!(BootSetProgramsList: u8);
 
 /// ProgramsList: an enumeration. Table 66.
 ///
-/// Held by Program Index in Read Program Information and Program Information; Source Program Index
+/// Used by Program Index in Read Program Information and Program Information; Source Program Index
 /// in Copy Program to Internal Flash.
 ///
 /// ```

@@ -8,7 +8,7 @@ use crate::support::{message, Error};
 ///
 /// Starts the program in internal flash at once.
 ///
-/// The node restarts instead of acknowledging it.
+/// The node restarts instead of sending an acknowledge.
 ///
 /// Note BOOT-008 (open): Run Selected Program does not run what was selected elsewhere. Its name
 /// refers to a selection, the text to the internal flash program. What it does to the boot status,

@@ -4,7 +4,7 @@
 
 use crate::support::{message, Error};
 
-/// Cache enabled state: configuration, set by telecommand 3, got by telemetry 131, 1 byte. Table
+/// Cache enabled state: configuration, set by telecommand 3, read by telemetry 131, 1 byte. Table
 /// 48\.
 ///
 /// ```

@@ -4,7 +4,8 @@
 
 use crate::support::{message, put, take, Error};
 
-/// Current Unix Time: configuration, set by telecommand 2, got by telemetry 140, 6 bytes. Table 50.
+/// Current Unix Time: configuration, set by telecommand 2, read by telemetry 140, 6 bytes. Table
+/// 50\.
 ///
 /// ```
 /// use icd::common::CurrentUnixTime;

@@ -6,7 +6,7 @@ use crate::support::enumeration;
 
 /// FileType: an enumeration. Table 16.
 ///
-/// Held by File Type in Erase File, Load File Download Block and File Information.
+/// Used by File Type in Erase File, Load File Download Block and File Information.
 ///
 /// Note COM-037 (open): FileType begins at 2 and jumps to 15. Values 0, 1 and 5 to 14 are not
 /// explained. Value 0 ends the file list, since an entry of zeroes does.
@@ -91,7 +91,7 @@ enumeration!(FileType: u8);
 ///
 /// The SD card destinations are not supported.
 ///
-/// Held by Destination in Initiate File Upload and Finalize Upload Block.
+/// Used by Destination in Initiate File Upload and Finalize Upload Block.
 ///
 /// Note COM-045 (certain): Names of the flash areas differ between two lists. Flash program 1 of
 /// the upload is External Flash Program 1 of the bootloader, with the same number.
@@ -251,7 +251,7 @@ enumeration!(FileUploadDestination: u8);
 
 /// ResetCause: an enumeration. Table 29.
 ///
-/// Held by Cause of MCU Reset in Boot And Running Program Status.
+/// Used by Cause of MCU Reset in Boot And Running Program Status.
 ///
 /// ```
 /// use icd::common::enums::ResetCause;
@@ -408,7 +408,7 @@ enumeration!(ResetCause: u8);
 
 /// BootCause: an enumeration. Table 30.
 ///
-/// Held by Boot Cause in Boot And Running Program Status.
+/// Used by Boot Cause in Boot And Running Program Status.
 ///
 /// ```
 /// use icd::common::enums::BootCause;
@@ -501,7 +501,7 @@ enumeration!(BootCause: u8);
 
 /// BootProgramsList: an enumeration. Table 31.
 ///
-/// Held by Boot Program Index in Boot And Running Program Status; Program Index in Boot Index and
+/// Used by Boot Program Index in Boot And Running Program Status; Program Index in Boot Index and
 /// Status.
 ///
 /// ```
@@ -575,7 +575,7 @@ enumeration!(BootProgramsList: u8);
 /// Kept in flash. The bootloader counts up before each attempt, the program sets Boot Success once
 /// it runs.
 ///
-/// Held by Boot Status in Boot Index and Status.
+/// Used by Boot Status in Boot Index and Status.
 ///
 /// Note COM-070 (open): Boot Status: whether the third attempt still takes place. After a first
 /// failure the bootloader is to try twice more, three attempts in all. But the status is raised
@@ -666,7 +666,7 @@ enumeration!(BootStatus: u8);
 
 /// TcErrorReason: an enumeration. Table 40.
 ///
-/// Held by TC error status in Telecommand Acknowledge.
+/// Used by TC error status in Telecommand Acknowledge.
 ///
 /// ```
 /// use icd::common::enums::TcErrorReason;

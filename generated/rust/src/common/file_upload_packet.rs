@@ -8,7 +8,7 @@ use crate::support::{array, message, put, put_array, take, Error};
 ///
 /// One packet of a block. Packets may follow one another without a pause.
 ///
-/// The node does not acknowledge it.
+/// The node does not send an acknowledge.
 ///
 /// Note COM-041 (open): File upload is listed as common but described for the bootloader only. The
 /// messages of the upload are in the list common to both programs, the procedure belongs to the

@@ -4,7 +4,7 @@
 
 use crate::support::{array, message, put_array, Error};
 
-/// Hole Map 1: configuration, set by telecommand 120, got by telemetry 247, 16 bytes. Table 52.
+/// Hole Map 1: configuration, set by telecommand 120, read by telemetry 247, 16 bytes. Table 52.
 ///
 /// Packets 0 to 127 of a file block.
 ///

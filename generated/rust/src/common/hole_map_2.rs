@@ -4,7 +4,7 @@
 
 use crate::support::{array, message, put_array, Error};
 
-/// Hole Map 2: configuration, set by telecommand 121, got by telemetry 248, 16 bytes. Table 53.
+/// Hole Map 2: configuration, set by telecommand 121, read by telemetry 248, 16 bytes. Table 53.
 ///
 /// Packets 128 to 255 of a file block.
 ///

@@ -4,7 +4,7 @@
 
 use crate::support::{array, message, put_array, Error};
 
-/// Hole Map 3: configuration, set by telecommand 122, got by telemetry 249, 16 bytes. Table 54.
+/// Hole Map 3: configuration, set by telecommand 122, read by telemetry 249, 16 bytes. Table 54.
 ///
 /// Packets 256 to 383 of a file block.
 ///

@@ -4,7 +4,7 @@
 
 use crate::support::{array, message, put_array, Error};
 
-/// Hole Map 4: configuration, set by telecommand 123, got by telemetry 250, 16 bytes. Table 55.
+/// Hole Map 4: configuration, set by telecommand 123, read by telemetry 250, 16 bytes. Table 55.
 ///
 /// Packets 384 to 511 of a file block.
 ///

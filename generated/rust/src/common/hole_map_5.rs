@@ -4,7 +4,7 @@
 
 use crate::support::{array, message, put_array, Error};
 
-/// Hole Map 5: configuration, set by telecommand 124, got by telemetry 251, 16 bytes. Table 56.
+/// Hole Map 5: configuration, set by telecommand 124, read by telemetry 251, 16 bytes. Table 56.
 ///
 /// Packets 512 to 639 of a file block.
 ///

@@ -4,7 +4,7 @@
 
 use crate::support::{array, message, put_array, Error};
 
-/// Hole Map 6: configuration, set by telecommand 125, got by telemetry 252, 16 bytes. Table 57.
+/// Hole Map 6: configuration, set by telecommand 125, read by telemetry 252, 16 bytes. Table 57.
 ///
 /// Packets 640 to 767 of a file block.
 ///

@@ -4,7 +4,7 @@
 
 use crate::support::{array, message, put_array, Error};
 
-/// Hole Map 7: configuration, set by telecommand 126, got by telemetry 253, 16 bytes. Table 58.
+/// Hole Map 7: configuration, set by telecommand 126, read by telemetry 253, 16 bytes. Table 58.
 ///
 /// Packets 768 to 895 of a file block.
 ///

@@ -4,7 +4,7 @@
 
 use crate::support::{array, message, put_array, Error};
 
-/// Hole Map 8: configuration, set by telecommand 127, got by telemetry 254, 16 bytes. Table 59.
+/// Hole Map 8: configuration, set by telecommand 127, read by telemetry 254, 16 bytes. Table 59.
 ///
 /// Packets 896 to 1023 of a file block.
 ///

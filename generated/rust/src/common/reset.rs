@@ -9,7 +9,7 @@ use crate::support::{message, Error};
 /// Restarts the CubeComputer.
 ///
 /// Dangerous: The program that runs is stopped, and what it has not saved is lost. The node
-/// restarts instead of acknowledging it.
+/// restarts instead of sending an acknowledge.
 ///
 /// Note COM-028 (open): The Reset telecommand: acknowledged or not. Every telecommand is
 /// acknowledged, but this one restarts the program that would do it. Whether the reply comes first

@@ -4,8 +4,8 @@
 
 use crate::support::{message, put, take, Error};
 
-/// SRAM Scrub Parameters: configuration, set by telecommand 8, got by telemetry 134, 2 bytes. Table
-/// 49\.
+/// SRAM Scrub Parameters: configuration, set by telecommand 8, read by telemetry 134, 2 bytes.
+/// Table 49.
 ///
 /// ```
 /// use icd::common::SramScrubParameters;

@@ -4,7 +4,7 @@
 
 use crate::support::{message, Error};
 
-/// Unix Time Save to Flash: configuration, set by telecommand 9, got by telemetry 145, 2 bytes.
+/// Unix Time Save to Flash: configuration, set by telecommand 9, read by telemetry 145, 2 bytes.
 /// Table 51.
 ///
 /// When the Unix time is kept in flash, so that it survives a power cycle.

@@ -5,8 +5,8 @@
 use super::enums;
 use crate::support::{array, flags, message, put, put_array, take, Coded, Error, Scale};
 
-/// ADCS Configuration: configuration, set by telecommand 20, got by telemetry 206, 504 bytes. Table
-/// 192\.
+/// ADCS Configuration: configuration, set by telecommand 20, read by telemetry 206, 504 bytes.
+/// Table 192.
 ///
 /// Most configuration messages in one frame.
 ///

@@ -5,7 +5,7 @@
 use super::enums;
 use crate::support::{message, Coded, Error, Scale};
 
-/// ADCS Power Control: configuration, set by telecommand 11, got by telemetry 197, 3 bytes. Table
+/// ADCS Power Control: configuration, set by telecommand 11, read by telemetry 197, 3 bytes. Table
 /// 184\.
 ///
 /// Switches components on and off.

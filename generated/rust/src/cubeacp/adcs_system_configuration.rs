@@ -5,7 +5,7 @@
 use super::enums;
 use crate::support::{message, put, take, Coded, Error, Scale};
 
-/// ADCS System Configuration: configuration, set by telecommand 30, got by telemetry 225, 173
+/// ADCS System Configuration: configuration, set by telecommand 30, read by telemetry 225, 173
 /// bytes. Table 201.
 ///
 /// What is hard-coded: versions, ratings, calibration and pins.

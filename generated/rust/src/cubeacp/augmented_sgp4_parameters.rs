@@ -5,8 +5,8 @@
 use super::enums;
 use crate::support::{message, put, take, Coded, Error, Scale};
 
-/// Augmented-SGP4 Parameters: configuration, set by telecommand 28, got by telemetry 227, 30 bytes.
-/// Table 209.
+/// Augmented-SGP4 Parameters: configuration, set by telecommand 28, read by telemetry 227, 30
+/// bytes. Table 209.
 ///
 /// Settings of the SGP4 that GPS measurements augment.
 ///

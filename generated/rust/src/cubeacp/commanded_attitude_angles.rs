@@ -4,7 +4,7 @@
 
 use crate::support::{message, put, take, Error, Scale};
 
-/// Commanded Attitude Angles: configuration, set by telecommand 15, got by telemetry 199, 6 bytes.
+/// Commanded Attitude Angles: configuration, set by telecommand 15, read by telemetry 199, 6 bytes.
 /// Table 186.
 ///
 /// Note ACP-066 (open): Attitude angles: order of rotation and frame. Roll, pitch and yaw need a

@@ -5,7 +5,7 @@
 use super::enums;
 use crate::support::{message, Coded, Error, Scale};
 
-/// CSS Configuration: configuration, set by telecommand 24, got by telemetry 139, 21 bytes. Table
+/// CSS Configuration: configuration, set by telecommand 24, read by telemetry 139, 21 bytes. Table
 /// 183\.
 ///
 /// Pointing direction and scale of each photodiode.

@@ -4,7 +4,7 @@
 
 use crate::support::{message, put, take, Error, Scale};
 
-/// CubeSense Configuration: configuration, set by telecommand 25, got by telemetry 203, 112 bytes.
+/// CubeSense Configuration: configuration, set by telecommand 25, read by telemetry 203, 112 bytes.
 /// Table 189.
 ///
 /// Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained.

@@ -6,7 +6,7 @@ use crate::support::enumeration;
 
 /// AdcsRunMode: an enumeration. Table 75.
 ///
-/// Held by Enabled in ADCS Run Mode; ADCS Run Mode in Current ADCS State and ADCS State.
+/// Used by Enabled in ADCS Run Mode; ADCS Run Mode in Current ADCS State and ADCS State.
 ///
 /// ```
 /// use icd::cubeacp::enums::AdcsRunMode;
@@ -91,7 +91,7 @@ enumeration!(AdcsRunMode: u8);
 
 /// ConModeSelect: an enumeration. Table 78.
 ///
-/// Held by Control Mode in Set Attitude Control Mode, Current ADCS State and ADCS State.
+/// Used by Control Mode in Set Attitude Control Mode, Current ADCS State and ADCS State.
 ///
 /// Note ACP-024 (open): Control modes that are named and not listed. An inertial pointing control
 /// mode has a reference vector, and GEO tracking, inertial and two sun pointing modes are special
@@ -275,7 +275,7 @@ enumeration!(ConModeSelect: u8);
 
 /// EstimModeSelect: an enumeration. Table 80.
 ///
-/// Held by Attitude Estimation Mode in Set Attitude Estimation Mode, Current ADCS State and ADCS
+/// Used by Attitude Estimation Mode in Set Attitude Estimation Mode, Current ADCS State and ADCS
 /// State.
 ///
 /// ```
@@ -375,7 +375,7 @@ enumeration!(EstimModeSelect: u8);
 
 /// GpsSolutionStatus: an enumeration. Table 85.
 ///
-/// Held by Gps Solution Status in Trigger ADCS Loop with Simulated Sensor Data, Raw GPS Status and
+/// Used by Gps Solution Status in Trigger ADCS Loop with Simulated Sensor Data, Raw GPS Status and
 /// Raw GPS Measurements.
 ///
 /// Note ACP-045 (open): One GPS status for different receivers. The enumeration is used whatever
@@ -491,7 +491,7 @@ enumeration!(GpsSolutionStatus: u8);
 
 /// Asgp4ModeSelect: an enumeration. Table 87.
 ///
-/// Held by ASGP4 Mode in ASGP4 Run Mode, Current ADCS State and ADCS State.
+/// Used by ASGP4 Mode in ASGP4 Run Mode, Current ADCS State and ADCS State.
 ///
 /// Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one
 /// module are spelt in four ways.
@@ -573,7 +573,7 @@ enumeration!(Asgp4ModeSelect: u8);
 ///
 /// MTM is the magnetometer, Signal and Motor are the microcontrollers that sample it.
 ///
-/// Held by Magnetometer Mode in Set Mode of Magnetometer Operation, ADCS Configuration and
+/// Used by Magnetometer Mode in Set Mode of Magnetometer Operation, ADCS Configuration and
 /// Estimation Parameters; Current Magnetometer Sampling Mode in ADCS State and Current ADCS State
 /// 2; Magnetometer Selection for RAW MTM TLM in ADCS Configuration and Estimation Parameters.
 ///
@@ -655,7 +655,7 @@ enumeration!(MagModeVal: u8);
 
 /// CamSelect: an enumeration. Table 95.
 ///
-/// Held by Camera Select in Save Image.
+/// Used by Camera Select in Save Image.
 ///
 /// Note ACP-056 (likely): Cameras: Cam, CubeSense, and star. Cam1 and Cam2 appear beside CubeSense1
 /// and CubeSense2, once as Cam 1; the third camera is Star, CubeStar or star tracker. That CamN is
@@ -725,7 +725,7 @@ enumeration!(CamSelect: u8);
 
 /// ImSize: an enumeration. Table 96.
 ///
-/// Held by Image Size in Save Image.
+/// Used by Image Size in Save Image.
 ///
 /// ```
 /// use icd::cubeacp::enums::ImSize;
@@ -811,7 +811,7 @@ enumeration!(ImSize: u8);
 
 /// JpgConvertResult: an enumeration. Table 100.
 ///
-/// Held by Conversion Result in JPG Conversion Progress.
+/// Used by Conversion Result in JPG Conversion Progress.
 ///
 /// ```
 /// use icd::cubeacp::enums::JpgConvertResult;
@@ -882,7 +882,7 @@ enumeration!(JpgConvertResult: u8);
 
 /// CaptureResult: an enumeration. Table 123.
 ///
-/// Held by Cam2 Capture status in Raw Cam2 Sensor and Raw Sensor Measurements; Cam1 Capture status
+/// Used by Cam2 Capture status in Raw Cam2 Sensor and Raw Sensor Measurements; Cam1 Capture status
 /// in Raw Cam1 Sensor and Raw Sensor Measurements.
 ///
 /// ```
@@ -968,7 +968,7 @@ enumeration!(CaptureResult: u8);
 
 /// DetectResult: an enumeration. Table 124.
 ///
-/// Held by Cam2 Detection result in Raw Cam2 Sensor and Raw Sensor Measurements; Cam1 Detection
+/// Used by Cam2 Detection result in Raw Cam2 Sensor and Raw Sensor Measurements; Cam1 Detection
 /// result in Raw Cam1 Sensor and Raw Sensor Measurements.
 ///
 /// ```
@@ -1070,7 +1070,7 @@ enumeration!(DetectResult: u8);
 
 /// StarIDModeVal: an enumeration. Table 147.
 ///
-/// Held by Identification mode in Star Performance1 and Raw Star Tracker.
+/// Used by Identification mode in Star Performance1 and Raw Star Tracker.
 ///
 /// Note ACP-097 (open): StarIDModeVal is not described. The members of the identification mode have
 /// no descriptions; Lost Mode may be the lost-in-space search or a lost track.
@@ -1134,7 +1134,7 @@ enumeration!(StarIdModeVal: u8);
 
 /// ExecutionWaypoints: an enumeration. Table 168.
 ///
-/// Held by Current Execution Point in ACP Execution State.
+/// Used by Current Execution Point in ACP Execution State.
 ///
 /// ```
 /// use icd::cubeacp::enums::ExecutionWaypoints;
@@ -1256,7 +1256,7 @@ enumeration!(ExecutionWaypoints: u8);
 
 /// AsgpError: an enumeration. Table 171.
 ///
-/// Held by ASGP4 error in ASGP4 TLEs.
+/// Used by ASGP4 error in ASGP4 TLEs.
 ///
 /// Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one
 /// module are spelt in four ways.
@@ -1339,7 +1339,7 @@ enumeration!(AsgpError: u8);
 
 /// ImSaveStatus: an enumeration. Table 177.
 ///
-/// Held by Status in Status of Image Capture and Save Operation.
+/// Used by Status in Status of Image Capture and Save Operation.
 ///
 /// ```
 /// use icd::cubeacp::enums::ImSaveStatus;
@@ -1417,7 +1417,7 @@ enumeration!(ImSaveStatus: u8);
 
 /// AxisSelect: an enumeration. Table 180.
 ///
-/// Held by Magnetorquer 1 Configuration in Set Magnetorquer Configuration and ADCS Configuration;
+/// Used by Magnetorquer 1 Configuration in Set Magnetorquer Configuration and ADCS Configuration;
 /// Magnetorquer 2 Configuration in Set Magnetorquer Configuration and ADCS Configuration;
 /// Magnetorquer 3 Configuration in Set Magnetorquer Configuration and ADCS Configuration; RW1
 /// Configuration in Set Wheel Configuration and ADCS Configuration; RW2 Configuration in Set Wheel
@@ -1511,7 +1511,7 @@ enumeration!(AxisSelect: u8);
 
 /// PowerSelect: an enumeration. Table 185.
 ///
-/// Held by CubeControl Signal Power Selection in ADCS Power Control; CubeControl Motor Power
+/// Used by CubeControl Signal Power Selection in ADCS Power Control; CubeControl Motor Power
 /// Selection in ADCS Power Control; CubeSense1 Power Selection in ADCS Power Control; CubeSense2
 /// Power Selection in ADCS Power Control; CubeStarPower Power Selection in ADCS Power Control; 5
 /// other fields.
@@ -1583,7 +1583,7 @@ enumeration!(PowerSelect: u8);
 
 /// AsgpFilter: an enumeration. Table 193.
 ///
-/// Held by ASGP4 filter in ADCS Configuration and Augmented-SGP4 Parameters.
+/// Used by ASGP4 filter in ADCS Configuration and Augmented-SGP4 Parameters.
 ///
 /// Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one
 /// module are spelt in four ways.
@@ -1649,7 +1649,7 @@ enumeration!(AsgpFilter: u8);
 
 /// AcpProgramType: an enumeration. Table 202.
 ///
-/// Held by ACP Type in ADCS System Configuration.
+/// Used by ACP Type in ADCS System Configuration.
 ///
 /// ```
 /// use icd::cubeacp::enums::AcpProgramType;
@@ -1710,7 +1710,7 @@ enumeration!(AcpProgramType: u8);
 
 /// SpecialConSelect: an enumeration. Table 203.
 ///
-/// Held by Special Control Selection in ADCS System Configuration.
+/// Used by Special Control Selection in ADCS System Configuration.
 ///
 /// Note ACP-024 (open): Control modes that are named and not listed. An inertial pointing control
 /// mode has a reference vector, and GEO tracking, inertial and two sun pointing modes are special
@@ -1800,7 +1800,7 @@ enumeration!(SpecialConSelect: u8);
 
 /// CsCamType: an enumeration. Table 204.
 ///
-/// Held by CubeSense1 Camera Type in ADCS System Configuration; CubeSense2 Camera Type in ADCS
+/// Used by CubeSense1 Camera Type in ADCS System Configuration; CubeSense2 Camera Type in ADCS
 /// System Configuration.
 ///
 /// ```
@@ -1862,7 +1862,7 @@ enumeration!(CsCamType: u8);
 
 /// GpsSelect: an enumeration. Table 205.
 ///
-/// Held by GPS Type in ADCS System Configuration.
+/// Used by GPS Type in ADCS System Configuration.
 ///
 /// ```
 /// use icd::cubeacp::enums::GpsSelect;
@@ -1928,7 +1928,7 @@ enumeration!(GpsSelect: u8);
 
 /// GpioPort: an enumeration. Table 206.
 ///
-/// Held by CC Signal Enable Port in ADCS System Configuration; CC Motor Enable Port in ADCS System
+/// Used by CC Signal Enable Port in ADCS System Configuration; CC Motor Enable Port in ADCS System
 /// Configuration; CC Common Enable Port in ADCS System Configuration; CubeSense1 Enable Port in
 /// ADCS System Configuration; CubeSense2 Enable Port in ADCS System Configuration; 4 other fields.
 ///
@@ -2011,7 +2011,7 @@ enumeration!(GpioPort: u8);
 
 /// GpioPortPin: an enumeration. Table 207.
 ///
-/// Held by CC Signal Enable Pin in ADCS System Configuration; CC Motor Enable Pin in ADCS System
+/// Used by CC Signal Enable Pin in ADCS System Configuration; CC Motor Enable Pin in ADCS System
 /// Configuration; CC Common Enable Pin in ADCS System Configuration; CubeSense1 Enable Pin in ADCS
 /// System Configuration; CubeSense2 Enable Pin in ADCS System Configuration; 4 other fields.
 ///
@@ -2144,7 +2144,7 @@ enumeration!(GpioPortPin: u8);
 
 /// SdLogSelect: an enumeration. Table 211.
 ///
-/// Held by Log Destination in SD Log1 Configuration and SD Log2 Configuration.
+/// Used by Log Destination in SD Log1 Configuration and SD Log2 Configuration.
 ///
 /// ```
 /// use icd::cubeacp::enums::SdLogSelect;

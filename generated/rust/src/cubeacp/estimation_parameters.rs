@@ -5,7 +5,7 @@
 use super::enums;
 use crate::support::{flags, message, put, take, Coded, Error, Scale};
 
-/// Estimation Parameters: configuration, set by telecommand 27, got by telemetry 223, 31 bytes.
+/// Estimation Parameters: configuration, set by telecommand 27, read by telemetry 223, 31 bytes.
 /// Table 200.
 ///
 /// Noise covariances, and which sensors the estimator uses.

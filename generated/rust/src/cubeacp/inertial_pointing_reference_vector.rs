@@ -4,7 +4,7 @@
 
 use crate::support::{message, put, take, Error, Scale};
 
-/// Inertial Pointing Reference Vector: configuration, set by telecommand 34, got by telemetry 238,
+/// Inertial Pointing Reference Vector: configuration, set by telecommand 34, read by telemetry 238,
 /// 6 bytes. Table 214.
 ///
 /// Unit vector for the inertial pointing mode.

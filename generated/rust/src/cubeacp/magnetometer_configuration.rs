@@ -4,7 +4,7 @@
 
 use crate::support::{message, put, take, Error, Scale};
 
-/// Magnetometer Configuration: configuration, set by telecommand 26, got by telemetry 204, 30
+/// Magnetometer Configuration: configuration, set by telecommand 26, read by telemetry 204, 30
 /// bytes. Table 190.
 ///
 /// Note ACP-051 (certain): Magnetometers have four names for two. Main, primary and none stand for

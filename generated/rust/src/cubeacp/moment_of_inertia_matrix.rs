@@ -4,7 +4,7 @@
 
 use crate::support::{message, put, take, Error};
 
-/// Moment of Inertia Matrix: configuration, set by telecommand 41, got by telemetry 222, 24 bytes.
+/// Moment of Inertia Matrix: configuration, set by telecommand 41, read by telemetry 222, 24 bytes.
 /// Table 199.
 ///
 /// Of the satellite.

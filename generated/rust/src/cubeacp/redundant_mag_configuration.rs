@@ -4,7 +4,7 @@
 
 use crate::support::{message, put, take, Error, Scale};
 
-/// Redundant Magnetometer Configuration: configuration, set by telecommand 36, got by telemetry
+/// Redundant Magnetometer Configuration: configuration, set by telecommand 36, read by telemetry
 /// 205, 30 bytes. Table 191.
 ///
 /// Note ACP-051 (certain): Magnetometers have four names for two. Main, primary and none stand for

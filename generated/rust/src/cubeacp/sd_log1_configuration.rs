@@ -5,7 +5,7 @@
 use super::enums;
 use crate::support::{array, message, put, put_array, take, Coded, Error};
 
-/// SD Log1 Configuration: configuration, set by telecommand 104, got by telemetry 235, 13 bytes.
+/// SD Log1 Configuration: configuration, set by telecommand 104, read by telemetry 235, 13 bytes.
 /// Table 210.
 ///
 /// Which frames go into log 1, how often, and to which card.

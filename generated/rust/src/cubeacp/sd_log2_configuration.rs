@@ -5,7 +5,7 @@
 use super::enums;
 use crate::support::{array, message, put, put_array, take, Coded, Error};
 
-/// SD Log2 Configuration: configuration, set by telecommand 105, got by telemetry 236, 13 bytes.
+/// SD Log2 Configuration: configuration, set by telecommand 105, read by telemetry 236, 13 bytes.
 /// Table 212.
 ///
 /// Which frames go into log 2, how often, and to which card.

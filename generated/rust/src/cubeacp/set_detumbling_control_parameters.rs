@@ -4,7 +4,7 @@
 
 use crate::support::{message, put, take, Error, Scale};
 
-/// Set Detumbling Control Parameters: configuration, set by telecommand 38, got by telemetry 208,
+/// Set Detumbling Control Parameters: configuration, set by telecommand 38, read by telemetry 208,
 /// 14 bytes. Table 195.
 ///
 /// Gains and references of the detumbling mode.

@@ -5,7 +5,7 @@
 use super::enums;
 use crate::support::{message, Coded, Error};
 
-/// Set Magnetorquer Configuration: configuration, set by telecommand 21, got by telemetry 136, 3
+/// Set Magnetorquer Configuration: configuration, set by telecommand 21, read by telemetry 136, 3
 /// bytes. Table 179.
 ///
 /// Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a

@@ -5,7 +5,7 @@
 use super::enums;
 use crate::support::{message, put, take, Coded, Error, Scale};
 
-/// Set Rate Gyro Configuration: configuration, set by telecommand 23, got by telemetry 138, 10
+/// Set Rate Gyro Configuration: configuration, set by telecommand 23, read by telemetry 138, 10
 /// bytes. Table 182.
 ///
 /// Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a

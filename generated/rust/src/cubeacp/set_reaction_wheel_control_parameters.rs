@@ -5,7 +5,7 @@
 use super::enums;
 use crate::support::{message, put, take, Coded, Error, Scale};
 
-/// Set Reaction Wheel Control Parameters: configuration, set by telecommand 40, got by telemetry
+/// Set Reaction Wheel Control Parameters: configuration, set by telecommand 40, read by telemetry
 /// 217, 13 bytes. Table 197.
 ///
 /// Gains and reference of the reaction-wheel mode.

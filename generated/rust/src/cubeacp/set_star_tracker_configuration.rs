@@ -4,7 +4,7 @@
 
 use crate::support::{message, put, take, Error, Scale};
 
-/// Set Star Tracker Configuration: configuration, set by telecommand 37, got by telemetry 202, 53
+/// Set Star Tracker Configuration: configuration, set by telecommand 37, read by telemetry 202, 53
 /// bytes. Table 188.
 ///
 /// Of CubeStar.

@@ -5,7 +5,7 @@
 use super::enums;
 use crate::support::{message, put, take, Coded, Error};
 
-/// Set Tracking Controller Gain Parameters: configuration, set by telecommand 54, got by telemetry
+/// Set Tracking Controller Gain Parameters: configuration, set by telecommand 54, read by telemetry
 /// 221, 13 bytes. Table 198.
 ///
 /// Gains of the tracking mode.

@@ -5,7 +5,7 @@
 use super::enums;
 use crate::support::{message, Coded, Error};
 
-/// Set Wheel Configuration: configuration, set by telecommand 22, got by telemetry 137, 4 bytes.
+/// Set Wheel Configuration: configuration, set by telecommand 22, read by telemetry 137, 4 bytes.
 /// Table 181.
 ///
 /// Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a

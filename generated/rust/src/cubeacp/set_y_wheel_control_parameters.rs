@@ -4,7 +4,7 @@
 
 use crate::support::{message, put, take, Error};
 
-/// Set Y-Wheel Control Parameters: configuration, set by telecommand 39, got by telemetry 209, 20
+/// Set Y-Wheel Control Parameters: configuration, set by telecommand 39, read by telemetry 209, 20
 /// bytes. Table 196.
 ///
 /// Gains and reference of the Y-wheel mode.

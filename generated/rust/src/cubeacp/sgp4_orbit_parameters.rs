@@ -4,7 +4,7 @@
 
 use crate::support::{message, put, take, Error};
 
-/// SGP4 Orbit Parameters: configuration, set by telecommand 45, got by telemetry 207, 64 bytes.
+/// SGP4 Orbit Parameters: configuration, set by telecommand 45, read by telemetry 207, 64 bytes.
 /// Table 194.
 ///
 /// ```

@@ -4,7 +4,7 @@
 
 use crate::support::{message, put, take, Error};
 
-/// Tracking Controller Target Reference: configuration, set by telecommand 55, got by telemetry
+/// Tracking Controller Target Reference: configuration, set by telecommand 55, read by telemetry
 /// 200, 12 bytes. Table 187.
 ///
 /// Target of the tracking control mode.

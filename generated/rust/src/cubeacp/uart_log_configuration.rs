@@ -4,7 +4,7 @@
 
 use crate::support::{array, message, put, put_array, take, Error};
 
-/// UART Log Configuration: configuration, set by telecommand 106, got by telemetry 237, 12 bytes.
+/// UART Log Configuration: configuration, set by telecommand 106, read by telemetry 237, 12 bytes.
 /// Table 213.
 ///
 /// Which frames are sent unasked on the UART, and how often.

@@ -4,7 +4,7 @@
 
 use crate::support::{array, message, put_array, Error};
 
-/// User-coded Controller and Estimator Parameters: configuration, set by telecommand 29, got by
+/// User-coded Controller and Estimator Parameters: configuration, set by telecommand 29, read by
 /// telemetry 226, 96 bytes. Table 208.
 ///
 /// ```

@@ -8,7 +8,7 @@ use crate::support::enumeration;
 ///
 /// State of the CubeMag service.
 ///
-/// Held by MagSvc State in State.
+/// Used by MagSvc State in State.
 ///
 /// Note MAG-008 (open): MagState has no deployed state. The service can be armed, deploying, idle
 /// or in error. A deployed boom shows as idle at best, and what a unit without a boom reports is
@@ -89,7 +89,7 @@ enumeration!(MagState: u8);
 ///
 /// State of a magnetometer service.
 ///
-/// Held by Primary Mag State in State; Red Mag State in State.
+/// Used by Primary Mag State in State; Red Mag State in State.
 ///
 /// Note MAG-009 (open): MntState: Mnt is not explained. The states belong to the magnetometers by
 /// the table that uses them; Mnt stands nowhere else.

@@ -6,7 +6,7 @@ use crate::support::enumeration;
 
 /// WheelErrorState: an enumeration. Table 48.
 ///
-/// Held by Wheel Error State in Wheel Speed.
+/// Used by Wheel Error State in Wheel Speed.
 ///
 /// ```
 /// use icd::cubewheel::enums::WheelErrorState;

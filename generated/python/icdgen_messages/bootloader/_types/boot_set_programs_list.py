@@ -12,7 +12,7 @@ __all__ = ["BootSetProgramsList"]
 class BootSetProgramsList(_enumeration.OpenEnum):
     """BootSetProgramsList: an enumeration. Table 63.
 
-    Held by Program Index in Set Boot Index.
+    Used by Program Index in Set Boot Index.
 
     Note BOOT-009 (certain): Three enumerations of program places. BootSetProgramsList,
     ProgramsList and BootProgramsList overlap. The internal program is 1 in all, the

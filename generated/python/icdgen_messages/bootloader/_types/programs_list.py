@@ -12,7 +12,7 @@ __all__ = ["ProgramsList"]
 class ProgramsList(_enumeration.OpenEnum):
     """ProgramsList: an enumeration. Table 66.
 
-    Held by Program Index in Read Program Information and Program Information; Source
+    Used by Program Index in Read Program Information and Program Information; Source
     Program Index in Copy Program to Internal Flash.
     """
 

@@ -16,7 +16,7 @@ class RunSelectedProgram(_base.Message[_Node]):
 
     Starts the program in internal flash at once.
 
-    The node restarts instead of acknowledging it.
+    The node restarts instead of sending an acknowledge.
 
     Note BOOT-008 (open): Run Selected Program does not run what was selected elsewhere.
     Its name refers to a selection, the text to the internal flash program. What it does

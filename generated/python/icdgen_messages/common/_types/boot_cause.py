@@ -12,7 +12,7 @@ __all__ = ["BootCause"]
 class BootCause(_enumeration.OpenEnum):
     """BootCause: an enumeration. Table 30.
 
-    Held by Boot Cause in Boot And Running Program Status.
+    Used by Boot Cause in Boot And Running Program Status.
     """
 
     UNEXPECTED = 0, "Unexpected"

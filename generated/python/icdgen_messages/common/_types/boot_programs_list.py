@@ -12,7 +12,7 @@ __all__ = ["BootProgramsList"]
 class BootProgramsList(_enumeration.OpenEnum):
     """BootProgramsList: an enumeration. Table 31.
 
-    Held by Boot Program Index in Boot And Running Program Status; Program Index in Boot
+    Used by Boot Program Index in Boot And Running Program Status; Program Index in Boot
     Index and Status.
     """
 

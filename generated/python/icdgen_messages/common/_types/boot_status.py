@@ -15,7 +15,7 @@ class BootStatus(_enumeration.OpenEnum):
     Kept in flash. The bootloader counts up before each attempt, the program sets Boot
     Success once it runs.
 
-    Held by Boot Status in Boot Index and Status.
+    Used by Boot Status in Boot Index and Status.
 
     Note COM-070 (open): Boot Status: whether the third attempt still takes place. After
     a first failure the bootloader is to try twice more, three attempts in all. But the

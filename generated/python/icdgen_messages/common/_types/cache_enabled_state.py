@@ -12,8 +12,8 @@ __all__ = ["CacheEnabledState"]
 
 
 class CacheEnabledState(_base.Message[_Node]):
-    """Cache enabled state: configuration, set by telecommand 3, got by telemetry 131, 1
-    byte. Table 48.
+    """Cache enabled state: configuration, set by telecommand 3, read by telemetry 131,
+    1 byte. Table 48.
     """
 
     NODE = "common"

@@ -12,7 +12,7 @@ __all__ = ["CurrentUnixTime"]
 
 
 class CurrentUnixTime(_base.Message[_Node]):
-    """Current Unix Time: configuration, set by telecommand 2, got by telemetry 140, 6
+    """Current Unix Time: configuration, set by telecommand 2, read by telemetry 140, 6
     bytes. Table 50.
     """
 

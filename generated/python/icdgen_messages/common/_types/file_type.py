@@ -12,7 +12,7 @@ __all__ = ["FileType"]
 class FileType(_enumeration.OpenEnum):
     """FileType: an enumeration. Table 16.
 
-    Held by File Type in Erase File, Load File Download Block and File Information.
+    Used by File Type in Erase File, Load File Download Block and File Information.
 
     Note COM-037 (open): FileType begins at 2 and jumps to 15. Values 0, 1 and 5 to 14
     are not explained. Value 0 ends the file list, since an entry of zeroes does.

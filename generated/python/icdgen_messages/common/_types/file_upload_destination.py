@@ -14,7 +14,7 @@ class FileUploadDestination(_enumeration.OpenEnum):
 
     The SD card destinations are not supported.
 
-    Held by Destination in Initiate File Upload and Finalize Upload Block.
+    Used by Destination in Initiate File Upload and Finalize Upload Block.
 
     Note COM-045 (certain): Names of the flash areas differ between two lists. Flash
     program 1 of the upload is External Flash Program 1 of the bootloader, with the same

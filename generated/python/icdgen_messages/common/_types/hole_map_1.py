@@ -12,7 +12,7 @@ __all__ = ["HoleMap1"]
 
 
 class HoleMap1(_base.Message[_Node]):
-    """Hole Map 1: configuration, set by telecommand 120, got by telemetry 247, 16
+    """Hole Map 1: configuration, set by telecommand 120, read by telemetry 247, 16
     bytes. Table 52.
 
     Packets 0 to 127 of a file block.

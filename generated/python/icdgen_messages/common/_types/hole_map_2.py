@@ -12,7 +12,7 @@ __all__ = ["HoleMap2"]
 
 
 class HoleMap2(_base.Message[_Node]):
-    """Hole Map 2: configuration, set by telecommand 121, got by telemetry 248, 16
+    """Hole Map 2: configuration, set by telecommand 121, read by telemetry 248, 16
     bytes. Table 53.
 
     Packets 128 to 255 of a file block.

@@ -12,7 +12,7 @@ __all__ = ["HoleMap3"]
 
 
 class HoleMap3(_base.Message[_Node]):
-    """Hole Map 3: configuration, set by telecommand 122, got by telemetry 249, 16
+    """Hole Map 3: configuration, set by telecommand 122, read by telemetry 249, 16
     bytes. Table 54.
 
     Packets 256 to 383 of a file block.

@@ -12,7 +12,7 @@ __all__ = ["HoleMap4"]
 
 
 class HoleMap4(_base.Message[_Node]):
-    """Hole Map 4: configuration, set by telecommand 123, got by telemetry 250, 16
+    """Hole Map 4: configuration, set by telecommand 123, read by telemetry 250, 16
     bytes. Table 55.
 
     Packets 384 to 511 of a file block.

@@ -12,7 +12,7 @@ __all__ = ["HoleMap5"]
 
 
 class HoleMap5(_base.Message[_Node]):
-    """Hole Map 5: configuration, set by telecommand 124, got by telemetry 251, 16
+    """Hole Map 5: configuration, set by telecommand 124, read by telemetry 251, 16
     bytes. Table 56.
 
     Packets 512 to 639 of a file block.

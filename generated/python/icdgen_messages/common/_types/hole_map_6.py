@@ -12,7 +12,7 @@ __all__ = ["HoleMap6"]
 
 
 class HoleMap6(_base.Message[_Node]):
-    """Hole Map 6: configuration, set by telecommand 125, got by telemetry 252, 16
+    """Hole Map 6: configuration, set by telecommand 125, read by telemetry 252, 16
     bytes. Table 57.
 
     Packets 640 to 767 of a file block.

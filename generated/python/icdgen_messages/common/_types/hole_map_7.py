@@ -12,7 +12,7 @@ __all__ = ["HoleMap7"]
 
 
 class HoleMap7(_base.Message[_Node]):
-    """Hole Map 7: configuration, set by telecommand 126, got by telemetry 253, 16
+    """Hole Map 7: configuration, set by telecommand 126, read by telemetry 253, 16
     bytes. Table 58.
 
     Packets 768 to 895 of a file block.

@@ -12,7 +12,7 @@ __all__ = ["HoleMap8"]
 
 
 class HoleMap8(_base.Message[_Node]):
-    """Hole Map 8: configuration, set by telecommand 127, got by telemetry 254, 16
+    """Hole Map 8: configuration, set by telecommand 127, read by telemetry 254, 16
     bytes. Table 59.
 
     Packets 896 to 1023 of a file block.

@@ -17,7 +17,7 @@ class Reset(_base.Message[_Node]):
     Restarts the CubeComputer.
 
     Dangerous: The program that runs is stopped, and what it has not saved is lost. The
-    node restarts instead of acknowledging it.
+    node restarts instead of sending an acknowledge.
 
     Note COM-028 (open): The Reset telecommand: acknowledged or not. Every telecommand
     is acknowledged, but this one restarts the program that would do it. Whether the

@@ -12,7 +12,7 @@ __all__ = ["ResetCause"]
 class ResetCause(_enumeration.OpenEnum):
     """ResetCause: an enumeration. Table 29.
 
-    Held by Cause of MCU Reset in Boot And Running Program Status.
+    Used by Cause of MCU Reset in Boot And Running Program Status.
     """
 
     POWER_ON_RESET = 0, "Power-On Reset"

@@ -12,8 +12,8 @@ __all__ = ["SramScrubParameters"]
 
 
 class SramScrubParameters(_base.Message[_Node]):
-    """SRAM Scrub Parameters: configuration, set by telecommand 8, got by telemetry 134,
-    2 bytes. Table 49.
+    """SRAM Scrub Parameters: configuration, set by telecommand 8, read by telemetry
+    134, 2 bytes. Table 49.
     """
 
     NODE = "common"

@@ -12,7 +12,7 @@ __all__ = ["TcErrorReason"]
 class TcErrorReason(_enumeration.OpenEnum):
     """TcErrorReason: an enumeration. Table 40.
 
-    Held by TC error status in Telecommand Acknowledge.
+    Used by TC error status in Telecommand Acknowledge.
     """
 
     NO_ERROR = 0, "No Error"

@@ -12,7 +12,7 @@ __all__ = ["UnixTimeSaveToFlash"]
 
 
 class UnixTimeSaveToFlash(_base.Message[_Node]):
-    """Unix Time Save to Flash: configuration, set by telecommand 9, got by telemetry
+    """Unix Time Save to Flash: configuration, set by telecommand 9, read by telemetry
     145, 2 bytes. Table 51.
 
     When the Unix time is kept in flash, so that it survives a power cycle.

@@ -12,7 +12,7 @@ __all__ = ["AcpProgramType"]
 class AcpProgramType(_enumeration.OpenEnum):
     """AcpProgramType: an enumeration. Table 202.
 
-    Held by ACP Type in ADCS System Configuration.
+    Used by ACP Type in ADCS System Configuration.
     """
 
     THREE_AXIS_ACP = 0, "3-Axis ACP"

@@ -15,7 +15,7 @@ __all__ = ["AdcsConfiguration"]
 
 
 class AdcsConfiguration(_base.Message[_Node]):
-    """ADCS Configuration: configuration, set by telecommand 20, got by telemetry 206,
+    """ADCS Configuration: configuration, set by telecommand 20, read by telemetry 206,
     504 bytes. Table 192.
 
     Most configuration messages in one frame.

@@ -13,8 +13,8 @@ __all__ = ["AdcsPowerControl"]
 
 
 class AdcsPowerControl(_base.Message[_Node]):
-    """ADCS Power Control: configuration, set by telecommand 11, got by telemetry 197, 3
-    bytes. Table 184.
+    """ADCS Power Control: configuration, set by telecommand 11, read by telemetry 197,
+    3 bytes. Table 184.
 
     Switches components on and off.
 

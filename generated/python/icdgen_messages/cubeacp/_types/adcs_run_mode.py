@@ -12,7 +12,7 @@ __all__ = ["AdcsRunMode"]
 class AdcsRunMode(_enumeration.OpenEnum):
     """AdcsRunMode: an enumeration. Table 75.
 
-    Held by Enabled in ADCS Run Mode; ADCS Run Mode in Current ADCS State and ADCS
+    Used by Enabled in ADCS Run Mode; ADCS Run Mode in Current ADCS State and ADCS
     State.
     """
 

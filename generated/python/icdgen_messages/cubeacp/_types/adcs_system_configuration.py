@@ -18,8 +18,8 @@ __all__ = ["AdcsSystemConfiguration"]
 
 
 class AdcsSystemConfiguration(_base.Message[_Node]):
-    """ADCS System Configuration: configuration, set by telecommand 30, got by telemetry
-    225, 173 bytes. Table 201.
+    """ADCS System Configuration: configuration, set by telecommand 30, read by
+    telemetry 225, 173 bytes. Table 201.
 
     What is hard-coded: versions, ratings, calibration and pins.
 

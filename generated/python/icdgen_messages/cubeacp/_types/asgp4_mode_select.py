@@ -12,7 +12,7 @@ __all__ = ["Asgp4ModeSelect"]
 class Asgp4ModeSelect(_enumeration.OpenEnum):
     """Asgp4ModeSelect: an enumeration. Table 87.
 
-    Held by ASGP4 Mode in ASGP4 Run Mode, Current ADCS State and ADCS State.
+    Used by ASGP4 Mode in ASGP4 Run Mode, Current ADCS State and ADCS State.
 
     Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and
     descriptions of one module are spelt in four ways.

@@ -12,7 +12,7 @@ __all__ = ["AsgpError"]
 class AsgpError(_enumeration.OpenEnum):
     """AsgpError: an enumeration. Table 171.
 
-    Held by ASGP4 error in ASGP4 TLEs.
+    Used by ASGP4 error in ASGP4 TLEs.
 
     Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and
     descriptions of one module are spelt in four ways.

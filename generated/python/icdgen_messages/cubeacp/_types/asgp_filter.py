@@ -12,7 +12,7 @@ __all__ = ["AsgpFilter"]
 class AsgpFilter(_enumeration.OpenEnum):
     """AsgpFilter: an enumeration. Table 193.
 
-    Held by ASGP4 filter in ADCS Configuration and Augmented-SGP4 Parameters.
+    Used by ASGP4 filter in ADCS Configuration and Augmented-SGP4 Parameters.
 
     Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and
     descriptions of one module are spelt in four ways.

@@ -13,8 +13,8 @@ __all__ = ["AugmentedSgp4Parameters"]
 
 
 class AugmentedSgp4Parameters(_base.Message[_Node]):
-    """Augmented-SGP4 Parameters: configuration, set by telecommand 28, got by telemetry
-    227, 30 bytes. Table 209.
+    """Augmented-SGP4 Parameters: configuration, set by telecommand 28, read by
+    telemetry 227, 30 bytes. Table 209.
 
     Settings of the SGP4 that GPS measurements augment.
     """

@@ -12,7 +12,7 @@ __all__ = ["AxisSelect"]
 class AxisSelect(_enumeration.OpenEnum):
     """AxisSelect: an enumeration. Table 180.
 
-    Held by Magnetorquer 1 Configuration in Set Magnetorquer Configuration and ADCS
+    Used by Magnetorquer 1 Configuration in Set Magnetorquer Configuration and ADCS
     Configuration; Magnetorquer 2 Configuration in Set Magnetorquer Configuration and
     ADCS Configuration; Magnetorquer 3 Configuration in Set Magnetorquer Configuration
     and ADCS Configuration; RW1 Configuration in Set Wheel Configuration and ADCS

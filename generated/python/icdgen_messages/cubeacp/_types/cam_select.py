@@ -12,7 +12,7 @@ __all__ = ["CamSelect"]
 class CamSelect(_enumeration.OpenEnum):
     """CamSelect: an enumeration. Table 95.
 
-    Held by Camera Select in Save Image.
+    Used by Camera Select in Save Image.
 
     Note ACP-056 (likely): Cameras: Cam, CubeSense, and star. Cam1 and Cam2 appear
     beside CubeSense1 and CubeSense2, once as Cam 1; the third camera is Star, CubeStar

@@ -12,7 +12,7 @@ __all__ = ["CaptureResult"]
 class CaptureResult(_enumeration.OpenEnum):
     """CaptureResult: an enumeration. Table 123.
 
-    Held by Cam2 Capture status in Raw Cam2 Sensor and Raw Sensor Measurements; Cam1
+    Used by Cam2 Capture status in Raw Cam2 Sensor and Raw Sensor Measurements; Cam1
     Capture status in Raw Cam1 Sensor and Raw Sensor Measurements.
     """
 

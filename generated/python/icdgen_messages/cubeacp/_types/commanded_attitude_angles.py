@@ -12,8 +12,8 @@ __all__ = ["CommandedAttitudeAngles"]
 
 
 class CommandedAttitudeAngles(_base.Message[_Node]):
-    """Commanded Attitude Angles: configuration, set by telecommand 15, got by telemetry
-    199, 6 bytes. Table 186.
+    """Commanded Attitude Angles: configuration, set by telecommand 15, read by
+    telemetry 199, 6 bytes. Table 186.
 
     Note ACP-066 (open): Attitude angles: order of rotation and frame. Roll, pitch and
     yaw need a sequence and a reference. Neither is given, for estimated or for

@@ -12,7 +12,7 @@ __all__ = ["ConModeSelect"]
 class ConModeSelect(_enumeration.OpenEnum):
     """ConModeSelect: an enumeration. Table 78.
 
-    Held by Control Mode in Set Attitude Control Mode, Current ADCS State and ADCS
+    Used by Control Mode in Set Attitude Control Mode, Current ADCS State and ADCS
     State.
 
     Note ACP-024 (open): Control modes that are named and not listed. An inertial

@@ -12,7 +12,7 @@ __all__ = ["CsCamType"]
 class CsCamType(_enumeration.OpenEnum):
     """CsCamType: an enumeration. Table 204.
 
-    Held by CubeSense1 Camera Type in ADCS System Configuration; CubeSense2 Camera Type
+    Used by CubeSense1 Camera Type in ADCS System Configuration; CubeSense2 Camera Type
     in ADCS System Configuration.
     """
 

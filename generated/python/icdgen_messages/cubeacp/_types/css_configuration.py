@@ -13,8 +13,8 @@ __all__ = ["CssConfiguration"]
 
 
 class CssConfiguration(_base.Message[_Node]):
-    """CSS Configuration: configuration, set by telecommand 24, got by telemetry 139, 21
-    bytes. Table 183.
+    """CSS Configuration: configuration, set by telecommand 24, read by telemetry 139,
+    21 bytes. Table 183.
 
     Pointing direction and scale of each photodiode.
     """

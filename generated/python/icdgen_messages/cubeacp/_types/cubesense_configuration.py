@@ -12,7 +12,7 @@ __all__ = ["CubesenseConfiguration"]
 
 
 class CubesenseConfiguration(_base.Message[_Node]):
-    """CubeSense Configuration: configuration, set by telecommand 25, got by telemetry
+    """CubeSense Configuration: configuration, set by telecommand 25, read by telemetry
     203, 112 bytes. Table 189.
 
     Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor

@@ -12,7 +12,7 @@ __all__ = ["DetectResult"]
 class DetectResult(_enumeration.OpenEnum):
     """DetectResult: an enumeration. Table 124.
 
-    Held by Cam2 Detection result in Raw Cam2 Sensor and Raw Sensor Measurements; Cam1
+    Used by Cam2 Detection result in Raw Cam2 Sensor and Raw Sensor Measurements; Cam1
     Detection result in Raw Cam1 Sensor and Raw Sensor Measurements.
     """
 

@@ -12,7 +12,7 @@ __all__ = ["EstimModeSelect"]
 class EstimModeSelect(_enumeration.OpenEnum):
     """EstimModeSelect: an enumeration. Table 80.
 
-    Held by Attitude Estimation Mode in Set Attitude Estimation Mode, Current ADCS State
+    Used by Attitude Estimation Mode in Set Attitude Estimation Mode, Current ADCS State
     and ADCS State.
     """
 

@@ -13,7 +13,7 @@ __all__ = ["EstimationParameters"]
 
 
 class EstimationParameters(_base.Message[_Node]):
-    """Estimation Parameters: configuration, set by telecommand 27, got by telemetry
+    """Estimation Parameters: configuration, set by telecommand 27, read by telemetry
     223, 31 bytes. Table 200.
 
     Noise covariances, and which sensors the estimator uses.

@@ -12,7 +12,7 @@ __all__ = ["ExecutionWaypoints"]
 class ExecutionWaypoints(_enumeration.OpenEnum):
     """ExecutionWaypoints: an enumeration. Table 168.
 
-    Held by Current Execution Point in ACP Execution State.
+    Used by Current Execution Point in ACP Execution State.
     """
 
     INIT = 0, "Init"

@@ -12,7 +12,7 @@ __all__ = ["GpioPort"]
 class GpioPort(_enumeration.OpenEnum):
     """GpioPort: an enumeration. Table 206.
 
-    Held by CC Signal Enable Port in ADCS System Configuration; CC Motor Enable Port in
+    Used by CC Signal Enable Port in ADCS System Configuration; CC Motor Enable Port in
     ADCS System Configuration; CC Common Enable Port in ADCS System Configuration;
     CubeSense1 Enable Port in ADCS System Configuration; CubeSense2 Enable Port in ADCS
     System Configuration; 4 other fields.

@@ -12,7 +12,7 @@ __all__ = ["GpioPortPin"]
 class GpioPortPin(_enumeration.OpenEnum):
     """GpioPortPin: an enumeration. Table 207.
 
-    Held by CC Signal Enable Pin in ADCS System Configuration; CC Motor Enable Pin in
+    Used by CC Signal Enable Pin in ADCS System Configuration; CC Motor Enable Pin in
     ADCS System Configuration; CC Common Enable Pin in ADCS System Configuration;
     CubeSense1 Enable Pin in ADCS System Configuration; CubeSense2 Enable Pin in ADCS
     System Configuration; 4 other fields.

@@ -12,7 +12,7 @@ __all__ = ["GpsSelect"]
 class GpsSelect(_enumeration.OpenEnum):
     """GpsSelect: an enumeration. Table 205.
 
-    Held by GPS Type in ADCS System Configuration.
+    Used by GPS Type in ADCS System Configuration.
     """
 
     NO_GPS_SUPPORT = 0, "No GPS Support"

@@ -12,7 +12,7 @@ __all__ = ["GpsSolutionStatus"]
 class GpsSolutionStatus(_enumeration.OpenEnum):
     """GpsSolutionStatus: an enumeration. Table 85.
 
-    Held by Gps Solution Status in Trigger ADCS Loop with Simulated Sensor Data, Raw GPS
+    Used by Gps Solution Status in Trigger ADCS Loop with Simulated Sensor Data, Raw GPS
     Status and Raw GPS Measurements.
 
     Note ACP-045 (open): One GPS status for different receivers. The enumeration is used

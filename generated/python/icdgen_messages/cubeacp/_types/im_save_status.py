@@ -12,7 +12,7 @@ __all__ = ["ImSaveStatus"]
 class ImSaveStatus(_enumeration.OpenEnum):
     """ImSaveStatus: an enumeration. Table 177.
 
-    Held by Status in Status of Image Capture and Save Operation.
+    Used by Status in Status of Image Capture and Save Operation.
     """
 
     NO_ERROR = 0, "No Error"

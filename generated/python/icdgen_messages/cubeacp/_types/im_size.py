@@ -12,7 +12,7 @@ __all__ = ["ImSize"]
 class ImSize(_enumeration.OpenEnum):
     """ImSize: an enumeration. Table 96.
 
-    Held by Image Size in Save Image.
+    Used by Image Size in Save Image.
     """
 
     SIZE_0 = 0, "Size 0"

@@ -12,7 +12,7 @@ __all__ = ["InertialPointingReferenceVector"]
 
 
 class InertialPointingReferenceVector(_base.Message[_Node]):
-    """Inertial Pointing Reference Vector: configuration, set by telecommand 34, got by
+    """Inertial Pointing Reference Vector: configuration, set by telecommand 34, read by
     telemetry 238, 6 bytes. Table 214.
 
     Unit vector for the inertial pointing mode.

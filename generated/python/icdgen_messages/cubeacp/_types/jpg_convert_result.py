@@ -12,7 +12,7 @@ __all__ = ["JpgConvertResult"]
 class JpgConvertResult(_enumeration.OpenEnum):
     """JpgConvertResult: an enumeration. Table 100.
 
-    Held by Conversion Result in JPG Conversion Progress.
+    Used by Conversion Result in JPG Conversion Progress.
     """
 
     NOTHING_CONVERTED_YET = 0, "Nothing Converted Yet"

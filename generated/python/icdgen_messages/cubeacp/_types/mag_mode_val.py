@@ -14,7 +14,7 @@ class MagModeVal(_enumeration.OpenEnum):
 
     MTM is the magnetometer, Signal and Motor are the microcontrollers that sample it.
 
-    Held by Magnetometer Mode in Set Mode of Magnetometer Operation, ADCS Configuration
+    Used by Magnetometer Mode in Set Mode of Magnetometer Operation, ADCS Configuration
     and Estimation Parameters; Current Magnetometer Sampling Mode in ADCS State and
     Current ADCS State 2; Magnetometer Selection for RAW MTM TLM in ADCS Configuration
     and Estimation Parameters.

@@ -12,7 +12,7 @@ __all__ = ["MagnetometerConfiguration"]
 
 
 class MagnetometerConfiguration(_base.Message[_Node]):
-    """Magnetometer Configuration: configuration, set by telecommand 26, got by
+    """Magnetometer Configuration: configuration, set by telecommand 26, read by
     telemetry 204, 30 bytes. Table 190.
 
     Note ACP-051 (certain): Magnetometers have four names for two. Main, primary and

@@ -12,7 +12,7 @@ __all__ = ["MomentOfInertiaMatrix"]
 
 
 class MomentOfInertiaMatrix(_base.Message[_Node]):
-    """Moment of Inertia Matrix: configuration, set by telecommand 41, got by telemetry
+    """Moment of Inertia Matrix: configuration, set by telecommand 41, read by telemetry
     222, 24 bytes. Table 199.
 
     Of the satellite.

@@ -12,7 +12,7 @@ __all__ = ["PowerSelect"]
 class PowerSelect(_enumeration.OpenEnum):
     """PowerSelect: an enumeration. Table 185.
 
-    Held by CubeControl Signal Power Selection in ADCS Power Control; CubeControl Motor
+    Used by CubeControl Signal Power Selection in ADCS Power Control; CubeControl Motor
     Power Selection in ADCS Power Control; CubeSense1 Power Selection in ADCS Power
     Control; CubeSense2 Power Selection in ADCS Power Control; CubeStarPower Power
     Selection in ADCS Power Control; 5 other fields.

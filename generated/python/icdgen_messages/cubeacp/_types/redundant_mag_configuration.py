@@ -12,7 +12,7 @@ __all__ = ["RedundantMagConfiguration"]
 
 
 class RedundantMagConfiguration(_base.Message[_Node]):
-    """Redundant Magnetometer Configuration: configuration, set by telecommand 36, got
+    """Redundant Magnetometer Configuration: configuration, set by telecommand 36, read
     by telemetry 205, 30 bytes. Table 191.
 
     Note ACP-051 (certain): Magnetometers have four names for two. Main, primary and

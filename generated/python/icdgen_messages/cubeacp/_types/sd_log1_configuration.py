@@ -13,7 +13,7 @@ __all__ = ["SdLog1Configuration"]
 
 
 class SdLog1Configuration(_base.Message[_Node]):
-    """SD Log1 Configuration: configuration, set by telecommand 104, got by telemetry
+    """SD Log1 Configuration: configuration, set by telecommand 104, read by telemetry
     235, 13 bytes. Table 210.
 
     Which frames go into log 1, how often, and to which card.

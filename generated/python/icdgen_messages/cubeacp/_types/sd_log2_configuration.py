@@ -13,7 +13,7 @@ __all__ = ["SdLog2Configuration"]
 
 
 class SdLog2Configuration(_base.Message[_Node]):
-    """SD Log2 Configuration: configuration, set by telecommand 105, got by telemetry
+    """SD Log2 Configuration: configuration, set by telecommand 105, read by telemetry
     236, 13 bytes. Table 212.
 
     Which frames go into log 2, how often, and to which card.

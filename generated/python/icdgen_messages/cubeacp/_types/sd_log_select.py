@@ -12,7 +12,7 @@ __all__ = ["SdLogSelect"]
 class SdLogSelect(_enumeration.OpenEnum):
     """SdLogSelect: an enumeration. Table 211.
 
-    Held by Log Destination in SD Log1 Configuration and SD Log2 Configuration.
+    Used by Log Destination in SD Log1 Configuration and SD Log2 Configuration.
     """
 
     PRIMARY_SD_CARD = 0, "Primary SD Card"

@@ -12,7 +12,7 @@ __all__ = ["SetDetumblingControlParameters"]
 
 
 class SetDetumblingControlParameters(_base.Message[_Node]):
-    """Set Detumbling Control Parameters: configuration, set by telecommand 38, got by
+    """Set Detumbling Control Parameters: configuration, set by telecommand 38, read by
     telemetry 208, 14 bytes. Table 195.
 
     Gains and references of the detumbling mode.

@@ -13,7 +13,7 @@ __all__ = ["SetMagnetorquerConfiguration"]
 
 
 class SetMagnetorquerConfiguration(_base.Message[_Node]):
-    """Set Magnetorquer Configuration: configuration, set by telecommand 21, got by
+    """Set Magnetorquer Configuration: configuration, set by telecommand 21, read by
     telemetry 136, 3 bytes. Table 179.
 
     Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with

@@ -13,7 +13,7 @@ __all__ = ["SetRateGyroConfiguration"]
 
 
 class SetRateGyroConfiguration(_base.Message[_Node]):
-    """Set Rate Gyro Configuration: configuration, set by telecommand 23, got by
+    """Set Rate Gyro Configuration: configuration, set by telecommand 23, read by
     telemetry 138, 10 bytes. Table 182.
 
     Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with

@@ -13,7 +13,7 @@ __all__ = ["SetReactionWheelControlParameters"]
 
 
 class SetReactionWheelControlParameters(_base.Message[_Node]):
-    """Set Reaction Wheel Control Parameters: configuration, set by telecommand 40, got
+    """Set Reaction Wheel Control Parameters: configuration, set by telecommand 40, read
     by telemetry 217, 13 bytes. Table 197.
 
     Gains and reference of the reaction-wheel mode.

@@ -12,7 +12,7 @@ __all__ = ["SetStarTrackerConfiguration"]
 
 
 class SetStarTrackerConfiguration(_base.Message[_Node]):
-    """Set Star Tracker Configuration: configuration, set by telecommand 37, got by
+    """Set Star Tracker Configuration: configuration, set by telecommand 37, read by
     telemetry 202, 53 bytes. Table 188.
 
     Of CubeStar.

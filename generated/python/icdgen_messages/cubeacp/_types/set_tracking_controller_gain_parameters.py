@@ -14,7 +14,7 @@ __all__ = ["SetTrackingControllerGainParameters"]
 
 class SetTrackingControllerGainParameters(_base.Message[_Node]):
     """Set Tracking Controller Gain Parameters: configuration, set by telecommand 54,
-    got by telemetry 221, 13 bytes. Table 198.
+    read by telemetry 221, 13 bytes. Table 198.
 
     Gains of the tracking mode.
 

@@ -13,7 +13,7 @@ __all__ = ["SetWheelConfiguration"]
 
 
 class SetWheelConfiguration(_base.Message[_Node]):
-    """Set Wheel Configuration: configuration, set by telecommand 22, got by telemetry
+    """Set Wheel Configuration: configuration, set by telecommand 22, read by telemetry
     137, 4 bytes. Table 181.
 
     Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with

@@ -12,7 +12,7 @@ __all__ = ["SetYWheelControlParameters"]
 
 
 class SetYWheelControlParameters(_base.Message[_Node]):
-    """Set Y-Wheel Control Parameters: configuration, set by telecommand 39, got by
+    """Set Y-Wheel Control Parameters: configuration, set by telecommand 39, read by
     telemetry 209, 20 bytes. Table 196.
 
     Gains and reference of the Y-wheel mode.

@@ -12,7 +12,7 @@ __all__ = ["Sgp4OrbitParameters"]
 
 
 class Sgp4OrbitParameters(_base.Message[_Node]):
-    """SGP4 Orbit Parameters: configuration, set by telecommand 45, got by telemetry
+    """SGP4 Orbit Parameters: configuration, set by telecommand 45, read by telemetry
     207, 64 bytes. Table 194.
     """
 

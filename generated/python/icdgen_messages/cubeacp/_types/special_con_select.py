@@ -12,7 +12,7 @@ __all__ = ["SpecialConSelect"]
 class SpecialConSelect(_enumeration.OpenEnum):
     """SpecialConSelect: an enumeration. Table 203.
 
-    Held by Special Control Selection in ADCS System Configuration.
+    Used by Special Control Selection in ADCS System Configuration.
 
     Note ACP-024 (open): Control modes that are named and not listed. An inertial
     pointing control mode has a reference vector, and GEO tracking, inertial and two sun

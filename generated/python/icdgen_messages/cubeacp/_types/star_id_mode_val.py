@@ -12,7 +12,7 @@ __all__ = ["StarIdModeVal"]
 class StarIdModeVal(_enumeration.OpenEnum):
     """StarIDModeVal: an enumeration. Table 147.
 
-    Held by Identification mode in Star Performance1 and Raw Star Tracker.
+    Used by Identification mode in Star Performance1 and Raw Star Tracker.
 
     Note ACP-097 (open): StarIDModeVal is not described. The members of the
     identification mode have no descriptions; Lost Mode may be the lost-in-space search

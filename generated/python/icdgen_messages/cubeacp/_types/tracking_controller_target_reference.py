@@ -12,7 +12,7 @@ __all__ = ["TrackingControllerTargetReference"]
 
 
 class TrackingControllerTargetReference(_base.Message[_Node]):
-    """Tracking Controller Target Reference: configuration, set by telecommand 55, got
+    """Tracking Controller Target Reference: configuration, set by telecommand 55, read
     by telemetry 200, 12 bytes. Table 187.
 
     Target of the tracking control mode.

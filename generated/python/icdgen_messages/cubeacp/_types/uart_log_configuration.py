@@ -12,7 +12,7 @@ __all__ = ["UartLogConfiguration"]
 
 
 class UartLogConfiguration(_base.Message[_Node]):
-    """UART Log Configuration: configuration, set by telecommand 106, got by telemetry
+    """UART Log Configuration: configuration, set by telecommand 106, read by telemetry
     237, 12 bytes. Table 213.
 
     Which frames are sent unasked on the UART, and how often.

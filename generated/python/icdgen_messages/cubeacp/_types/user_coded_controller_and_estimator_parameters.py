@@ -14,7 +14,7 @@ __all__ = ["UserCodedControllerAndEstimatorParameters"]
 
 class UserCodedControllerAndEstimatorParameters(_base.Message[_Node]):
     """User-coded Controller and Estimator Parameters: configuration, set by telecommand
-    29, got by telemetry 226, 96 bytes. Table 208.
+    29, read by telemetry 226, 96 bytes. Table 208.
     """
 
     NODE = "cubeacp"

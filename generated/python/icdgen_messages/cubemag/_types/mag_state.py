@@ -14,7 +14,7 @@ class MagState(_enumeration.OpenEnum):
 
     State of the CubeMag service.
 
-    Held by MagSvc State in State.
+    Used by MagSvc State in State.
 
     Note MAG-008 (open): MagState has no deployed state. The service can be armed,
     deploying, idle or in error. A deployed boom shows as idle at best, and what a unit

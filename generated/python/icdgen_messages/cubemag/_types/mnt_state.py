@@ -14,7 +14,7 @@ class MntState(_enumeration.OpenEnum):
 
     State of a magnetometer service.
 
-    Held by Primary Mag State in State; Red Mag State in State.
+    Used by Primary Mag State in State; Red Mag State in State.
 
     Note MAG-009 (open): MntState: Mnt is not explained. The states belong to the
     magnetometers by the table that uses them; Mnt stands nowhere else.

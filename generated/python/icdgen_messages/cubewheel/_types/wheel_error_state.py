@@ -12,7 +12,7 @@ __all__ = ["WheelErrorState"]
 class WheelErrorState(_enumeration.OpenEnum):
     """WheelErrorState: an enumeration. Table 48.
 
-    Held by Wheel Error State in Wheel Speed.
+    Used by Wheel Error State in Wheel Speed.
     """
 
     DATA_VALID = 0, "Data Valid"
