@@ -99,7 +99,7 @@ def rounds_of(first: FieldDescription, count: int) -> ElementRounds | None:
     at, bits = first.model.at, first.model.bits
     if at % 8 or first.is_copied or first.model.when:
         return None
-    in_round = 8 // gcd(8, bits)
+    in_round = 8 // gcd(8, bits)  # the fewest elements that end at a byte
     rounds = ElementRounds(in_round, count // in_round, at // 8, in_round * bits // 8)
     return rounds if rounds.repetitions > 1 and rounds.elements >= MANY_ENOUGH else None
 

@@ -34,6 +34,7 @@ class ContainedDescription(NamedTuple):
         """List its members, opening structs, with their sources in a composite from bit ``begin`` on."""
         fields = {field.model.at: field for field in composite.fields}
         arrays = {field.model.at: field for field in composite.walk(Into.ARRAYS_OF_STRUCTS) if field.count}
+        # The composite declares the same bits in lines of its own, so its fields are found by their positions.
         for member in self.message.walk(Into.ARRAYS_OF_STRUCTS):
             at = begin + member.model.at
             array = arrays.get(at) if member.count else None

@@ -110,6 +110,7 @@ class FieldDescription(ScalarDescription):
     @property
     def is_in_last_part(self) -> bool:
         """Whether the field is the last variable part of its message, or in it."""
+        # Fields below a member have the node of that member in `member_of_message`.
         sequence = self.message.model.layout.sequence
         return bool(sequence) and self.member_of_message.model.node is sequence[-1]
 
@@ -267,6 +268,7 @@ class Composite(Named[WithFields]):
     @cached_property
     def member_for(self) -> dict[int, FieldDescription]:
         """Members by the identity of their nodes."""
+        # Two lines of an ICD can be equal, so nodes are compared by identity.
         return {id(member.model.node): member for member in self.declared_members}
 
     @cached_property

@@ -17,6 +17,7 @@ Users = dict[str, list[str]]  # name of a field -> names of the messages and str
 
 def enum_widths(icd: Icd) -> dict[tuple[str, str], int]:
     """Return the bits that each enumeration needs, by its node and name: for its members and for all fields of its type."""
+    # A field can be wider than the largest member: the type must also store values without a name.
     widths: dict[tuple[str, str], int] = {}
     for node in icd.nodes:
         for enum in node.enums:

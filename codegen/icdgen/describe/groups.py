@@ -109,6 +109,7 @@ def _flags(
     if start is None:
         return None
     byte, shift = start
+    # Flags fall in manuals that number the bits of a byte from the most significant one.
     for count in sizes:
         for step in (1, -1):
             last = shift + step * (count - 1)
@@ -119,6 +120,7 @@ def _flags(
 
 
 def _row(fields: Fields, begin: int, long_enough: int) -> Row | None:
+    # Words of the same size follow each other in memory without padding.
     first, end = fields[begin], begin + 1
     bits, at = first.model.bits, first.model.at
     if not first.is_plain_word:

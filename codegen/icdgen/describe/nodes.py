@@ -144,6 +144,7 @@ class MessagesOfId(NamedTuple):
     @property
     def fallback(self) -> MessageOfId | None:
         """Message of a frame that matches no message of `tested`: only its length can be wrong. None without such a message."""
+        # Messages with more constants are tried first. If all have the same length, the last one needs no test of it.
         last = self.messages[-1]
         return last if not self.is_shared or (self.length is not None and not last.constant_bytes) else None
 

@@ -48,6 +48,7 @@ class ScalarDescription(Named[NodePlace]):
         ):  # derived values have no raw value, only a physical one
             self.name = f"{self.name}_{place.unit.identifier}"
         self.declared_name = self.name
+        # Names carry the unit, so that code with a wrong unit is visible where it is written.
         unit = "text" if self.is_text else place.unit.identifier if place.unit else "physical"
         self.physical_name = f"{self.declared_name}_{unit}"
 

@@ -44,6 +44,8 @@ def read(field: FieldDescription, frame: str = "buffer") -> Read:
 
 def _from_bits(field: FieldDescription, wide: int, joined: bool) -> str:
     storage = field.storage
+    # Converting an unsigned value beyond INT_MAX to a signed type is implementation-defined (C99, 6.3.1.3), so functions of
+    # the support header do it.
     if not storage.signed:
         return cast(BITS, storage.bits) if joined and storage.bits != wide else BITS
     if not field.is_narrow:
@@ -79,9 +81,11 @@ def put(field: FieldDescription, piece: Piece) -> str:
     """Return the term of a field for the byte of ``piece``, an `int`. The caller removes bits beyond the byte."""
     storage, value = field.storage, _raw(field)
     if piece.at:
+        # `>>` of a negative value is implementation-defined (C99, 6.5.7).
         value = f"{cast(value, storage.bits) if storage.signed else value} >> {piece.at}"
     if storage.bits > 8 or storage.signed:
         value = cast(value, 8)
+    # Above the top bits of an unsigned value there are only zeros: encode has tested that it fits.
     top = piece.at + piece.bits == field.model.bits and not storage.signed
     if not top and not piece.reaches_top:
         value = f"{grouped(value)} & 0x{piece.low_mask:02X}"

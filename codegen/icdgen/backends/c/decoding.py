@@ -204,6 +204,7 @@ def number(field: FieldDescription, target: str, frame: str = "buffer") -> str:
 
 
 def _assigned(field: FieldDescription, target: str, value: str) -> str:
+    # C forbids access to the bits of a float through a pointer to an integer (C99, 6.5), so a function copies them.
     if field.model.type == "float":
         return call(f"icdgen_set_f{field.model.bits}", (f"&{target}", value))
     return f"{target} = {value};"

@@ -92,6 +92,7 @@ class _Frame:
             self.bytes.add_whole(byte, group.length, call(f"ICDGEN_WRITE_{macro_of(group)}", arguments))
             return
         macro = f"ICDGEN_JOIN_{macro_of(group)}"
+        # Eight flags are a byte of their own; four share it with other terms and are combined in a variable before.
         if len(names) == 8:
             self.bytes.add_whole(byte, 1, call(f"buffer[{byte}] = {macro}", (*source, *names)))
             return

@@ -45,6 +45,7 @@ def _statements(
 
 def initial(message: Composite[Any]) -> list[str]:
     """Return the statements that set constants, and counters to their smallest value."""
+    # `memset` has cleared the message, so only values other than 0 need a statement.
     counters = [field for field in message.members if field.model.smallest_raw]
     lines = [f"message->{field.member} = {field.initial_raw}u;" for field in counters]
     for field in message.walk(Into.STRUCTS):

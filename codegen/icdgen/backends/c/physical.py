@@ -152,11 +152,13 @@ def _integers(access: IntegerAccess, storage: Storage) -> IntegerAccessors:
 
 
 def _integer_getter(factor: int, offset: int, bits: int, storage: Storage) -> str:
+    # An unsigned operand of 64 bits would make the product unsigned.
     raw = cast(RAW, 64, True) if storage.bits == 64 and not storage.signed else RAW
     return _plus(raw if factor == 1 else f"{raw} * INT{bits}_C({factor})", offset, bits)
 
 
 def _integer_setter(factor: int, offset: int, wide: int, storage: Storage) -> str:
+    # The support header rounds for positive divisors only, so a negative factor swaps the operands of the difference.
     if factor > 0:
         value = _plus("value", -offset, wide)
     else:

@@ -120,6 +120,7 @@ def _finished(field: FieldDescription, value: str, size: int) -> str:
 
 def _signed(field: FieldDescription, value: str, size: int) -> str:
     """Return an unsigned integer of ``size`` bits as a signed one, with the sign of the field extended."""
+    # Shifting the sign bit to the top and back extends it: `>>` of a signed integer is arithmetic in Rust.
     unused = size - field.model.bits
     if size == 8:
         shifted = value if not unused else f"{_parenthesised(value)} << {unused}"
@@ -228,6 +229,7 @@ def _put_whole(field: FieldDescription, source: str) -> list[str]:
 
 
 def _put_pieces(row: tuple[Piece, ...], source: str, size: int) -> list[str]:
+    # If all runs start at whole bytes of the value, its bytes in memory are the parts, without shifts.
     if size > 8 and all(piece.at % 8 == 0 for piece in row):
         return [
             f"let value = {source}.to_le_bytes();",

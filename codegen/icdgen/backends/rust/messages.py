@@ -83,6 +83,7 @@ def of_composite(composite: Composite[Any]) -> dict[str, object]:
     """Return the values for a message or struct."""
     fields = composite.members
     has_default = all(map(_is_default, fields))
+    # Floats have no total equality, so messages with floats derive neither `Eq` nor `Hash`.
     traits = ["Clone", "Copy", "Debug", *(["Default"] if has_default else []), "PartialEq"]
     narrow = [field for field in fields if field.needs_range_check]
     return {
