@@ -1,4 +1,4 @@
-//! What generated messages run on. Its modules are copied into every generated crate, beside its nodes.
+//! Runtime of generated messages. Its modules are copied into every generated crate.
 
 #![no_std]
 #![forbid(unsafe_code)]

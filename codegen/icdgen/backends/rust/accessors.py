@@ -29,7 +29,7 @@ class Accessor(NamedTuple):
 def accessors(field: FieldDescription) -> list[Accessor]:
     """Return the accessors of a field with a scale or calibration."""
     name, about, what = field.physical_name, physical_comment(field.model), physical_name(field.model)
-    sets = f"Sets {'an element of ' if field.count else ''}{{}}, to the nearest raw value, ties to even"
+    sets = f"Set {'an element of ' if field.count else ''}{{}} to the nearest raw value, ties to even"
     end = ", or if there is no such element." if field.count else "."
     if field.curve is not None:
         kind = {32: "single", 64: "number"}[field.model.bits] if field.model.type == "float" else "raw"

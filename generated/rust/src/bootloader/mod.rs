@@ -55,7 +55,7 @@ pub use self::copy_to_internal_flash_progress::CopyToInternalFlashProgress;
 
 pub use crate::wire::links::bootloader::{LINK, LONGEST};
 
-/// The node as a type: [`LINK`], a client for it and the messages that the client takes have it in common.
+/// Type of the node. It restricts a client that is created with [`LINK`] to the messages of this node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Node {}
 
@@ -64,7 +64,7 @@ pub const NODE_TYPE: u8 = 110;
 /// Version of the interface described here.
 pub const INTERFACE_VERSION: u8 = 3;
 
-/// Every telecommand of the node.
+/// Any telecommand message of the node.
 ///
 /// ```
 /// use icd::bootloader::Telecommand;
@@ -142,11 +142,11 @@ pub enum Telecommand {
 }
 
 impl Telecommand {
-    /// Decodes the telecommand of that id.
+    /// Decode the telecommand frame with this id.
     ///
     /// # Errors
     ///
-    /// [`Error::UnknownId`] if there is none, [`Error::Length`] if it has another length.
+    /// [`Error::UnknownId`] if there is no such message, [`Error::Length`] if the frame has the wrong length.
     pub fn from_bytes(id: u8, bytes: &[u8]) -> Result<Self, Error> {
         Ok(match id {
             crate::common::Reset::ID => match bytes.try_into() {
@@ -277,11 +277,11 @@ impl Telecommand {
         })
     }
 
-    /// Encodes it to the beginning of `buffer` and says how many bytes it has.
+    /// Encode the message to the beginning of `buffer` and return the number of bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if the buffer is too short, [`Error::Range`] if a value does not fit.
+    /// [`Error::Length`] if the buffer is too small, [`Error::Range`] if a value does not fit into its field.
     pub fn write_to(&self, buffer: &mut [u8]) -> Result<usize, Error> {
         match self {
             Self::Reset(message) => write_to(buffer, &message.to_bytes()?),
@@ -318,7 +318,7 @@ impl Telecommand {
         }
     }
 
-    /// The id.
+    /// Return the id.
     #[must_use]
     pub const fn id(&self) -> u8 {
         match self {
@@ -356,7 +356,7 @@ impl Telecommand {
         }
     }
 
-    /// Length in bytes, without the id.
+    /// Return the length in bytes, without the id.
     #[must_use]
     pub const fn length(&self) -> usize {
         match self {
@@ -396,7 +396,7 @@ impl Telecommand {
         }
     }
 
-    /// Name in the ICD.
+    /// Return the name in the ICD.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -435,7 +435,7 @@ impl Telecommand {
     }
 }
 
-/// Its name and the values of its fields: physical ones, with their units.
+/// Show the name and the values of the fields, physical values with their units.
 impl ::core::fmt::Display for Telecommand {
     fn fmt(&self, out: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
         match self {
@@ -506,7 +506,7 @@ impl crate::wire::TelecommandOf<Node> for RunSelectedProgram {}
 impl crate::wire::TelecommandOf<Node> for ReadProgramInformation {}
 impl crate::wire::TelecommandOf<Node> for CopyToInternalFlash {}
 
-/// Every telemetry of the node.
+/// Any telemetry message of the node.
 ///
 /// ```
 /// use icd::bootloader::Telemetry;
@@ -582,11 +582,11 @@ pub enum Telemetry {
 }
 
 impl Telemetry {
-    /// Decodes the telemetry of that id.
+    /// Decode the telemetry frame with this id.
     ///
     /// # Errors
     ///
-    /// [`Error::UnknownId`] if there is none, [`Error::Length`] if it has another length.
+    /// [`Error::UnknownId`] if there is no such message, [`Error::Length`] if the frame has the wrong length.
     pub fn from_bytes(id: u8, bytes: &[u8]) -> Result<Self, Error> {
         Ok(match id {
             crate::common::Identification::ID => match bytes.try_into() {
@@ -713,11 +713,11 @@ impl Telemetry {
         })
     }
 
-    /// Encodes it to the beginning of `buffer` and says how many bytes it has.
+    /// Encode the message to the beginning of `buffer` and return the number of bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if the buffer is too short, [`Error::Range`] if a value does not fit.
+    /// [`Error::Length`] if the buffer is too small, [`Error::Range`] if a value does not fit into its field.
     pub fn write_to(&self, buffer: &mut [u8]) -> Result<usize, Error> {
         match self {
             Self::Identification(message) => write_to(buffer, &message.to_bytes()?),
@@ -755,7 +755,7 @@ impl Telemetry {
         }
     }
 
-    /// The id.
+    /// Return the id.
     #[must_use]
     pub const fn id(&self) -> u8 {
         match self {
@@ -794,7 +794,7 @@ impl Telemetry {
         }
     }
 
-    /// Length in bytes, without the id.
+    /// Return the length in bytes, without the id.
     #[must_use]
     pub const fn length(&self) -> usize {
         match self {
@@ -835,7 +835,7 @@ impl Telemetry {
         }
     }
 
-    /// Name in the ICD.
+    /// Return the name in the ICD.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -877,7 +877,7 @@ impl Telemetry {
     }
 }
 
-/// Its name and the values of its fields: physical ones, with their units.
+/// Show the name and the values of the fields, physical values with their units.
 impl ::core::fmt::Display for Telemetry {
     fn fmt(&self, out: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
         match self {

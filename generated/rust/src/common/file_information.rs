@@ -81,11 +81,11 @@ impl FileInformation {
     /// Id of the telemetry.
     pub const ID: u8 = 243;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -94,7 +94,7 @@ impl FileInformation {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 12]) -> Self {
@@ -108,11 +108,11 @@ impl FileInformation {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encode the message; reserved bits are 0.
     ///
     /// # Errors
     ///
-    /// [`Error::Range`] if a value does not fit its field.
+    /// [`Error::Range`] if a value does not fit into its field.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 12], Error> {
         FILE_TYPE.fit(self.file_type.raw())?;

@@ -151,11 +151,11 @@ pub use self::hole_map_8::HoleMap8;
 
 pub use crate::wire::links::common::{LINK, LONGEST};
 
-/// The node as a type: [`LINK`], a client for it and the messages that the client takes have it in common.
+/// Type of the node. It restricts a client that is created with [`LINK`] to the messages of this node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Node {}
 
-/// Every telecommand of the node.
+/// Any telecommand message of the node.
 ///
 /// ```
 /// use icd::common::Telecommand;
@@ -223,11 +223,11 @@ pub enum Telecommand {
 }
 
 impl Telecommand {
-    /// Decodes the telecommand of that id.
+    /// Decode the telecommand frame with this id.
     ///
     /// # Errors
     ///
-    /// [`Error::UnknownId`] if there is none, [`Error::Length`] if it has another length.
+    /// [`Error::UnknownId`] if there is no such message, [`Error::Length`] if the frame has the wrong length.
     pub fn from_bytes(id: u8, bytes: &[u8]) -> Result<Self, Error> {
         Ok(match id {
             Reset::ID => match bytes.try_into() {
@@ -338,11 +338,11 @@ impl Telecommand {
         })
     }
 
-    /// Encodes it to the beginning of `buffer` and says how many bytes it has.
+    /// Encode the message to the beginning of `buffer` and return the number of bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if the buffer is too short, [`Error::Range`] if a value does not fit.
+    /// [`Error::Length`] if the buffer is too small, [`Error::Range`] if a value does not fit into its field.
     pub fn write_to(&self, buffer: &mut [u8]) -> Result<usize, Error> {
         match self {
             Self::Reset(message) => write_to(buffer, &message.to_bytes()?),
@@ -374,7 +374,7 @@ impl Telecommand {
         }
     }
 
-    /// The id.
+    /// Return the id.
     #[must_use]
     pub const fn id(&self) -> u8 {
         match self {
@@ -407,7 +407,7 @@ impl Telecommand {
         }
     }
 
-    /// Length in bytes, without the id.
+    /// Return the length in bytes, without the id.
     #[must_use]
     pub const fn length(&self) -> usize {
         match self {
@@ -440,7 +440,7 @@ impl Telecommand {
         }
     }
 
-    /// Name in the ICD.
+    /// Return the name in the ICD.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -474,7 +474,7 @@ impl Telecommand {
     }
 }
 
-/// Its name and the values of its fields: physical ones, with their units.
+/// Show the name and the values of the fields, physical values with their units.
 impl ::core::fmt::Display for Telecommand {
     fn fmt(&self, out: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
         match self {
@@ -535,7 +535,7 @@ impl crate::wire::TelecommandOf<Node> for HoleMap6 {}
 impl crate::wire::TelecommandOf<Node> for HoleMap7 {}
 impl crate::wire::TelecommandOf<Node> for HoleMap8 {}
 
-/// Every telemetry of the node.
+/// Any telemetry message of the node.
 ///
 /// ```
 /// use icd::common::Telemetry;
@@ -605,11 +605,11 @@ pub enum Telemetry {
 }
 
 impl Telemetry {
-    /// Decodes the telemetry of that id.
+    /// Decode the telemetry frame with this id.
     ///
     /// # Errors
     ///
-    /// [`Error::UnknownId`] if there is none, [`Error::Length`] if it has another length.
+    /// [`Error::UnknownId`] if there is no such message, [`Error::Length`] if the frame has the wrong length.
     pub fn from_bytes(id: u8, bytes: &[u8]) -> Result<Self, Error> {
         Ok(match id {
             Identification::ID => match bytes.try_into() {
@@ -724,11 +724,11 @@ impl Telemetry {
         })
     }
 
-    /// Encodes it to the beginning of `buffer` and says how many bytes it has.
+    /// Encode the message to the beginning of `buffer` and return the number of bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if the buffer is too short, [`Error::Range`] if a value does not fit.
+    /// [`Error::Length`] if the buffer is too small, [`Error::Range`] if a value does not fit into its field.
     pub fn write_to(&self, buffer: &mut [u8]) -> Result<usize, Error> {
         match self {
             Self::Identification(message) => write_to(buffer, &message.to_bytes()?),
@@ -763,7 +763,7 @@ impl Telemetry {
         }
     }
 
-    /// The id.
+    /// Return the id.
     #[must_use]
     pub const fn id(&self) -> u8 {
         match self {
@@ -797,7 +797,7 @@ impl Telemetry {
         }
     }
 
-    /// Length in bytes, without the id.
+    /// Return the length in bytes, without the id.
     #[must_use]
     pub const fn length(&self) -> usize {
         match self {
@@ -833,7 +833,7 @@ impl Telemetry {
         }
     }
 
-    /// Name in the ICD.
+    /// Return the name in the ICD.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -868,7 +868,7 @@ impl Telemetry {
     }
 }
 
-/// Its name and the values of its fields: physical ones, with their units.
+/// Show the name and the values of the fields, physical values with their units.
 impl ::core::fmt::Display for Telemetry {
     fn fmt(&self, out: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
         match self {

@@ -757,11 +757,11 @@ impl AdcsConfiguration {
     /// Reference Wheel Momentum in Nms: must be below this.
     pub const REFERENCE_WHEEL_MOMENTUM_BELOW: f64 = 0.0;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -770,7 +770,7 @@ impl AdcsConfiguration {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 504]) -> Self {
@@ -991,11 +991,11 @@ impl AdcsConfiguration {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encode the message; reserved bits are 0.
     ///
     /// # Errors
     ///
-    /// [`Error::Range`] if a value does not fit its field.
+    /// [`Error::Range`] if a value does not fit into its field.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 504], Error> {
         SUN_POINTING_FACET.fit(self.sun_pointing_facet.raw())?;
@@ -1225,7 +1225,7 @@ impl AdcsConfiguration {
         f64::from(self.x_rate_sensor_offset) / 1_000.0
     }
 
-    /// Sets X-Rate Sensor Offset in deg/s, to the nearest raw value, ties to even. [`Error::Range`]
+    /// Set X-Rate Sensor Offset in deg/s to the nearest raw value, ties to even. [`Error::Range`]
     /// if it does not fit or is not finite.
     pub fn set_x_rate_sensor_offset_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.x_rate_sensor_offset = X_RATE_SENSOR_OFFSET.raw(value)?;
@@ -1244,7 +1244,7 @@ impl AdcsConfiguration {
         i32::from(self.x_rate_sensor_offset)
     }
 
-    /// Sets X-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// Set X-Rate Sensor Offset in thousandths of deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_x_rate_sensor_offset_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.x_rate_sensor_offset = X_RATE_SENSOR_OFFSET.whole(value.into(), 1, 0)?;
@@ -1257,7 +1257,7 @@ impl AdcsConfiguration {
         f64::from(self.y_rate_sensor_offset) / 1_000.0
     }
 
-    /// Sets Y-Rate Sensor Offset in deg/s, to the nearest raw value, ties to even. [`Error::Range`]
+    /// Set Y-Rate Sensor Offset in deg/s to the nearest raw value, ties to even. [`Error::Range`]
     /// if it does not fit or is not finite.
     pub fn set_y_rate_sensor_offset_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.y_rate_sensor_offset = Y_RATE_SENSOR_OFFSET.raw(value)?;
@@ -1276,7 +1276,7 @@ impl AdcsConfiguration {
         i32::from(self.y_rate_sensor_offset)
     }
 
-    /// Sets Y-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// Set Y-Rate Sensor Offset in thousandths of deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_y_rate_sensor_offset_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.y_rate_sensor_offset = Y_RATE_SENSOR_OFFSET.whole(value.into(), 1, 0)?;
@@ -1289,7 +1289,7 @@ impl AdcsConfiguration {
         f64::from(self.z_rate_sensor_offset) / 1_000.0
     }
 
-    /// Sets Z-Rate Sensor Offset in deg/s, to the nearest raw value, ties to even. [`Error::Range`]
+    /// Set Z-Rate Sensor Offset in deg/s to the nearest raw value, ties to even. [`Error::Range`]
     /// if it does not fit or is not finite.
     pub fn set_z_rate_sensor_offset_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.z_rate_sensor_offset = Z_RATE_SENSOR_OFFSET.raw(value)?;
@@ -1308,7 +1308,7 @@ impl AdcsConfiguration {
         i32::from(self.z_rate_sensor_offset)
     }
 
-    /// Sets Z-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// Set Z-Rate Sensor Offset in thousandths of deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_z_rate_sensor_offset_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.z_rate_sensor_offset = Z_RATE_SENSOR_OFFSET.whole(value.into(), 1, 0)?;
@@ -1321,7 +1321,7 @@ impl AdcsConfiguration {
         f64::from(self.css1_relative_scale) / 100.0
     }
 
-    /// Sets CSS1 Relative Scale, as a physical value, to the nearest raw value, ties to even.
+    /// Set CSS1 Relative Scale, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css1_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css1_relative_scale = CSS1_RELATIVE_SCALE.raw(value)?;
@@ -1340,7 +1340,7 @@ impl AdcsConfiguration {
         i32::from(self.css1_relative_scale) * 10
     }
 
-    /// Sets CSS1 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// Set CSS1 Relative Scale in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_css1_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
         self.css1_relative_scale = CSS1_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
@@ -1353,7 +1353,7 @@ impl AdcsConfiguration {
         f64::from(self.css2_relative_scale) / 100.0
     }
 
-    /// Sets CSS2 Relative Scale, as a physical value, to the nearest raw value, ties to even.
+    /// Set CSS2 Relative Scale, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css2_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css2_relative_scale = CSS2_RELATIVE_SCALE.raw(value)?;
@@ -1372,7 +1372,7 @@ impl AdcsConfiguration {
         i32::from(self.css2_relative_scale) * 10
     }
 
-    /// Sets CSS2 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// Set CSS2 Relative Scale in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_css2_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
         self.css2_relative_scale = CSS2_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
@@ -1385,7 +1385,7 @@ impl AdcsConfiguration {
         f64::from(self.css3_relative_scale) / 100.0
     }
 
-    /// Sets CSS3 Relative Scale, as a physical value, to the nearest raw value, ties to even.
+    /// Set CSS3 Relative Scale, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css3_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css3_relative_scale = CSS3_RELATIVE_SCALE.raw(value)?;
@@ -1404,7 +1404,7 @@ impl AdcsConfiguration {
         i32::from(self.css3_relative_scale) * 10
     }
 
-    /// Sets CSS3 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// Set CSS3 Relative Scale in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_css3_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
         self.css3_relative_scale = CSS3_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
@@ -1417,7 +1417,7 @@ impl AdcsConfiguration {
         f64::from(self.css4_relative_scale) / 100.0
     }
 
-    /// Sets CSS4 Relative Scale, as a physical value, to the nearest raw value, ties to even.
+    /// Set CSS4 Relative Scale, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css4_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css4_relative_scale = CSS4_RELATIVE_SCALE.raw(value)?;
@@ -1436,7 +1436,7 @@ impl AdcsConfiguration {
         i32::from(self.css4_relative_scale) * 10
     }
 
-    /// Sets CSS4 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// Set CSS4 Relative Scale in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_css4_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
         self.css4_relative_scale = CSS4_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
@@ -1449,7 +1449,7 @@ impl AdcsConfiguration {
         f64::from(self.css5_relative_scale) / 100.0
     }
 
-    /// Sets CSS5 Relative Scale, as a physical value, to the nearest raw value, ties to even.
+    /// Set CSS5 Relative Scale, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css5_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css5_relative_scale = CSS5_RELATIVE_SCALE.raw(value)?;
@@ -1468,7 +1468,7 @@ impl AdcsConfiguration {
         i32::from(self.css5_relative_scale) * 10
     }
 
-    /// Sets CSS5 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// Set CSS5 Relative Scale in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_css5_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
         self.css5_relative_scale = CSS5_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
@@ -1481,7 +1481,7 @@ impl AdcsConfiguration {
         f64::from(self.css6_relative_scale) / 100.0
     }
 
-    /// Sets CSS6 Relative Scale, as a physical value, to the nearest raw value, ties to even.
+    /// Set CSS6 Relative Scale, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css6_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css6_relative_scale = CSS6_RELATIVE_SCALE.raw(value)?;
@@ -1500,7 +1500,7 @@ impl AdcsConfiguration {
         i32::from(self.css6_relative_scale) * 10
     }
 
-    /// Sets CSS6 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// Set CSS6 Relative Scale in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_css6_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
         self.css6_relative_scale = CSS6_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
@@ -1513,7 +1513,7 @@ impl AdcsConfiguration {
         f64::from(self.css7_relative_scale) / 100.0
     }
 
-    /// Sets CSS7 Relative Scale, as a physical value, to the nearest raw value, ties to even.
+    /// Set CSS7 Relative Scale, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css7_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css7_relative_scale = CSS7_RELATIVE_SCALE.raw(value)?;
@@ -1532,7 +1532,7 @@ impl AdcsConfiguration {
         i32::from(self.css7_relative_scale) * 10
     }
 
-    /// Sets CSS7 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// Set CSS7 Relative Scale in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_css7_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
         self.css7_relative_scale = CSS7_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
@@ -1545,7 +1545,7 @@ impl AdcsConfiguration {
         f64::from(self.css8_relative_scale) / 100.0
     }
 
-    /// Sets CSS8 Relative Scale, as a physical value, to the nearest raw value, ties to even.
+    /// Set CSS8 Relative Scale, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css8_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css8_relative_scale = CSS8_RELATIVE_SCALE.raw(value)?;
@@ -1564,7 +1564,7 @@ impl AdcsConfiguration {
         i32::from(self.css8_relative_scale) * 10
     }
 
-    /// Sets CSS8 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// Set CSS8 Relative Scale in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_css8_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
         self.css8_relative_scale = CSS8_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
@@ -1577,7 +1577,7 @@ impl AdcsConfiguration {
         f64::from(self.css9_relative_scale) / 100.0
     }
 
-    /// Sets CSS9 Relative Scale, as a physical value, to the nearest raw value, ties to even.
+    /// Set CSS9 Relative Scale, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css9_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css9_relative_scale = CSS9_RELATIVE_SCALE.raw(value)?;
@@ -1596,7 +1596,7 @@ impl AdcsConfiguration {
         i32::from(self.css9_relative_scale) * 10
     }
 
-    /// Sets CSS9 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// Set CSS9 Relative Scale in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_css9_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
         self.css9_relative_scale = CSS9_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
@@ -1609,7 +1609,7 @@ impl AdcsConfiguration {
         f64::from(self.css10_relative_scale) / 100.0
     }
 
-    /// Sets CSS10 Relative Scale, as a physical value, to the nearest raw value, ties to even.
+    /// Set CSS10 Relative Scale, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css10_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css10_relative_scale = CSS10_RELATIVE_SCALE.raw(value)?;
@@ -1628,7 +1628,7 @@ impl AdcsConfiguration {
         i32::from(self.css10_relative_scale) * 10
     }
 
-    /// Sets CSS10 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// Set CSS10 Relative Scale in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_css10_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
         self.css10_relative_scale = CSS10_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
@@ -1641,7 +1641,7 @@ impl AdcsConfiguration {
         f64::from(self.cam1_mounting_alpha) / 100.0
     }
 
-    /// Sets Cam1 Sensor Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
+    /// Set Cam1 Sensor Mounting Transform Alpha Angle in deg to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cam1_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
         self.cam1_mounting_alpha = CAM1_MOUNTING_ALPHA.raw(value)?;
@@ -1660,7 +1660,7 @@ impl AdcsConfiguration {
         i32::from(self.cam1_mounting_alpha) * 10
     }
 
-    /// Sets Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw
+    /// Set Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_cam1_mounting_alpha_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.cam1_mounting_alpha = CAM1_MOUNTING_ALPHA.whole(value.into(), 10, 0)?;
@@ -1673,8 +1673,8 @@ impl AdcsConfiguration {
         f64::from(self.cam1_mounting_beta) / 100.0
     }
 
-    /// Sets Cam1 Sensor Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
-    /// even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Cam1 Sensor Mounting Transform Beta Angle in deg to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cam1_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
         self.cam1_mounting_beta = CAM1_MOUNTING_BETA.raw(value)?;
         Ok(())
@@ -1692,7 +1692,7 @@ impl AdcsConfiguration {
         i32::from(self.cam1_mounting_beta) * 10
     }
 
-    /// Sets Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg, to the nearest raw
+    /// Set Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_cam1_mounting_beta_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.cam1_mounting_beta = CAM1_MOUNTING_BETA.whole(value.into(), 10, 0)?;
@@ -1705,7 +1705,7 @@ impl AdcsConfiguration {
         f64::from(self.cam1_mounting_gamma) / 100.0
     }
 
-    /// Sets Cam1 Sensor Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
+    /// Set Cam1 Sensor Mounting Transform Gamma Angle in deg to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cam1_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
         self.cam1_mounting_gamma = CAM1_MOUNTING_GAMMA.raw(value)?;
@@ -1724,7 +1724,7 @@ impl AdcsConfiguration {
         i32::from(self.cam1_mounting_gamma) * 10
     }
 
-    /// Sets Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw
+    /// Set Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_cam1_mounting_gamma_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.cam1_mounting_gamma = CAM1_MOUNTING_GAMMA.whole(value.into(), 10, 0)?;
@@ -1737,7 +1737,7 @@ impl AdcsConfiguration {
         f64::from(self.cam1_boresight_x) / 100.0
     }
 
-    /// Sets Cam1 Boresight X in pixels, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Cam1 Boresight X in pixels to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit or is not finite.
     pub fn set_cam1_boresight_x_pixels(&mut self, value: f64) -> Result<(), Error> {
         self.cam1_boresight_x = CAM1_BORESIGHT_X.raw(value)?;
@@ -1756,7 +1756,7 @@ impl AdcsConfiguration {
         i32::from(self.cam1_boresight_x) * 10
     }
 
-    /// Sets Cam1 Boresight X in thousandths of pixels, to the nearest raw value, ties to even.
+    /// Set Cam1 Boresight X in thousandths of pixels to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_cam1_boresight_x_milli_pixels(&mut self, value: i32) -> Result<(), Error> {
         self.cam1_boresight_x = CAM1_BORESIGHT_X.whole(value.into(), 10, 0)?;
@@ -1769,7 +1769,7 @@ impl AdcsConfiguration {
         f64::from(self.cam1_boresight_y) / 100.0
     }
 
-    /// Sets Cam1 Boresight Y in pixels, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Cam1 Boresight Y in pixels to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit or is not finite.
     pub fn set_cam1_boresight_y_pixels(&mut self, value: f64) -> Result<(), Error> {
         self.cam1_boresight_y = CAM1_BORESIGHT_Y.raw(value)?;
@@ -1788,7 +1788,7 @@ impl AdcsConfiguration {
         i32::from(self.cam1_boresight_y) * 10
     }
 
-    /// Sets Cam1 Boresight Y in thousandths of pixels, to the nearest raw value, ties to even.
+    /// Set Cam1 Boresight Y in thousandths of pixels to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_cam1_boresight_y_milli_pixels(&mut self, value: i32) -> Result<(), Error> {
         self.cam1_boresight_y = CAM1_BORESIGHT_Y.whole(value.into(), 10, 0)?;
@@ -1801,7 +1801,7 @@ impl AdcsConfiguration {
         f64::from(self.cam2_mounting_alpha) / 100.0
     }
 
-    /// Sets Cam2 Sensor Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
+    /// Set Cam2 Sensor Mounting Transform Alpha Angle in deg to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cam2_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
         self.cam2_mounting_alpha = CAM2_MOUNTING_ALPHA.raw(value)?;
@@ -1820,7 +1820,7 @@ impl AdcsConfiguration {
         i32::from(self.cam2_mounting_alpha) * 10
     }
 
-    /// Sets Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw
+    /// Set Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_cam2_mounting_alpha_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.cam2_mounting_alpha = CAM2_MOUNTING_ALPHA.whole(value.into(), 10, 0)?;
@@ -1833,8 +1833,8 @@ impl AdcsConfiguration {
         f64::from(self.cam2_mounting_beta) / 100.0
     }
 
-    /// Sets Cam2 Sensor Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
-    /// even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Cam2 Sensor Mounting Transform Beta Angle in deg to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cam2_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
         self.cam2_mounting_beta = CAM2_MOUNTING_BETA.raw(value)?;
         Ok(())
@@ -1852,7 +1852,7 @@ impl AdcsConfiguration {
         i32::from(self.cam2_mounting_beta) * 10
     }
 
-    /// Sets Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg, to the nearest raw
+    /// Set Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_cam2_mounting_beta_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.cam2_mounting_beta = CAM2_MOUNTING_BETA.whole(value.into(), 10, 0)?;
@@ -1865,7 +1865,7 @@ impl AdcsConfiguration {
         f64::from(self.cam2_mounting_gamma) / 100.0
     }
 
-    /// Sets Cam2 Sensor Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
+    /// Set Cam2 Sensor Mounting Transform Gamma Angle in deg to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cam2_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
         self.cam2_mounting_gamma = CAM2_MOUNTING_GAMMA.raw(value)?;
@@ -1884,7 +1884,7 @@ impl AdcsConfiguration {
         i32::from(self.cam2_mounting_gamma) * 10
     }
 
-    /// Sets Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw
+    /// Set Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_cam2_mounting_gamma_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.cam2_mounting_gamma = CAM2_MOUNTING_GAMMA.whole(value.into(), 10, 0)?;
@@ -1897,7 +1897,7 @@ impl AdcsConfiguration {
         f64::from(self.cam2_boresight_x) / 100.0
     }
 
-    /// Sets Cam2 Boresight X in pixels, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Cam2 Boresight X in pixels to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit or is not finite.
     pub fn set_cam2_boresight_x_pixels(&mut self, value: f64) -> Result<(), Error> {
         self.cam2_boresight_x = CAM2_BORESIGHT_X.raw(value)?;
@@ -1916,7 +1916,7 @@ impl AdcsConfiguration {
         i32::from(self.cam2_boresight_x) * 10
     }
 
-    /// Sets Cam2 Boresight X in thousandths of pixels, to the nearest raw value, ties to even.
+    /// Set Cam2 Boresight X in thousandths of pixels to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_cam2_boresight_x_milli_pixels(&mut self, value: i32) -> Result<(), Error> {
         self.cam2_boresight_x = CAM2_BORESIGHT_X.whole(value.into(), 10, 0)?;
@@ -1929,7 +1929,7 @@ impl AdcsConfiguration {
         f64::from(self.cam2_boresight_y) / 100.0
     }
 
-    /// Sets Cam2 Boresight Y in pixels, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Cam2 Boresight Y in pixels to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit or is not finite.
     pub fn set_cam2_boresight_y_pixels(&mut self, value: f64) -> Result<(), Error> {
         self.cam2_boresight_y = CAM2_BORESIGHT_Y.raw(value)?;
@@ -1948,7 +1948,7 @@ impl AdcsConfiguration {
         i32::from(self.cam2_boresight_y) * 10
     }
 
-    /// Sets Cam2 Boresight Y in thousandths of pixels, to the nearest raw value, ties to even.
+    /// Set Cam2 Boresight Y in thousandths of pixels to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_cam2_boresight_y_milli_pixels(&mut self, value: i32) -> Result<(), Error> {
         self.cam2_boresight_y = CAM2_BORESIGHT_Y.whole(value.into(), 10, 0)?;
@@ -1961,7 +1961,7 @@ impl AdcsConfiguration {
         f64::from(self.magnetometer_mounting_alpha) / 100.0
     }
 
-    /// Sets Magnetometer Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
+    /// Set Magnetometer Mounting Transform Alpha Angle in deg to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_mounting_alpha = MAGNETOMETER_MOUNTING_ALPHA.raw(value)?;
@@ -1980,7 +1980,7 @@ impl AdcsConfiguration {
         i32::from(self.magnetometer_mounting_alpha) * 10
     }
 
-    /// Sets Magnetometer Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw
+    /// Set Magnetometer Mounting Transform Alpha Angle in thousandths of deg to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_magnetometer_mounting_alpha_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.magnetometer_mounting_alpha = MAGNETOMETER_MOUNTING_ALPHA.whole(value.into(), 10, 0)?;
@@ -1993,7 +1993,7 @@ impl AdcsConfiguration {
         f64::from(self.magnetometer_mounting_beta) / 100.0
     }
 
-    /// Sets Magnetometer Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
+    /// Set Magnetometer Mounting Transform Beta Angle in deg to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_mounting_beta = MAGNETOMETER_MOUNTING_BETA.raw(value)?;
@@ -2012,7 +2012,7 @@ impl AdcsConfiguration {
         i32::from(self.magnetometer_mounting_beta) * 10
     }
 
-    /// Sets Magnetometer Mounting Transform Beta Angle in thousandths of deg, to the nearest raw
+    /// Set Magnetometer Mounting Transform Beta Angle in thousandths of deg to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_magnetometer_mounting_beta_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.magnetometer_mounting_beta = MAGNETOMETER_MOUNTING_BETA.whole(value.into(), 10, 0)?;
@@ -2025,7 +2025,7 @@ impl AdcsConfiguration {
         f64::from(self.magnetometer_mounting_gamma) / 100.0
     }
 
-    /// Sets Magnetometer Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
+    /// Set Magnetometer Mounting Transform Gamma Angle in deg to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_mounting_gamma = MAGNETOMETER_MOUNTING_GAMMA.raw(value)?;
@@ -2044,7 +2044,7 @@ impl AdcsConfiguration {
         i32::from(self.magnetometer_mounting_gamma) * 10
     }
 
-    /// Sets Magnetometer Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw
+    /// Set Magnetometer Mounting Transform Gamma Angle in thousandths of deg to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_magnetometer_mounting_gamma_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.magnetometer_mounting_gamma = MAGNETOMETER_MOUNTING_GAMMA.whole(value.into(), 10, 0)?;
@@ -2057,7 +2057,7 @@ impl AdcsConfiguration {
         f64::from(self.magnetometer_channel_1_offset) / 1_000.0
     }
 
-    /// Sets Magnetometer Channel 1 Offset, as a physical value, to the nearest raw value, ties to
+    /// Set Magnetometer Channel 1 Offset, as a physical value to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_channel_1_offset_physical(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_channel_1_offset = MAGNETOMETER_CHANNEL_1_OFFSET.raw(value)?;
@@ -2076,7 +2076,7 @@ impl AdcsConfiguration {
         i32::from(self.magnetometer_channel_1_offset)
     }
 
-    /// Sets Magnetometer Channel 1 Offset in thousandths, to the nearest raw value, ties to even.
+    /// Set Magnetometer Channel 1 Offset in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_magnetometer_channel_1_offset_milli(&mut self, value: i32) -> Result<(), Error> {
         self.magnetometer_channel_1_offset =
@@ -2090,7 +2090,7 @@ impl AdcsConfiguration {
         f64::from(self.magnetometer_channel_2_offset) / 1_000.0
     }
 
-    /// Sets Magnetometer Channel 2 Offset, as a physical value, to the nearest raw value, ties to
+    /// Set Magnetometer Channel 2 Offset, as a physical value to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_channel_2_offset_physical(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_channel_2_offset = MAGNETOMETER_CHANNEL_2_OFFSET.raw(value)?;
@@ -2109,7 +2109,7 @@ impl AdcsConfiguration {
         i32::from(self.magnetometer_channel_2_offset)
     }
 
-    /// Sets Magnetometer Channel 2 Offset in thousandths, to the nearest raw value, ties to even.
+    /// Set Magnetometer Channel 2 Offset in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_magnetometer_channel_2_offset_milli(&mut self, value: i32) -> Result<(), Error> {
         self.magnetometer_channel_2_offset =
@@ -2123,7 +2123,7 @@ impl AdcsConfiguration {
         f64::from(self.magnetometer_channel_3_offset) / 1_000.0
     }
 
-    /// Sets Magnetometer Channel 3 Offset, as a physical value, to the nearest raw value, ties to
+    /// Set Magnetometer Channel 3 Offset, as a physical value to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_channel_3_offset_physical(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_channel_3_offset = MAGNETOMETER_CHANNEL_3_OFFSET.raw(value)?;
@@ -2142,7 +2142,7 @@ impl AdcsConfiguration {
         i32::from(self.magnetometer_channel_3_offset)
     }
 
-    /// Sets Magnetometer Channel 3 Offset in thousandths, to the nearest raw value, ties to even.
+    /// Set Magnetometer Channel 3 Offset in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_magnetometer_channel_3_offset_milli(&mut self, value: i32) -> Result<(), Error> {
         self.magnetometer_channel_3_offset =
@@ -2156,8 +2156,8 @@ impl AdcsConfiguration {
         f64::from(self.magnetometer_sensitivity_s11) / 1_000.0
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S11, as a physical value, to the nearest raw value,
-    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Magnetometer Sensitivity Matrix S11, as a physical value to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_sensitivity_s11_physical(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_sensitivity_s11 = MAGNETOMETER_SENSITIVITY_S11.raw(value)?;
         Ok(())
@@ -2175,7 +2175,7 @@ impl AdcsConfiguration {
         i32::from(self.magnetometer_sensitivity_s11)
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S11 in thousandths, to the nearest raw value, ties to
+    /// Set Magnetometer Sensitivity Matrix S11 in thousandths to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit.
     pub fn set_magnetometer_sensitivity_s11_milli(&mut self, value: i32) -> Result<(), Error> {
         self.magnetometer_sensitivity_s11 = MAGNETOMETER_SENSITIVITY_S11.whole(value.into(), 1, 0)?;
@@ -2188,8 +2188,8 @@ impl AdcsConfiguration {
         f64::from(self.magnetometer_sensitivity_s22) / 1_000.0
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S22, as a physical value, to the nearest raw value,
-    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Magnetometer Sensitivity Matrix S22, as a physical value to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_sensitivity_s22_physical(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_sensitivity_s22 = MAGNETOMETER_SENSITIVITY_S22.raw(value)?;
         Ok(())
@@ -2207,7 +2207,7 @@ impl AdcsConfiguration {
         i32::from(self.magnetometer_sensitivity_s22)
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S22 in thousandths, to the nearest raw value, ties to
+    /// Set Magnetometer Sensitivity Matrix S22 in thousandths to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit.
     pub fn set_magnetometer_sensitivity_s22_milli(&mut self, value: i32) -> Result<(), Error> {
         self.magnetometer_sensitivity_s22 = MAGNETOMETER_SENSITIVITY_S22.whole(value.into(), 1, 0)?;
@@ -2220,8 +2220,8 @@ impl AdcsConfiguration {
         f64::from(self.magnetometer_sensitivity_s33) / 1_000.0
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S33, as a physical value, to the nearest raw value,
-    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Magnetometer Sensitivity Matrix S33, as a physical value to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_sensitivity_s33_physical(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_sensitivity_s33 = MAGNETOMETER_SENSITIVITY_S33.raw(value)?;
         Ok(())
@@ -2239,7 +2239,7 @@ impl AdcsConfiguration {
         i32::from(self.magnetometer_sensitivity_s33)
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S33 in thousandths, to the nearest raw value, ties to
+    /// Set Magnetometer Sensitivity Matrix S33 in thousandths to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit.
     pub fn set_magnetometer_sensitivity_s33_milli(&mut self, value: i32) -> Result<(), Error> {
         self.magnetometer_sensitivity_s33 = MAGNETOMETER_SENSITIVITY_S33.whole(value.into(), 1, 0)?;
@@ -2252,8 +2252,8 @@ impl AdcsConfiguration {
         f64::from(self.magnetometer_sensitivity_s12) / 1_000.0
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S12, as a physical value, to the nearest raw value,
-    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Magnetometer Sensitivity Matrix S12, as a physical value to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_sensitivity_s12_physical(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_sensitivity_s12 = MAGNETOMETER_SENSITIVITY_S12.raw(value)?;
         Ok(())
@@ -2271,7 +2271,7 @@ impl AdcsConfiguration {
         i32::from(self.magnetometer_sensitivity_s12)
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S12 in thousandths, to the nearest raw value, ties to
+    /// Set Magnetometer Sensitivity Matrix S12 in thousandths to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit.
     pub fn set_magnetometer_sensitivity_s12_milli(&mut self, value: i32) -> Result<(), Error> {
         self.magnetometer_sensitivity_s12 = MAGNETOMETER_SENSITIVITY_S12.whole(value.into(), 1, 0)?;
@@ -2284,8 +2284,8 @@ impl AdcsConfiguration {
         f64::from(self.magnetometer_sensitivity_s13) / 1_000.0
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S13, as a physical value, to the nearest raw value,
-    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Magnetometer Sensitivity Matrix S13, as a physical value to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_sensitivity_s13_physical(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_sensitivity_s13 = MAGNETOMETER_SENSITIVITY_S13.raw(value)?;
         Ok(())
@@ -2303,7 +2303,7 @@ impl AdcsConfiguration {
         i32::from(self.magnetometer_sensitivity_s13)
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S13 in thousandths, to the nearest raw value, ties to
+    /// Set Magnetometer Sensitivity Matrix S13 in thousandths to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit.
     pub fn set_magnetometer_sensitivity_s13_milli(&mut self, value: i32) -> Result<(), Error> {
         self.magnetometer_sensitivity_s13 = MAGNETOMETER_SENSITIVITY_S13.whole(value.into(), 1, 0)?;
@@ -2316,8 +2316,8 @@ impl AdcsConfiguration {
         f64::from(self.magnetometer_sensitivity_s21) / 1_000.0
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S21, as a physical value, to the nearest raw value,
-    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Magnetometer Sensitivity Matrix S21, as a physical value to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_sensitivity_s21_physical(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_sensitivity_s21 = MAGNETOMETER_SENSITIVITY_S21.raw(value)?;
         Ok(())
@@ -2335,7 +2335,7 @@ impl AdcsConfiguration {
         i32::from(self.magnetometer_sensitivity_s21)
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S21 in thousandths, to the nearest raw value, ties to
+    /// Set Magnetometer Sensitivity Matrix S21 in thousandths to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit.
     pub fn set_magnetometer_sensitivity_s21_milli(&mut self, value: i32) -> Result<(), Error> {
         self.magnetometer_sensitivity_s21 = MAGNETOMETER_SENSITIVITY_S21.whole(value.into(), 1, 0)?;
@@ -2348,8 +2348,8 @@ impl AdcsConfiguration {
         f64::from(self.magnetometer_sensitivity_s23) / 1_000.0
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S23, as a physical value, to the nearest raw value,
-    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Magnetometer Sensitivity Matrix S23, as a physical value to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_sensitivity_s23_physical(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_sensitivity_s23 = MAGNETOMETER_SENSITIVITY_S23.raw(value)?;
         Ok(())
@@ -2367,7 +2367,7 @@ impl AdcsConfiguration {
         i32::from(self.magnetometer_sensitivity_s23)
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S23 in thousandths, to the nearest raw value, ties to
+    /// Set Magnetometer Sensitivity Matrix S23 in thousandths to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit.
     pub fn set_magnetometer_sensitivity_s23_milli(&mut self, value: i32) -> Result<(), Error> {
         self.magnetometer_sensitivity_s23 = MAGNETOMETER_SENSITIVITY_S23.whole(value.into(), 1, 0)?;
@@ -2380,8 +2380,8 @@ impl AdcsConfiguration {
         f64::from(self.magnetometer_sensitivity_s31) / 1_000.0
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S31, as a physical value, to the nearest raw value,
-    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Magnetometer Sensitivity Matrix S31, as a physical value to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_sensitivity_s31_physical(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_sensitivity_s31 = MAGNETOMETER_SENSITIVITY_S31.raw(value)?;
         Ok(())
@@ -2399,7 +2399,7 @@ impl AdcsConfiguration {
         i32::from(self.magnetometer_sensitivity_s31)
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S31 in thousandths, to the nearest raw value, ties to
+    /// Set Magnetometer Sensitivity Matrix S31 in thousandths to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit.
     pub fn set_magnetometer_sensitivity_s31_milli(&mut self, value: i32) -> Result<(), Error> {
         self.magnetometer_sensitivity_s31 = MAGNETOMETER_SENSITIVITY_S31.whole(value.into(), 1, 0)?;
@@ -2412,8 +2412,8 @@ impl AdcsConfiguration {
         f64::from(self.magnetometer_sensitivity_s32) / 1_000.0
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S32, as a physical value, to the nearest raw value,
-    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Magnetometer Sensitivity Matrix S32, as a physical value to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_sensitivity_s32_physical(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_sensitivity_s32 = MAGNETOMETER_SENSITIVITY_S32.raw(value)?;
         Ok(())
@@ -2431,7 +2431,7 @@ impl AdcsConfiguration {
         i32::from(self.magnetometer_sensitivity_s32)
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S32 in thousandths, to the nearest raw value, ties to
+    /// Set Magnetometer Sensitivity Matrix S32 in thousandths to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit.
     pub fn set_magnetometer_sensitivity_s32_milli(&mut self, value: i32) -> Result<(), Error> {
         self.magnetometer_sensitivity_s32 = MAGNETOMETER_SENSITIVITY_S32.whole(value.into(), 1, 0)?;
@@ -2444,7 +2444,7 @@ impl AdcsConfiguration {
         f64::from(self.redundant_mag_mounting_alpha) / 100.0
     }
 
-    /// Sets Redundant Magnetometer Mounting Transform Alpha Angle in deg, to the nearest raw value,
+    /// Set Redundant Magnetometer Mounting Transform Alpha Angle in deg to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_mounting_alpha = REDUNDANT_MAG_MOUNTING_ALPHA.raw(value)?;
@@ -2464,7 +2464,7 @@ impl AdcsConfiguration {
         i32::from(self.redundant_mag_mounting_alpha) * 10
     }
 
-    /// Sets Redundant Magnetometer Mounting Transform Alpha Angle in thousandths of deg, to the
+    /// Set Redundant Magnetometer Mounting Transform Alpha Angle in thousandths of deg to the
     /// nearest raw value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_redundant_mag_mounting_alpha_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.redundant_mag_mounting_alpha =
@@ -2478,7 +2478,7 @@ impl AdcsConfiguration {
         f64::from(self.redundant_mag_mounting_beta) / 100.0
     }
 
-    /// Sets Redundant Magnetometer Mounting Transform Beta Angle in deg, to the nearest raw value,
+    /// Set Redundant Magnetometer Mounting Transform Beta Angle in deg to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_mounting_beta = REDUNDANT_MAG_MOUNTING_BETA.raw(value)?;
@@ -2498,7 +2498,7 @@ impl AdcsConfiguration {
         i32::from(self.redundant_mag_mounting_beta) * 10
     }
 
-    /// Sets Redundant Magnetometer Mounting Transform Beta Angle in thousandths of deg, to the
+    /// Set Redundant Magnetometer Mounting Transform Beta Angle in thousandths of deg to the
     /// nearest raw value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_redundant_mag_mounting_beta_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.redundant_mag_mounting_beta = REDUNDANT_MAG_MOUNTING_BETA.whole(value.into(), 10, 0)?;
@@ -2511,7 +2511,7 @@ impl AdcsConfiguration {
         f64::from(self.redundant_mag_mounting_gamma) / 100.0
     }
 
-    /// Sets Redundant Magnetometer Mounting Transform Gamma Angle in deg, to the nearest raw value,
+    /// Set Redundant Magnetometer Mounting Transform Gamma Angle in deg to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_mounting_gamma = REDUNDANT_MAG_MOUNTING_GAMMA.raw(value)?;
@@ -2531,7 +2531,7 @@ impl AdcsConfiguration {
         i32::from(self.redundant_mag_mounting_gamma) * 10
     }
 
-    /// Sets Redundant Magnetometer Mounting Transform Gamma Angle in thousandths of deg, to the
+    /// Set Redundant Magnetometer Mounting Transform Gamma Angle in thousandths of deg to the
     /// nearest raw value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_redundant_mag_mounting_gamma_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.redundant_mag_mounting_gamma =
@@ -2545,7 +2545,7 @@ impl AdcsConfiguration {
         f64::from(self.redundant_mag_channel_1_offset) / 1_000.0
     }
 
-    /// Sets Redundant Magnetometer Channel 1 Offset, as a physical value, to the nearest raw value,
+    /// Set Redundant Magnetometer Channel 1 Offset, as a physical value to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_channel_1_offset_physical(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_channel_1_offset = REDUNDANT_MAG_CHANNEL_1_OFFSET.raw(value)?;
@@ -2564,8 +2564,8 @@ impl AdcsConfiguration {
         i32::from(self.redundant_mag_channel_1_offset)
     }
 
-    /// Sets Redundant Magnetometer Channel 1 Offset in thousandths, to the nearest raw value, ties
-    /// to even. [`Error::Range`] if it does not fit.
+    /// Set Redundant Magnetometer Channel 1 Offset in thousandths to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
     pub fn set_redundant_mag_channel_1_offset_milli(&mut self, value: i32) -> Result<(), Error> {
         self.redundant_mag_channel_1_offset =
             REDUNDANT_MAG_CHANNEL_1_OFFSET.whole(value.into(), 1, 0)?;
@@ -2578,7 +2578,7 @@ impl AdcsConfiguration {
         f64::from(self.redundant_mag_channel_2_offset) / 1_000.0
     }
 
-    /// Sets Redundant Magnetometer Channel 2 Offset, as a physical value, to the nearest raw value,
+    /// Set Redundant Magnetometer Channel 2 Offset, as a physical value to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_channel_2_offset_physical(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_channel_2_offset = REDUNDANT_MAG_CHANNEL_2_OFFSET.raw(value)?;
@@ -2597,8 +2597,8 @@ impl AdcsConfiguration {
         i32::from(self.redundant_mag_channel_2_offset)
     }
 
-    /// Sets Redundant Magnetometer Channel 2 Offset in thousandths, to the nearest raw value, ties
-    /// to even. [`Error::Range`] if it does not fit.
+    /// Set Redundant Magnetometer Channel 2 Offset in thousandths to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
     pub fn set_redundant_mag_channel_2_offset_milli(&mut self, value: i32) -> Result<(), Error> {
         self.redundant_mag_channel_2_offset =
             REDUNDANT_MAG_CHANNEL_2_OFFSET.whole(value.into(), 1, 0)?;
@@ -2611,7 +2611,7 @@ impl AdcsConfiguration {
         f64::from(self.redundant_mag_channel_3_offset) / 1_000.0
     }
 
-    /// Sets Redundant Magnetometer Channel 3 Offset, as a physical value, to the nearest raw value,
+    /// Set Redundant Magnetometer Channel 3 Offset, as a physical value to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_channel_3_offset_physical(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_channel_3_offset = REDUNDANT_MAG_CHANNEL_3_OFFSET.raw(value)?;
@@ -2630,8 +2630,8 @@ impl AdcsConfiguration {
         i32::from(self.redundant_mag_channel_3_offset)
     }
 
-    /// Sets Redundant Magnetometer Channel 3 Offset in thousandths, to the nearest raw value, ties
-    /// to even. [`Error::Range`] if it does not fit.
+    /// Set Redundant Magnetometer Channel 3 Offset in thousandths to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
     pub fn set_redundant_mag_channel_3_offset_milli(&mut self, value: i32) -> Result<(), Error> {
         self.redundant_mag_channel_3_offset =
             REDUNDANT_MAG_CHANNEL_3_OFFSET.whole(value.into(), 1, 0)?;
@@ -2644,7 +2644,7 @@ impl AdcsConfiguration {
         f64::from(self.redundant_mag_sensitivity_s11) / 1_000.0
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S11, as a physical value, to the nearest raw
+    /// Set Redundant Magnetometer Sensitivity Matrix S11, as a physical value to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_sensitivity_s11_physical(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s11 = REDUNDANT_MAG_SENSITIVITY_S11.raw(value)?;
@@ -2664,7 +2664,7 @@ impl AdcsConfiguration {
         i32::from(self.redundant_mag_sensitivity_s11)
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S11 in thousandths, to the nearest raw value,
+    /// Set Redundant Magnetometer Sensitivity Matrix S11 in thousandths to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit.
     pub fn set_redundant_mag_sensitivity_s11_milli(&mut self, value: i32) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s11 =
@@ -2678,7 +2678,7 @@ impl AdcsConfiguration {
         f64::from(self.redundant_mag_sensitivity_s22) / 1_000.0
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S22, as a physical value, to the nearest raw
+    /// Set Redundant Magnetometer Sensitivity Matrix S22, as a physical value to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_sensitivity_s22_physical(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s22 = REDUNDANT_MAG_SENSITIVITY_S22.raw(value)?;
@@ -2698,7 +2698,7 @@ impl AdcsConfiguration {
         i32::from(self.redundant_mag_sensitivity_s22)
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S22 in thousandths, to the nearest raw value,
+    /// Set Redundant Magnetometer Sensitivity Matrix S22 in thousandths to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit.
     pub fn set_redundant_mag_sensitivity_s22_milli(&mut self, value: i32) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s22 =
@@ -2712,7 +2712,7 @@ impl AdcsConfiguration {
         f64::from(self.redundant_mag_sensitivity_s33) / 1_000.0
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S33, as a physical value, to the nearest raw
+    /// Set Redundant Magnetometer Sensitivity Matrix S33, as a physical value to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_sensitivity_s33_physical(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s33 = REDUNDANT_MAG_SENSITIVITY_S33.raw(value)?;
@@ -2732,7 +2732,7 @@ impl AdcsConfiguration {
         i32::from(self.redundant_mag_sensitivity_s33)
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S33 in thousandths, to the nearest raw value,
+    /// Set Redundant Magnetometer Sensitivity Matrix S33 in thousandths to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit.
     pub fn set_redundant_mag_sensitivity_s33_milli(&mut self, value: i32) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s33 =
@@ -2746,7 +2746,7 @@ impl AdcsConfiguration {
         f64::from(self.redundant_mag_sensitivity_s12) / 1_000.0
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S12, as a physical value, to the nearest raw
+    /// Set Redundant Magnetometer Sensitivity Matrix S12, as a physical value to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_sensitivity_s12_physical(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s12 = REDUNDANT_MAG_SENSITIVITY_S12.raw(value)?;
@@ -2766,7 +2766,7 @@ impl AdcsConfiguration {
         i32::from(self.redundant_mag_sensitivity_s12)
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S12 in thousandths, to the nearest raw value,
+    /// Set Redundant Magnetometer Sensitivity Matrix S12 in thousandths to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit.
     pub fn set_redundant_mag_sensitivity_s12_milli(&mut self, value: i32) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s12 =
@@ -2780,7 +2780,7 @@ impl AdcsConfiguration {
         f64::from(self.redundant_mag_sensitivity_s13) / 1_000.0
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S13, as a physical value, to the nearest raw
+    /// Set Redundant Magnetometer Sensitivity Matrix S13, as a physical value to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_sensitivity_s13_physical(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s13 = REDUNDANT_MAG_SENSITIVITY_S13.raw(value)?;
@@ -2800,7 +2800,7 @@ impl AdcsConfiguration {
         i32::from(self.redundant_mag_sensitivity_s13)
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S13 in thousandths, to the nearest raw value,
+    /// Set Redundant Magnetometer Sensitivity Matrix S13 in thousandths to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit.
     pub fn set_redundant_mag_sensitivity_s13_milli(&mut self, value: i32) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s13 =
@@ -2814,7 +2814,7 @@ impl AdcsConfiguration {
         f64::from(self.redundant_mag_sensitivity_s21) / 1_000.0
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S21, as a physical value, to the nearest raw
+    /// Set Redundant Magnetometer Sensitivity Matrix S21, as a physical value to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_sensitivity_s21_physical(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s21 = REDUNDANT_MAG_SENSITIVITY_S21.raw(value)?;
@@ -2834,7 +2834,7 @@ impl AdcsConfiguration {
         i32::from(self.redundant_mag_sensitivity_s21)
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S21 in thousandths, to the nearest raw value,
+    /// Set Redundant Magnetometer Sensitivity Matrix S21 in thousandths to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit.
     pub fn set_redundant_mag_sensitivity_s21_milli(&mut self, value: i32) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s21 =
@@ -2848,7 +2848,7 @@ impl AdcsConfiguration {
         f64::from(self.redundant_mag_sensitivity_s23) / 1_000.0
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S23, as a physical value, to the nearest raw
+    /// Set Redundant Magnetometer Sensitivity Matrix S23, as a physical value to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_sensitivity_s23_physical(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s23 = REDUNDANT_MAG_SENSITIVITY_S23.raw(value)?;
@@ -2868,7 +2868,7 @@ impl AdcsConfiguration {
         i32::from(self.redundant_mag_sensitivity_s23)
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S23 in thousandths, to the nearest raw value,
+    /// Set Redundant Magnetometer Sensitivity Matrix S23 in thousandths to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit.
     pub fn set_redundant_mag_sensitivity_s23_milli(&mut self, value: i32) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s23 =
@@ -2882,7 +2882,7 @@ impl AdcsConfiguration {
         f64::from(self.redundant_mag_sensitivity_s31) / 1_000.0
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S31, as a physical value, to the nearest raw
+    /// Set Redundant Magnetometer Sensitivity Matrix S31, as a physical value to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_sensitivity_s31_physical(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s31 = REDUNDANT_MAG_SENSITIVITY_S31.raw(value)?;
@@ -2902,7 +2902,7 @@ impl AdcsConfiguration {
         i32::from(self.redundant_mag_sensitivity_s31)
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S31 in thousandths, to the nearest raw value,
+    /// Set Redundant Magnetometer Sensitivity Matrix S31 in thousandths to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit.
     pub fn set_redundant_mag_sensitivity_s31_milli(&mut self, value: i32) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s31 =
@@ -2916,7 +2916,7 @@ impl AdcsConfiguration {
         f64::from(self.redundant_mag_sensitivity_s32) / 1_000.0
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S32, as a physical value, to the nearest raw
+    /// Set Redundant Magnetometer Sensitivity Matrix S32, as a physical value to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_sensitivity_s32_physical(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s32 = REDUNDANT_MAG_SENSITIVITY_S32.raw(value)?;
@@ -2936,7 +2936,7 @@ impl AdcsConfiguration {
         i32::from(self.redundant_mag_sensitivity_s32)
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S32 in thousandths, to the nearest raw value,
+    /// Set Redundant Magnetometer Sensitivity Matrix S32 in thousandths to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit.
     pub fn set_redundant_mag_sensitivity_s32_milli(&mut self, value: i32) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s32 =
@@ -2950,7 +2950,7 @@ impl AdcsConfiguration {
         f64::from(self.star_tracker_mounting_alpha) / 100.0
     }
 
-    /// Sets StarTracker Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
+    /// Set StarTracker Mounting Transform Alpha Angle in deg to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_star_tracker_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
         self.star_tracker_mounting_alpha = STAR_TRACKER_MOUNTING_ALPHA.raw(value)?;
@@ -2969,7 +2969,7 @@ impl AdcsConfiguration {
         i32::from(self.star_tracker_mounting_alpha) * 10
     }
 
-    /// Sets StarTracker Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw
+    /// Set StarTracker Mounting Transform Alpha Angle in thousandths of deg to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_star_tracker_mounting_alpha_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.star_tracker_mounting_alpha = STAR_TRACKER_MOUNTING_ALPHA.whole(value.into(), 10, 0)?;
@@ -2982,8 +2982,8 @@ impl AdcsConfiguration {
         f64::from(self.star_tracker_mounting_beta) / 100.0
     }
 
-    /// Sets StarTracker Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
-    /// even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set StarTracker Mounting Transform Beta Angle in deg to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_star_tracker_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
         self.star_tracker_mounting_beta = STAR_TRACKER_MOUNTING_BETA.raw(value)?;
         Ok(())
@@ -3001,7 +3001,7 @@ impl AdcsConfiguration {
         i32::from(self.star_tracker_mounting_beta) * 10
     }
 
-    /// Sets StarTracker Mounting Transform Beta Angle in thousandths of deg, to the nearest raw
+    /// Set StarTracker Mounting Transform Beta Angle in thousandths of deg to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_star_tracker_mounting_beta_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.star_tracker_mounting_beta = STAR_TRACKER_MOUNTING_BETA.whole(value.into(), 10, 0)?;
@@ -3014,7 +3014,7 @@ impl AdcsConfiguration {
         f64::from(self.star_tracker_mounting_gamma) / 100.0
     }
 
-    /// Sets StarTracker Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
+    /// Set StarTracker Mounting Transform Gamma Angle in deg to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_star_tracker_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
         self.star_tracker_mounting_gamma = STAR_TRACKER_MOUNTING_GAMMA.raw(value)?;
@@ -3033,7 +3033,7 @@ impl AdcsConfiguration {
         i32::from(self.star_tracker_mounting_gamma) * 10
     }
 
-    /// Sets StarTracker Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw
+    /// Set StarTracker Mounting Transform Gamma Angle in thousandths of deg to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_star_tracker_mounting_gamma_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.star_tracker_mounting_gamma = STAR_TRACKER_MOUNTING_GAMMA.whole(value.into(), 10, 0)?;
@@ -3046,8 +3046,8 @@ impl AdcsConfiguration {
         f64::from(self.star_tracker_error_margin) / 100.0
     }
 
-    /// Sets Star Tracker Error Margin in %, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit or is not finite.
+    /// Set Star Tracker Error Margin in % to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star_tracker_error_margin_percent(&mut self, value: f64) -> Result<(), Error> {
         self.star_tracker_error_margin = STAR_TRACKER_ERROR_MARGIN.raw(value)?;
         Ok(())
@@ -3065,7 +3065,7 @@ impl AdcsConfiguration {
         i32::from(self.star_tracker_error_margin) * 10
     }
 
-    /// Sets Star Tracker Error Margin in thousandths of %, to the nearest raw value, ties to even.
+    /// Set Star Tracker Error Margin in thousandths of % to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_star_tracker_error_margin_milli_percent(&mut self, value: i32) -> Result<(), Error> {
         self.star_tracker_error_margin = STAR_TRACKER_ERROR_MARGIN.whole(value.into(), 10, 0)?;
@@ -3078,7 +3078,7 @@ impl AdcsConfiguration {
         f64::from(self.star_tracking_margin) / 100.0
     }
 
-    /// Sets Star Tracking Margin, as a physical value, to the nearest raw value, ties to even.
+    /// Set Star Tracking Margin, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_star_tracking_margin_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star_tracking_margin = STAR_TRACKING_MARGIN.raw(value)?;
@@ -3097,7 +3097,7 @@ impl AdcsConfiguration {
         i32::from(self.star_tracking_margin) * 10
     }
 
-    /// Sets Star Tracking Margin in thousandths, to the nearest raw value, ties to even.
+    /// Set Star Tracking Margin in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_star_tracking_margin_milli(&mut self, value: i32) -> Result<(), Error> {
         self.star_tracking_margin = STAR_TRACKING_MARGIN.whole(value.into(), 10, 0)?;
@@ -3110,7 +3110,7 @@ impl AdcsConfiguration {
         f64::from(self.star_validation_margin) / 100.0
     }
 
-    /// Sets Star Validation Margin, as a physical value, to the nearest raw value, ties to even.
+    /// Set Star Validation Margin, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_star_validation_margin_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star_validation_margin = STAR_VALIDATION_MARGIN.raw(value)?;
@@ -3129,7 +3129,7 @@ impl AdcsConfiguration {
         i32::from(self.star_validation_margin) * 10
     }
 
-    /// Sets Star Validation Margin in thousandths, to the nearest raw value, ties to even.
+    /// Set Star Validation Margin in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_star_validation_margin_milli(&mut self, value: i32) -> Result<(), Error> {
         self.star_validation_margin = STAR_VALIDATION_MARGIN.whole(value.into(), 10, 0)?;
@@ -3142,8 +3142,8 @@ impl AdcsConfiguration {
         f64::from(self.star_tracking_search_width) / 5.0
     }
 
-    /// Sets Star Tracking Search Width, as a physical value, to the nearest raw value, ties to
-    /// even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Star Tracking Search Width, as a physical value to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_star_tracking_search_width_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star_tracking_search_width = STAR_TRACKING_SEARCH_WIDTH.raw(value)?;
         Ok(())
@@ -3161,7 +3161,7 @@ impl AdcsConfiguration {
         i32::from(self.star_tracking_search_width) * 200
     }
 
-    /// Sets Star Tracking Search Width in thousandths, to the nearest raw value, ties to even.
+    /// Set Star Tracking Search Width in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_star_tracking_search_width_milli(&mut self, value: i32) -> Result<(), Error> {
         self.star_tracking_search_width = STAR_TRACKING_SEARCH_WIDTH.whole(value.into(), 200, 0)?;
@@ -3175,8 +3175,8 @@ impl AdcsConfiguration {
         f64::from(self.reference_spin_rate) / 1_000.0
     }
 
-    /// Sets Reference spin rate in deg/s, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Reference spin rate in deg/s to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_reference_spin_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.reference_spin_rate = REFERENCE_SPIN_RATE.raw(value)?;
         Ok(())
@@ -3194,7 +3194,7 @@ impl AdcsConfiguration {
         i32::from(self.reference_spin_rate)
     }
 
-    /// Sets Reference spin rate in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// Set Reference spin rate in thousandths of deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_reference_spin_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.reference_spin_rate = REFERENCE_SPIN_RATE.whole(value.into(), 1, 0)?;
@@ -3207,7 +3207,7 @@ impl AdcsConfiguration {
         f64::from(self.incl_coefficient) / 1_000.0
     }
 
-    /// Sets Incl. coefficient, as a physical value, to the nearest raw value, ties to even.
+    /// Set Incl. coefficient, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_incl_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.incl_coefficient = INCL_COEFFICIENT.raw(value)?;
@@ -3226,7 +3226,7 @@ impl AdcsConfiguration {
         i32::from(self.incl_coefficient)
     }
 
-    /// Sets Incl. coefficient in thousandths, to the nearest raw value, ties to even.
+    /// Set Incl. coefficient in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_incl_coefficient_milli(&mut self, value: i32) -> Result<(), Error> {
         self.incl_coefficient = INCL_COEFFICIENT.whole(value.into(), 1, 0)?;
@@ -3239,7 +3239,7 @@ impl AdcsConfiguration {
         f64::from(self.raan_coefficient) / 1_000.0
     }
 
-    /// Sets Raan coefficient, as a physical value, to the nearest raw value, ties to even.
+    /// Set Raan coefficient, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_raan_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.raan_coefficient = RAAN_COEFFICIENT.raw(value)?;
@@ -3258,8 +3258,8 @@ impl AdcsConfiguration {
         i32::from(self.raan_coefficient)
     }
 
-    /// Sets Raan coefficient in thousandths, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit.
+    /// Set Raan coefficient in thousandths to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit.
     pub fn set_raan_coefficient_milli(&mut self, value: i32) -> Result<(), Error> {
         self.raan_coefficient = RAAN_COEFFICIENT.whole(value.into(), 1, 0)?;
         Ok(())
@@ -3271,7 +3271,7 @@ impl AdcsConfiguration {
         f64::from(self.ecc_coefficient) / 1_000.0
     }
 
-    /// Sets Ecc coefficient, as a physical value, to the nearest raw value, ties to even.
+    /// Set Ecc coefficient, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_ecc_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.ecc_coefficient = ECC_COEFFICIENT.raw(value)?;
@@ -3290,8 +3290,8 @@ impl AdcsConfiguration {
         i32::from(self.ecc_coefficient)
     }
 
-    /// Sets Ecc coefficient in thousandths, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit.
+    /// Set Ecc coefficient in thousandths to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit.
     pub fn set_ecc_coefficient_milli(&mut self, value: i32) -> Result<(), Error> {
         self.ecc_coefficient = ECC_COEFFICIENT.whole(value.into(), 1, 0)?;
         Ok(())
@@ -3303,7 +3303,7 @@ impl AdcsConfiguration {
         f64::from(self.aop_coefficient) / 1_000.0
     }
 
-    /// Sets Aop coefficient, as a physical value, to the nearest raw value, ties to even.
+    /// Set Aop coefficient, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_aop_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.aop_coefficient = AOP_COEFFICIENT.raw(value)?;
@@ -3322,8 +3322,8 @@ impl AdcsConfiguration {
         i32::from(self.aop_coefficient)
     }
 
-    /// Sets Aop coefficient in thousandths, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit.
+    /// Set Aop coefficient in thousandths to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit.
     pub fn set_aop_coefficient_milli(&mut self, value: i32) -> Result<(), Error> {
         self.aop_coefficient = AOP_COEFFICIENT.whole(value.into(), 1, 0)?;
         Ok(())
@@ -3335,7 +3335,7 @@ impl AdcsConfiguration {
         f64::from(self.time_coefficient) / 1_000.0
     }
 
-    /// Sets Time coefficient, as a physical value, to the nearest raw value, ties to even.
+    /// Set Time coefficient, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_time_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.time_coefficient = TIME_COEFFICIENT.raw(value)?;
@@ -3354,8 +3354,8 @@ impl AdcsConfiguration {
         i32::from(self.time_coefficient)
     }
 
-    /// Sets Time coefficient in thousandths, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit.
+    /// Set Time coefficient in thousandths to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit.
     pub fn set_time_coefficient_milli(&mut self, value: i32) -> Result<(), Error> {
         self.time_coefficient = TIME_COEFFICIENT.whole(value.into(), 1, 0)?;
         Ok(())
@@ -3367,7 +3367,7 @@ impl AdcsConfiguration {
         f64::from(self.pos_coefficient) / 1_000.0
     }
 
-    /// Sets Pos coefficient, as a physical value, to the nearest raw value, ties to even.
+    /// Set Pos coefficient, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_pos_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.pos_coefficient = POS_COEFFICIENT.raw(value)?;
@@ -3386,8 +3386,8 @@ impl AdcsConfiguration {
         i32::from(self.pos_coefficient)
     }
 
-    /// Sets Pos coefficient in thousandths, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit.
+    /// Set Pos coefficient in thousandths to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit.
     pub fn set_pos_coefficient_milli(&mut self, value: i32) -> Result<(), Error> {
         self.pos_coefficient = POS_COEFFICIENT.whole(value.into(), 1, 0)?;
         Ok(())
@@ -3399,7 +3399,7 @@ impl AdcsConfiguration {
         f64::from(self.maximum_position_error) / 10.0
     }
 
-    /// Sets Maximum position error, as a physical value, to the nearest raw value, ties to even.
+    /// Set Maximum position error, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_maximum_position_error_physical(&mut self, value: f64) -> Result<(), Error> {
         self.maximum_position_error = MAXIMUM_POSITION_ERROR.raw(value)?;
@@ -3418,7 +3418,7 @@ impl AdcsConfiguration {
         i32::from(self.maximum_position_error) * 100
     }
 
-    /// Sets Maximum position error in thousandths, to the nearest raw value, ties to even.
+    /// Set Maximum position error in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_maximum_position_error_milli(&mut self, value: i32) -> Result<(), Error> {
         self.maximum_position_error = MAXIMUM_POSITION_ERROR.whole(value.into(), 100, 0)?;
@@ -3431,7 +3431,7 @@ impl AdcsConfiguration {
         f64::from(self.xp_coefficient) / 10_000_000.0
     }
 
-    /// Sets xp coefficient, as a physical value, to the nearest raw value, ties to even.
+    /// Set xp coefficient, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_xp_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.xp_coefficient = XP_COEFFICIENT.raw(value)?;
@@ -3450,7 +3450,7 @@ impl AdcsConfiguration {
         f64::from(self.yp_coefficient) / 10_000_000.0
     }
 
-    /// Sets yp coefficient, as a physical value, to the nearest raw value, ties to even.
+    /// Set yp coefficient, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_yp_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.yp_coefficient = YP_COEFFICIENT.raw(value)?;
@@ -3469,7 +3469,7 @@ impl AdcsConfiguration {
         f64::from(self.position_sd) / 10.0
     }
 
-    /// Sets Position sd, as a physical value, to the nearest raw value, ties to even.
+    /// Set Position sd, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_position_sd_physical(&mut self, value: f64) -> Result<(), Error> {
         self.position_sd = POSITION_SD.raw(value)?;
@@ -3488,7 +3488,7 @@ impl AdcsConfiguration {
         i32::from(self.position_sd) * 100
     }
 
-    /// Sets Position sd in thousandths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Position sd in thousandths to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit.
     pub fn set_position_sd_milli(&mut self, value: i32) -> Result<(), Error> {
         self.position_sd = POSITION_SD.whole(value.into(), 100, 0)?;
@@ -3501,7 +3501,7 @@ impl AdcsConfiguration {
         f64::from(self.velocity_sd) / 100.0
     }
 
-    /// Sets Velocity sd, as a physical value, to the nearest raw value, ties to even.
+    /// Set Velocity sd, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_velocity_sd_physical(&mut self, value: f64) -> Result<(), Error> {
         self.velocity_sd = VELOCITY_SD.raw(value)?;
@@ -3520,7 +3520,7 @@ impl AdcsConfiguration {
         i32::from(self.velocity_sd) * 10
     }
 
-    /// Sets Velocity sd in thousandths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Velocity sd in thousandths to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit.
     pub fn set_velocity_sd_milli(&mut self, value: i32) -> Result<(), Error> {
         self.velocity_sd = VELOCITY_SD.whole(value.into(), 10, 0)?;
@@ -3533,8 +3533,8 @@ impl AdcsConfiguration {
         f64::from(self.time_gain) / 100.0
     }
 
-    /// Sets Time gain, as a physical value, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit or is not finite.
+    /// Set Time gain, as a physical value to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_time_gain_physical(&mut self, value: f64) -> Result<(), Error> {
         self.time_gain = TIME_GAIN.raw(value)?;
         Ok(())
@@ -3552,8 +3552,8 @@ impl AdcsConfiguration {
         i32::from(self.time_gain) * 10
     }
 
-    /// Sets Time gain in thousandths, to the nearest raw value, ties to even. [`Error::Range`] if
-    /// it does not fit.
+    /// Set Time gain in thousandths to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
     pub fn set_time_gain_milli(&mut self, value: i32) -> Result<(), Error> {
         self.time_gain = TIME_GAIN.whole(value.into(), 10, 0)?;
         Ok(())
@@ -3565,7 +3565,7 @@ impl AdcsConfiguration {
         f64::from(self.max_lag) / 100.0
     }
 
-    /// Sets Max. lag, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// Set Max. lag, as a physical value to the nearest raw value, ties to even. [`Error::Range`]
     /// if it does not fit or is not finite.
     pub fn set_max_lag_physical(&mut self, value: f64) -> Result<(), Error> {
         self.max_lag = MAX_LAG.raw(value)?;
@@ -3584,7 +3584,7 @@ impl AdcsConfiguration {
         i32::from(self.max_lag) * 10
     }
 
-    /// Sets Max. lag in thousandths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Max. lag in thousandths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_max_lag_milli(&mut self, value: i32) -> Result<(), Error> {
         self.max_lag = MAX_LAG.whole(value.into(), 10, 0)?;

@@ -153,11 +153,11 @@ impl AdcsMeasurements {
     /// Id of the telemetry.
     pub const ID: u8 = 191;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -166,7 +166,7 @@ impl AdcsMeasurements {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 72]) -> Self {
@@ -210,11 +210,11 @@ impl AdcsMeasurements {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 72], Error> {
         let mut bytes = [0; 72];
@@ -263,7 +263,7 @@ impl AdcsMeasurements {
         f64::from(self.magnetic_field_x) / 100.0
     }
 
-    /// Sets Magnetic Field X in uT, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Magnetic Field X in uT to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit or is not finite.
     pub fn set_magnetic_field_x_ut(&mut self, value: f64) -> Result<(), Error> {
         self.magnetic_field_x = MAGNETIC_FIELD_X.raw(value)?;
@@ -282,7 +282,7 @@ impl AdcsMeasurements {
         i32::from(self.magnetic_field_x) * 10
     }
 
-    /// Sets Magnetic Field X in nT, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Magnetic Field X in nT to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_magnetic_field_x_nt(&mut self, value: i32) -> Result<(), Error> {
         self.magnetic_field_x = MAGNETIC_FIELD_X.whole(value.into(), 10, 0)?;
@@ -295,7 +295,7 @@ impl AdcsMeasurements {
         f64::from(self.magnetic_field_y) / 100.0
     }
 
-    /// Sets Magnetic Field Y in uT, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Magnetic Field Y in uT to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit or is not finite.
     pub fn set_magnetic_field_y_ut(&mut self, value: f64) -> Result<(), Error> {
         self.magnetic_field_y = MAGNETIC_FIELD_Y.raw(value)?;
@@ -314,7 +314,7 @@ impl AdcsMeasurements {
         i32::from(self.magnetic_field_y) * 10
     }
 
-    /// Sets Magnetic Field Y in nT, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Magnetic Field Y in nT to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_magnetic_field_y_nt(&mut self, value: i32) -> Result<(), Error> {
         self.magnetic_field_y = MAGNETIC_FIELD_Y.whole(value.into(), 10, 0)?;
@@ -327,7 +327,7 @@ impl AdcsMeasurements {
         f64::from(self.magnetic_field_z) / 100.0
     }
 
-    /// Sets Magnetic Field Z in uT, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Magnetic Field Z in uT to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit or is not finite.
     pub fn set_magnetic_field_z_ut(&mut self, value: f64) -> Result<(), Error> {
         self.magnetic_field_z = MAGNETIC_FIELD_Z.raw(value)?;
@@ -346,7 +346,7 @@ impl AdcsMeasurements {
         i32::from(self.magnetic_field_z) * 10
     }
 
-    /// Sets Magnetic Field Z in nT, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Magnetic Field Z in nT to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_magnetic_field_z_nt(&mut self, value: i32) -> Result<(), Error> {
         self.magnetic_field_z = MAGNETIC_FIELD_Z.whole(value.into(), 10, 0)?;
@@ -359,7 +359,7 @@ impl AdcsMeasurements {
         f64::from(self.coarse_sun_x) / 10_000.0
     }
 
-    /// Sets Coarse Sun X, as a physical value, to the nearest raw value, ties to even.
+    /// Set Coarse Sun X, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_coarse_sun_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.coarse_sun_x = COARSE_SUN_X.raw(value)?;
@@ -378,7 +378,7 @@ impl AdcsMeasurements {
         i32::from(self.coarse_sun_x) * 100
     }
 
-    /// Sets Coarse Sun X in millionths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Coarse Sun X in millionths to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit.
     pub fn set_coarse_sun_x_micro(&mut self, value: i32) -> Result<(), Error> {
         self.coarse_sun_x = COARSE_SUN_X.whole(value.into(), 100, 0)?;
@@ -391,7 +391,7 @@ impl AdcsMeasurements {
         f64::from(self.coarse_sun_y) / 10_000.0
     }
 
-    /// Sets Coarse Sun Y, as a physical value, to the nearest raw value, ties to even.
+    /// Set Coarse Sun Y, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_coarse_sun_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.coarse_sun_y = COARSE_SUN_Y.raw(value)?;
@@ -410,7 +410,7 @@ impl AdcsMeasurements {
         i32::from(self.coarse_sun_y) * 100
     }
 
-    /// Sets Coarse Sun Y in millionths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Coarse Sun Y in millionths to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit.
     pub fn set_coarse_sun_y_micro(&mut self, value: i32) -> Result<(), Error> {
         self.coarse_sun_y = COARSE_SUN_Y.whole(value.into(), 100, 0)?;
@@ -423,7 +423,7 @@ impl AdcsMeasurements {
         f64::from(self.coarse_sun_z) / 10_000.0
     }
 
-    /// Sets Coarse Sun Z, as a physical value, to the nearest raw value, ties to even.
+    /// Set Coarse Sun Z, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_coarse_sun_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.coarse_sun_z = COARSE_SUN_Z.raw(value)?;
@@ -442,7 +442,7 @@ impl AdcsMeasurements {
         i32::from(self.coarse_sun_z) * 100
     }
 
-    /// Sets Coarse Sun Z in millionths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Coarse Sun Z in millionths to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit.
     pub fn set_coarse_sun_z_micro(&mut self, value: i32) -> Result<(), Error> {
         self.coarse_sun_z = COARSE_SUN_Z.whole(value.into(), 100, 0)?;
@@ -455,7 +455,7 @@ impl AdcsMeasurements {
         f64::from(self.sun_x) / 10_000.0
     }
 
-    /// Sets Sun X, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Sun X, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit or is not finite.
     pub fn set_sun_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sun_x = SUN_X.raw(value)?;
@@ -474,8 +474,8 @@ impl AdcsMeasurements {
         i32::from(self.sun_x) * 100
     }
 
-    /// Sets Sun X in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
-    /// does not fit.
+    /// Set Sun X in millionths to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
     pub fn set_sun_x_micro(&mut self, value: i32) -> Result<(), Error> {
         self.sun_x = SUN_X.whole(value.into(), 100, 0)?;
         Ok(())
@@ -487,7 +487,7 @@ impl AdcsMeasurements {
         f64::from(self.sun_y) / 10_000.0
     }
 
-    /// Sets Sun Y, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Sun Y, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit or is not finite.
     pub fn set_sun_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sun_y = SUN_Y.raw(value)?;
@@ -506,8 +506,8 @@ impl AdcsMeasurements {
         i32::from(self.sun_y) * 100
     }
 
-    /// Sets Sun Y in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
-    /// does not fit.
+    /// Set Sun Y in millionths to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
     pub fn set_sun_y_micro(&mut self, value: i32) -> Result<(), Error> {
         self.sun_y = SUN_Y.whole(value.into(), 100, 0)?;
         Ok(())
@@ -519,7 +519,7 @@ impl AdcsMeasurements {
         f64::from(self.sun_z) / 10_000.0
     }
 
-    /// Sets Sun Z, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Sun Z, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit or is not finite.
     pub fn set_sun_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sun_z = SUN_Z.raw(value)?;
@@ -538,8 +538,8 @@ impl AdcsMeasurements {
         i32::from(self.sun_z) * 100
     }
 
-    /// Sets Sun Z in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
-    /// does not fit.
+    /// Set Sun Z in millionths to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
     pub fn set_sun_z_micro(&mut self, value: i32) -> Result<(), Error> {
         self.sun_z = SUN_Z.whole(value.into(), 100, 0)?;
         Ok(())
@@ -551,8 +551,8 @@ impl AdcsMeasurements {
         f64::from(self.nadir_x) / 10_000.0
     }
 
-    /// Sets Nadir X, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Nadir X, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_nadir_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.nadir_x = NADIR_X.raw(value)?;
         Ok(())
@@ -570,7 +570,7 @@ impl AdcsMeasurements {
         i32::from(self.nadir_x) * 100
     }
 
-    /// Sets Nadir X in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Nadir X in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_nadir_x_micro(&mut self, value: i32) -> Result<(), Error> {
         self.nadir_x = NADIR_X.whole(value.into(), 100, 0)?;
@@ -583,8 +583,8 @@ impl AdcsMeasurements {
         f64::from(self.nadir_y) / 10_000.0
     }
 
-    /// Sets Nadir Y, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Nadir Y, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_nadir_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.nadir_y = NADIR_Y.raw(value)?;
         Ok(())
@@ -602,7 +602,7 @@ impl AdcsMeasurements {
         i32::from(self.nadir_y) * 100
     }
 
-    /// Sets Nadir Y in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Nadir Y in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_nadir_y_micro(&mut self, value: i32) -> Result<(), Error> {
         self.nadir_y = NADIR_Y.whole(value.into(), 100, 0)?;
@@ -615,8 +615,8 @@ impl AdcsMeasurements {
         f64::from(self.nadir_z) / 10_000.0
     }
 
-    /// Sets Nadir Z, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Nadir Z, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_nadir_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.nadir_z = NADIR_Z.raw(value)?;
         Ok(())
@@ -634,7 +634,7 @@ impl AdcsMeasurements {
         i32::from(self.nadir_z) * 100
     }
 
-    /// Sets Nadir Z in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Nadir Z in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_nadir_z_micro(&mut self, value: i32) -> Result<(), Error> {
         self.nadir_z = NADIR_Z.whole(value.into(), 100, 0)?;
@@ -647,7 +647,7 @@ impl AdcsMeasurements {
         f64::from(self.x_angular_rate) / 100.0
     }
 
-    /// Sets X Angular Rate in deg/s, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set X Angular Rate in deg/s to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit or is not finite.
     pub fn set_x_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.x_angular_rate = X_ANGULAR_RATE.raw(value)?;
@@ -666,7 +666,7 @@ impl AdcsMeasurements {
         i32::from(self.x_angular_rate) * 10
     }
 
-    /// Sets X Angular Rate in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// Set X Angular Rate in thousandths of deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_x_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.x_angular_rate = X_ANGULAR_RATE.whole(value.into(), 10, 0)?;
@@ -679,7 +679,7 @@ impl AdcsMeasurements {
         f64::from(self.y_angular_rate) / 100.0
     }
 
-    /// Sets Y Angular Rate in deg/s, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Y Angular Rate in deg/s to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit or is not finite.
     pub fn set_y_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.y_angular_rate = Y_ANGULAR_RATE.raw(value)?;
@@ -698,7 +698,7 @@ impl AdcsMeasurements {
         i32::from(self.y_angular_rate) * 10
     }
 
-    /// Sets Y Angular Rate in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// Set Y Angular Rate in thousandths of deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_y_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.y_angular_rate = Y_ANGULAR_RATE.whole(value.into(), 10, 0)?;
@@ -711,7 +711,7 @@ impl AdcsMeasurements {
         f64::from(self.z_angular_rate) / 100.0
     }
 
-    /// Sets Z Angular Rate in deg/s, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Z Angular Rate in deg/s to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit or is not finite.
     pub fn set_z_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.z_angular_rate = Z_ANGULAR_RATE.raw(value)?;
@@ -730,7 +730,7 @@ impl AdcsMeasurements {
         i32::from(self.z_angular_rate) * 10
     }
 
-    /// Sets Z Angular Rate in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// Set Z Angular Rate in thousandths of deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_z_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.z_angular_rate = Z_ANGULAR_RATE.whole(value.into(), 10, 0)?;
@@ -743,8 +743,8 @@ impl AdcsMeasurements {
         f64::from(self.star1_body_x) / 10_000.0
     }
 
-    /// Sets Star1BX, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Star1BX, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_star1_body_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star1_body_x = STAR1_BODY_X.raw(value)?;
         Ok(())
@@ -762,7 +762,7 @@ impl AdcsMeasurements {
         i32::from(self.star1_body_x) * 100
     }
 
-    /// Sets Star1BX in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Star1BX in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_star1_body_x_micro(&mut self, value: i32) -> Result<(), Error> {
         self.star1_body_x = STAR1_BODY_X.whole(value.into(), 100, 0)?;
@@ -775,8 +775,8 @@ impl AdcsMeasurements {
         f64::from(self.star1_body_y) / 10_000.0
     }
 
-    /// Sets Star1BY, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Star1BY, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_star1_body_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star1_body_y = STAR1_BODY_Y.raw(value)?;
         Ok(())
@@ -794,7 +794,7 @@ impl AdcsMeasurements {
         i32::from(self.star1_body_y) * 100
     }
 
-    /// Sets Star1BY in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Star1BY in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_star1_body_y_micro(&mut self, value: i32) -> Result<(), Error> {
         self.star1_body_y = STAR1_BODY_Y.whole(value.into(), 100, 0)?;
@@ -807,8 +807,8 @@ impl AdcsMeasurements {
         f64::from(self.star1_body_z) / 10_000.0
     }
 
-    /// Sets Star1BZ, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Star1BZ, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_star1_body_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star1_body_z = STAR1_BODY_Z.raw(value)?;
         Ok(())
@@ -826,7 +826,7 @@ impl AdcsMeasurements {
         i32::from(self.star1_body_z) * 100
     }
 
-    /// Sets Star1BZ in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Star1BZ in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_star1_body_z_micro(&mut self, value: i32) -> Result<(), Error> {
         self.star1_body_z = STAR1_BODY_Z.whole(value.into(), 100, 0)?;
@@ -839,8 +839,8 @@ impl AdcsMeasurements {
         f64::from(self.star1_orbit_x) / 10_000.0
     }
 
-    /// Sets Star1OX, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Star1OX, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_star1_orbit_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star1_orbit_x = STAR1_ORBIT_X.raw(value)?;
         Ok(())
@@ -858,7 +858,7 @@ impl AdcsMeasurements {
         i32::from(self.star1_orbit_x) * 100
     }
 
-    /// Sets Star1OX in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Star1OX in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_star1_orbit_x_micro(&mut self, value: i32) -> Result<(), Error> {
         self.star1_orbit_x = STAR1_ORBIT_X.whole(value.into(), 100, 0)?;
@@ -871,8 +871,8 @@ impl AdcsMeasurements {
         f64::from(self.star1_orbit_y) / 10_000.0
     }
 
-    /// Sets Star1OY, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Star1OY, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_star1_orbit_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star1_orbit_y = STAR1_ORBIT_Y.raw(value)?;
         Ok(())
@@ -890,7 +890,7 @@ impl AdcsMeasurements {
         i32::from(self.star1_orbit_y) * 100
     }
 
-    /// Sets Star1OY in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Star1OY in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_star1_orbit_y_micro(&mut self, value: i32) -> Result<(), Error> {
         self.star1_orbit_y = STAR1_ORBIT_Y.whole(value.into(), 100, 0)?;
@@ -903,8 +903,8 @@ impl AdcsMeasurements {
         f64::from(self.star1_orbit_z) / 10_000.0
     }
 
-    /// Sets Star1OZ, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Star1OZ, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_star1_orbit_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star1_orbit_z = STAR1_ORBIT_Z.raw(value)?;
         Ok(())
@@ -922,7 +922,7 @@ impl AdcsMeasurements {
         i32::from(self.star1_orbit_z) * 100
     }
 
-    /// Sets Star1OZ in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Star1OZ in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_star1_orbit_z_micro(&mut self, value: i32) -> Result<(), Error> {
         self.star1_orbit_z = STAR1_ORBIT_Z.whole(value.into(), 100, 0)?;
@@ -935,8 +935,8 @@ impl AdcsMeasurements {
         f64::from(self.star2_body_x) / 10_000.0
     }
 
-    /// Sets Star2BX, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Star2BX, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_star2_body_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star2_body_x = STAR2_BODY_X.raw(value)?;
         Ok(())
@@ -954,7 +954,7 @@ impl AdcsMeasurements {
         i32::from(self.star2_body_x) * 100
     }
 
-    /// Sets Star2BX in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Star2BX in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_star2_body_x_micro(&mut self, value: i32) -> Result<(), Error> {
         self.star2_body_x = STAR2_BODY_X.whole(value.into(), 100, 0)?;
@@ -967,8 +967,8 @@ impl AdcsMeasurements {
         f64::from(self.star2_body_y) / 10_000.0
     }
 
-    /// Sets Star2BY, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Star2BY, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_star2_body_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star2_body_y = STAR2_BODY_Y.raw(value)?;
         Ok(())
@@ -986,7 +986,7 @@ impl AdcsMeasurements {
         i32::from(self.star2_body_y) * 100
     }
 
-    /// Sets Star2BY in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Star2BY in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_star2_body_y_micro(&mut self, value: i32) -> Result<(), Error> {
         self.star2_body_y = STAR2_BODY_Y.whole(value.into(), 100, 0)?;
@@ -999,8 +999,8 @@ impl AdcsMeasurements {
         f64::from(self.star2_body_z) / 10_000.0
     }
 
-    /// Sets Star2BZ, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Star2BZ, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_star2_body_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star2_body_z = STAR2_BODY_Z.raw(value)?;
         Ok(())
@@ -1018,7 +1018,7 @@ impl AdcsMeasurements {
         i32::from(self.star2_body_z) * 100
     }
 
-    /// Sets Star2BZ in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Star2BZ in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_star2_body_z_micro(&mut self, value: i32) -> Result<(), Error> {
         self.star2_body_z = STAR2_BODY_Z.whole(value.into(), 100, 0)?;
@@ -1031,8 +1031,8 @@ impl AdcsMeasurements {
         f64::from(self.star2_orbit_x) / 10_000.0
     }
 
-    /// Sets Star2OX, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Star2OX, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_star2_orbit_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star2_orbit_x = STAR2_ORBIT_X.raw(value)?;
         Ok(())
@@ -1050,7 +1050,7 @@ impl AdcsMeasurements {
         i32::from(self.star2_orbit_x) * 100
     }
 
-    /// Sets Star2OX in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Star2OX in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_star2_orbit_x_micro(&mut self, value: i32) -> Result<(), Error> {
         self.star2_orbit_x = STAR2_ORBIT_X.whole(value.into(), 100, 0)?;
@@ -1063,8 +1063,8 @@ impl AdcsMeasurements {
         f64::from(self.star2_orbit_y) / 10_000.0
     }
 
-    /// Sets Star2OY, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Star2OY, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_star2_orbit_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star2_orbit_y = STAR2_ORBIT_Y.raw(value)?;
         Ok(())
@@ -1082,7 +1082,7 @@ impl AdcsMeasurements {
         i32::from(self.star2_orbit_y) * 100
     }
 
-    /// Sets Star2OY in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Star2OY in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_star2_orbit_y_micro(&mut self, value: i32) -> Result<(), Error> {
         self.star2_orbit_y = STAR2_ORBIT_Y.whole(value.into(), 100, 0)?;
@@ -1095,8 +1095,8 @@ impl AdcsMeasurements {
         f64::from(self.star2_orbit_z) / 10_000.0
     }
 
-    /// Sets Star2OZ, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Star2OZ, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_star2_orbit_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star2_orbit_z = STAR2_ORBIT_Z.raw(value)?;
         Ok(())
@@ -1114,7 +1114,7 @@ impl AdcsMeasurements {
         i32::from(self.star2_orbit_z) * 100
     }
 
-    /// Sets Star2OZ in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Star2OZ in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_star2_orbit_z_micro(&mut self, value: i32) -> Result<(), Error> {
         self.star2_orbit_z = STAR2_ORBIT_Z.whole(value.into(), 100, 0)?;
@@ -1127,8 +1127,8 @@ impl AdcsMeasurements {
         f64::from(self.star3_body_x) / 10_000.0
     }
 
-    /// Sets Star3BX, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Star3BX, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_star3_body_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star3_body_x = STAR3_BODY_X.raw(value)?;
         Ok(())
@@ -1146,7 +1146,7 @@ impl AdcsMeasurements {
         i32::from(self.star3_body_x) * 100
     }
 
-    /// Sets Star3BX in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Star3BX in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_star3_body_x_micro(&mut self, value: i32) -> Result<(), Error> {
         self.star3_body_x = STAR3_BODY_X.whole(value.into(), 100, 0)?;
@@ -1159,8 +1159,8 @@ impl AdcsMeasurements {
         f64::from(self.star3_body_y) / 10_000.0
     }
 
-    /// Sets Star3BY, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Star3BY, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_star3_body_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star3_body_y = STAR3_BODY_Y.raw(value)?;
         Ok(())
@@ -1178,7 +1178,7 @@ impl AdcsMeasurements {
         i32::from(self.star3_body_y) * 100
     }
 
-    /// Sets Star3BY in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Star3BY in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_star3_body_y_micro(&mut self, value: i32) -> Result<(), Error> {
         self.star3_body_y = STAR3_BODY_Y.whole(value.into(), 100, 0)?;
@@ -1191,8 +1191,8 @@ impl AdcsMeasurements {
         f64::from(self.star3_body_z) / 10_000.0
     }
 
-    /// Sets Star3BZ, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Star3BZ, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_star3_body_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star3_body_z = STAR3_BODY_Z.raw(value)?;
         Ok(())
@@ -1210,7 +1210,7 @@ impl AdcsMeasurements {
         i32::from(self.star3_body_z) * 100
     }
 
-    /// Sets Star3BZ in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Star3BZ in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_star3_body_z_micro(&mut self, value: i32) -> Result<(), Error> {
         self.star3_body_z = STAR3_BODY_Z.whole(value.into(), 100, 0)?;
@@ -1223,8 +1223,8 @@ impl AdcsMeasurements {
         f64::from(self.star3_orbit_x) / 10_000.0
     }
 
-    /// Sets Star3OX, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Star3OX, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_star3_orbit_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star3_orbit_x = STAR3_ORBIT_X.raw(value)?;
         Ok(())
@@ -1242,7 +1242,7 @@ impl AdcsMeasurements {
         i32::from(self.star3_orbit_x) * 100
     }
 
-    /// Sets Star3OX in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Star3OX in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_star3_orbit_x_micro(&mut self, value: i32) -> Result<(), Error> {
         self.star3_orbit_x = STAR3_ORBIT_X.whole(value.into(), 100, 0)?;
@@ -1255,8 +1255,8 @@ impl AdcsMeasurements {
         f64::from(self.star3_orbit_y) / 10_000.0
     }
 
-    /// Sets Star3OY, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Star3OY, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_star3_orbit_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star3_orbit_y = STAR3_ORBIT_Y.raw(value)?;
         Ok(())
@@ -1274,7 +1274,7 @@ impl AdcsMeasurements {
         i32::from(self.star3_orbit_y) * 100
     }
 
-    /// Sets Star3OY in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Star3OY in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_star3_orbit_y_micro(&mut self, value: i32) -> Result<(), Error> {
         self.star3_orbit_y = STAR3_ORBIT_Y.whole(value.into(), 100, 0)?;
@@ -1287,8 +1287,8 @@ impl AdcsMeasurements {
         f64::from(self.star3_orbit_z) / 10_000.0
     }
 
-    /// Sets Star3OZ, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Star3OZ, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_star3_orbit_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star3_orbit_z = STAR3_ORBIT_Z.raw(value)?;
         Ok(())
@@ -1306,7 +1306,7 @@ impl AdcsMeasurements {
         i32::from(self.star3_orbit_z) * 100
     }
 
-    /// Sets Star3OZ in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Star3OZ in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_star3_orbit_z_micro(&mut self, value: i32) -> Result<(), Error> {
         self.star3_orbit_z = STAR3_ORBIT_Z.whole(value.into(), 100, 0)?;

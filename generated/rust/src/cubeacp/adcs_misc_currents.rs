@@ -52,11 +52,11 @@ impl AdcsMiscCurrents {
     /// Id of the telemetry.
     pub const ID: u8 = 198;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -65,7 +65,7 @@ impl AdcsMiscCurrents {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -76,11 +76,11 @@ impl AdcsMiscCurrents {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -96,7 +96,7 @@ impl AdcsMiscCurrents {
         f64::from(self.cubestar_current) / 100.0
     }
 
-    /// Sets CubeStarCurrent in mA, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set CubeStarCurrent in mA to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit or is not finite.
     pub fn set_cubestar_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubestar_current = CUBESTAR_CURRENT.raw(value)?;
@@ -115,7 +115,7 @@ impl AdcsMiscCurrents {
         i32::from(self.cubestar_current) * 10
     }
 
-    /// Sets CubeStarCurrent in uA, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set CubeStarCurrent in uA to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_cubestar_current_ua(&mut self, value: i32) -> Result<(), Error> {
         self.cubestar_current = CUBESTAR_CURRENT.whole(value.into(), 10, 0)?;
@@ -128,7 +128,7 @@ impl AdcsMiscCurrents {
         f64::from(self.magnetorquer_current) / 10.0
     }
 
-    /// Sets Magnetorquer Current in mA, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Magnetorquer Current in mA to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit or is not finite.
     pub fn set_magnetorquer_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.magnetorquer_current = MAGNETORQUER_CURRENT.raw(value)?;
@@ -147,7 +147,7 @@ impl AdcsMiscCurrents {
         i32::from(self.magnetorquer_current) * 100
     }
 
-    /// Sets Magnetorquer Current in uA, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Magnetorquer Current in uA to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit.
     pub fn set_magnetorquer_current_ua(&mut self, value: i32) -> Result<(), Error> {
         self.magnetorquer_current = MAGNETORQUER_CURRENT.whole(value.into(), 100, 0)?;
@@ -160,7 +160,7 @@ impl AdcsMiscCurrents {
         f64::from(self.cubestar_mcu_temperature) / 100.0
     }
 
-    /// Sets CubeStar MCU temperature in C, to the nearest raw value, ties to even. [`Error::Range`]
+    /// Set CubeStar MCU temperature in C to the nearest raw value, ties to even. [`Error::Range`]
     /// if it does not fit or is not finite.
     pub fn set_cubestar_mcu_temperature_c(&mut self, value: f64) -> Result<(), Error> {
         self.cubestar_mcu_temperature = CUBESTAR_MCU_TEMPERATURE.raw(value)?;
@@ -179,7 +179,7 @@ impl AdcsMiscCurrents {
         i32::from(self.cubestar_mcu_temperature) * 10
     }
 
-    /// Sets CubeStar MCU temperature in thousandths of C, to the nearest raw value, ties to even.
+    /// Set CubeStar MCU temperature in thousandths of C to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_cubestar_mcu_temperature_mc(&mut self, value: i32) -> Result<(), Error> {
         self.cubestar_mcu_temperature = CUBESTAR_MCU_TEMPERATURE.whole(value.into(), 10, 0)?;

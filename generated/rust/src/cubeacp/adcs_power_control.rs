@@ -93,11 +93,11 @@ impl AdcsPowerControl {
     /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 197;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -106,7 +106,7 @@ impl AdcsPowerControl {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 3]) -> Self {
@@ -124,11 +124,11 @@ impl AdcsPowerControl {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encode the message; reserved bits are 0.
     ///
     /// # Errors
     ///
-    /// [`Error::Range`] if a value does not fit its field.
+    /// [`Error::Range`] if a value does not fit into its field.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 3], Error> {
         CUBECONTROL_SIGNAL_POWER_SELECTION.fit(self.cubecontrol_signal_power_selection.raw())?;

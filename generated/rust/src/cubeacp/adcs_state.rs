@@ -305,11 +305,11 @@ impl AdcsState {
     /// Id of the telemetry.
     pub const ID: u8 = 190;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -318,7 +318,7 @@ impl AdcsState {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 54]) -> Self {
@@ -411,11 +411,11 @@ impl AdcsState {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encode the message; reserved bits are 0.
     ///
     /// # Errors
     ///
-    /// [`Error::Range`] if a value does not fit its field.
+    /// [`Error::Range`] if a value does not fit into its field.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 54], Error> {
         ATTITUDE_ESTIMATION_MODE.fit(self.attitude_estimation_mode.raw())?;
@@ -511,8 +511,8 @@ impl AdcsState {
         f64::from(self.estimated_roll_angle) / 100.0
     }
 
-    /// Sets Estimated Roll Angle in deg, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Estimated Roll Angle in deg to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_estimated_roll_angle_deg(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_roll_angle = ESTIMATED_ROLL_ANGLE.raw(value)?;
         Ok(())
@@ -530,7 +530,7 @@ impl AdcsState {
         i32::from(self.estimated_roll_angle) * 10
     }
 
-    /// Sets Estimated Roll Angle in thousandths of deg, to the nearest raw value, ties to even.
+    /// Set Estimated Roll Angle in thousandths of deg to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_estimated_roll_angle_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.estimated_roll_angle = ESTIMATED_ROLL_ANGLE.whole(value.into(), 10, 0)?;
@@ -543,8 +543,8 @@ impl AdcsState {
         f64::from(self.estimated_pitch_angle) / 100.0
     }
 
-    /// Sets Estimated Pitch Angle in deg, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Estimated Pitch Angle in deg to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_estimated_pitch_angle_deg(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_pitch_angle = ESTIMATED_PITCH_ANGLE.raw(value)?;
         Ok(())
@@ -562,7 +562,7 @@ impl AdcsState {
         i32::from(self.estimated_pitch_angle) * 10
     }
 
-    /// Sets Estimated Pitch Angle in thousandths of deg, to the nearest raw value, ties to even.
+    /// Set Estimated Pitch Angle in thousandths of deg to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_estimated_pitch_angle_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.estimated_pitch_angle = ESTIMATED_PITCH_ANGLE.whole(value.into(), 10, 0)?;
@@ -575,7 +575,7 @@ impl AdcsState {
         f64::from(self.estimated_yaw_angle) / 100.0
     }
 
-    /// Sets Estimated Yaw Angle in deg, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Estimated Yaw Angle in deg to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit or is not finite.
     pub fn set_estimated_yaw_angle_deg(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_yaw_angle = ESTIMATED_YAW_ANGLE.raw(value)?;
@@ -594,7 +594,7 @@ impl AdcsState {
         i32::from(self.estimated_yaw_angle) * 10
     }
 
-    /// Sets Estimated Yaw Angle in thousandths of deg, to the nearest raw value, ties to even.
+    /// Set Estimated Yaw Angle in thousandths of deg to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_estimated_yaw_angle_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.estimated_yaw_angle = ESTIMATED_YAW_ANGLE.whole(value.into(), 10, 0)?;
@@ -607,7 +607,7 @@ impl AdcsState {
         f64::from(self.estimated_x_angular_rate) / 100.0
     }
 
-    /// Sets Estimated X Angular Rate in deg/s, to the nearest raw value, ties to even.
+    /// Set Estimated X Angular Rate in deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_estimated_x_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_x_angular_rate = ESTIMATED_X_ANGULAR_RATE.raw(value)?;
@@ -626,8 +626,8 @@ impl AdcsState {
         i32::from(self.estimated_x_angular_rate) * 10
     }
 
-    /// Sets Estimated X Angular Rate in thousandths of deg/s, to the nearest raw value, ties to
-    /// even. [`Error::Range`] if it does not fit.
+    /// Set Estimated X Angular Rate in thousandths of deg/s to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
     pub fn set_estimated_x_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.estimated_x_angular_rate = ESTIMATED_X_ANGULAR_RATE.whole(value.into(), 10, 0)?;
         Ok(())
@@ -639,7 +639,7 @@ impl AdcsState {
         f64::from(self.estimated_y_angular_rate) / 100.0
     }
 
-    /// Sets Estimated Y Angular Rate in deg/s, to the nearest raw value, ties to even.
+    /// Set Estimated Y Angular Rate in deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_estimated_y_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_y_angular_rate = ESTIMATED_Y_ANGULAR_RATE.raw(value)?;
@@ -658,8 +658,8 @@ impl AdcsState {
         i32::from(self.estimated_y_angular_rate) * 10
     }
 
-    /// Sets Estimated Y Angular Rate in thousandths of deg/s, to the nearest raw value, ties to
-    /// even. [`Error::Range`] if it does not fit.
+    /// Set Estimated Y Angular Rate in thousandths of deg/s to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
     pub fn set_estimated_y_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.estimated_y_angular_rate = ESTIMATED_Y_ANGULAR_RATE.whole(value.into(), 10, 0)?;
         Ok(())
@@ -671,7 +671,7 @@ impl AdcsState {
         f64::from(self.estimated_z_angular_rate) / 100.0
     }
 
-    /// Sets Estimated Z Angular Rate in deg/s, to the nearest raw value, ties to even.
+    /// Set Estimated Z Angular Rate in deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_estimated_z_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_z_angular_rate = ESTIMATED_Z_ANGULAR_RATE.raw(value)?;
@@ -690,8 +690,8 @@ impl AdcsState {
         i32::from(self.estimated_z_angular_rate) * 10
     }
 
-    /// Sets Estimated Z Angular Rate in thousandths of deg/s, to the nearest raw value, ties to
-    /// even. [`Error::Range`] if it does not fit.
+    /// Set Estimated Z Angular Rate in thousandths of deg/s to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
     pub fn set_estimated_z_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.estimated_z_angular_rate = ESTIMATED_Z_ANGULAR_RATE.whole(value.into(), 10, 0)?;
         Ok(())
@@ -703,8 +703,8 @@ impl AdcsState {
         f64::from(self.x_position) / 4.0
     }
 
-    /// Sets X position in km, to the nearest raw value, ties to even. [`Error::Range`] if it does
-    /// not fit or is not finite.
+    /// Set X position in km to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit or is not finite.
     pub fn set_x_position_km(&mut self, value: f64) -> Result<(), Error> {
         self.x_position = X_POSITION.raw(value)?;
         Ok(())
@@ -722,8 +722,8 @@ impl AdcsState {
         i32::from(self.x_position) * 250
     }
 
-    /// Sets X position in m, to the nearest raw value, ties to even. [`Error::Range`] if it does
-    /// not fit.
+    /// Set X position in m to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit.
     pub fn set_x_position_m(&mut self, value: i32) -> Result<(), Error> {
         self.x_position = X_POSITION.whole(value.into(), 250, 0)?;
         Ok(())
@@ -735,8 +735,8 @@ impl AdcsState {
         f64::from(self.y_position) / 4.0
     }
 
-    /// Sets Y position in km, to the nearest raw value, ties to even. [`Error::Range`] if it does
-    /// not fit or is not finite.
+    /// Set Y position in km to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit or is not finite.
     pub fn set_y_position_km(&mut self, value: f64) -> Result<(), Error> {
         self.y_position = Y_POSITION.raw(value)?;
         Ok(())
@@ -754,8 +754,8 @@ impl AdcsState {
         i32::from(self.y_position) * 250
     }
 
-    /// Sets Y position in m, to the nearest raw value, ties to even. [`Error::Range`] if it does
-    /// not fit.
+    /// Set Y position in m to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit.
     pub fn set_y_position_m(&mut self, value: i32) -> Result<(), Error> {
         self.y_position = Y_POSITION.whole(value.into(), 250, 0)?;
         Ok(())
@@ -767,8 +767,8 @@ impl AdcsState {
         f64::from(self.z_position) / 4.0
     }
 
-    /// Sets Z position in km, to the nearest raw value, ties to even. [`Error::Range`] if it does
-    /// not fit or is not finite.
+    /// Set Z position in km to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit or is not finite.
     pub fn set_z_position_km(&mut self, value: f64) -> Result<(), Error> {
         self.z_position = Z_POSITION.raw(value)?;
         Ok(())
@@ -786,8 +786,8 @@ impl AdcsState {
         i32::from(self.z_position) * 250
     }
 
-    /// Sets Z position in m, to the nearest raw value, ties to even. [`Error::Range`] if it does
-    /// not fit.
+    /// Set Z position in m to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit.
     pub fn set_z_position_m(&mut self, value: i32) -> Result<(), Error> {
         self.z_position = Z_POSITION.whole(value.into(), 250, 0)?;
         Ok(())
@@ -799,7 +799,7 @@ impl AdcsState {
         f64::from(self.x_velocity) / 4.0
     }
 
-    /// Sets X Velocity in m/s, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// Set X Velocity in m/s to the nearest raw value, ties to even. [`Error::Range`] if it does
     /// not fit or is not finite.
     pub fn set_x_velocity_m_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.x_velocity = X_VELOCITY.raw(value)?;
@@ -818,7 +818,7 @@ impl AdcsState {
         i32::from(self.x_velocity) * 250
     }
 
-    /// Sets X Velocity in mm/s, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// Set X Velocity in mm/s to the nearest raw value, ties to even. [`Error::Range`] if it does
     /// not fit.
     pub fn set_x_velocity_mm_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.x_velocity = X_VELOCITY.whole(value.into(), 250, 0)?;
@@ -831,7 +831,7 @@ impl AdcsState {
         f64::from(self.y_velocity) / 4.0
     }
 
-    /// Sets Y Velocity in m/s, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// Set Y Velocity in m/s to the nearest raw value, ties to even. [`Error::Range`] if it does
     /// not fit or is not finite.
     pub fn set_y_velocity_m_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.y_velocity = Y_VELOCITY.raw(value)?;
@@ -850,7 +850,7 @@ impl AdcsState {
         i32::from(self.y_velocity) * 250
     }
 
-    /// Sets Y Velocity in mm/s, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// Set Y Velocity in mm/s to the nearest raw value, ties to even. [`Error::Range`] if it does
     /// not fit.
     pub fn set_y_velocity_mm_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.y_velocity = Y_VELOCITY.whole(value.into(), 250, 0)?;
@@ -863,7 +863,7 @@ impl AdcsState {
         f64::from(self.z_velocity) / 4.0
     }
 
-    /// Sets Z Velocity in m/s, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// Set Z Velocity in m/s to the nearest raw value, ties to even. [`Error::Range`] if it does
     /// not fit or is not finite.
     pub fn set_z_velocity_m_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.z_velocity = Z_VELOCITY.raw(value)?;
@@ -882,7 +882,7 @@ impl AdcsState {
         i32::from(self.z_velocity) * 250
     }
 
-    /// Sets Z Velocity in mm/s, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// Set Z Velocity in mm/s to the nearest raw value, ties to even. [`Error::Range`] if it does
     /// not fit.
     pub fn set_z_velocity_mm_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.z_velocity = Z_VELOCITY.whole(value.into(), 250, 0)?;
@@ -895,8 +895,8 @@ impl AdcsState {
         f64::from(self.latitude) / 100.0
     }
 
-    /// Sets Latitude in deg, to the nearest raw value, ties to even. [`Error::Range`] if it does
-    /// not fit or is not finite.
+    /// Set Latitude in deg to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit or is not finite.
     pub fn set_latitude_deg(&mut self, value: f64) -> Result<(), Error> {
         self.latitude = LATITUDE.raw(value)?;
         Ok(())
@@ -914,8 +914,8 @@ impl AdcsState {
         i32::from(self.latitude) * 10
     }
 
-    /// Sets Latitude in thousandths of deg, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit.
+    /// Set Latitude in thousandths of deg to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit.
     pub fn set_latitude_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.latitude = LATITUDE.whole(value.into(), 10, 0)?;
         Ok(())
@@ -927,8 +927,8 @@ impl AdcsState {
         f64::from(self.longitude) / 100.0
     }
 
-    /// Sets Longitude in deg, to the nearest raw value, ties to even. [`Error::Range`] if it does
-    /// not fit or is not finite.
+    /// Set Longitude in deg to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit or is not finite.
     pub fn set_longitude_deg(&mut self, value: f64) -> Result<(), Error> {
         self.longitude = LONGITUDE.raw(value)?;
         Ok(())
@@ -946,8 +946,8 @@ impl AdcsState {
         i32::from(self.longitude) * 10
     }
 
-    /// Sets Longitude in thousandths of deg, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit.
+    /// Set Longitude in thousandths of deg to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit.
     pub fn set_longitude_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.longitude = LONGITUDE.whole(value.into(), 10, 0)?;
         Ok(())
@@ -959,7 +959,7 @@ impl AdcsState {
         f64::from(self.altitude) / 100.0
     }
 
-    /// Sets Altitude in km, to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// Set Altitude in km to the nearest raw value, ties to even. [`Error::Range`] if it does not
     /// fit or is not finite.
     pub fn set_altitude_km(&mut self, value: f64) -> Result<(), Error> {
         self.altitude = ALTITUDE.raw(value)?;
@@ -978,7 +978,7 @@ impl AdcsState {
         i32::from(self.altitude) * 10
     }
 
-    /// Sets Altitude in m, to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// Set Altitude in m to the nearest raw value, ties to even. [`Error::Range`] if it does not
     /// fit.
     pub fn set_altitude_m(&mut self, value: i32) -> Result<(), Error> {
         self.altitude = ALTITUDE.whole(value.into(), 10, 0)?;

@@ -56,11 +56,11 @@ impl AdcsTemperatures {
     /// Id of the telemetry.
     pub const ID: u8 = 174;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -69,7 +69,7 @@ impl AdcsTemperatures {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -80,11 +80,11 @@ impl AdcsTemperatures {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -100,7 +100,7 @@ impl AdcsTemperatures {
         f64::from(self.magnetometer_temperature) / 10.0
     }
 
-    /// Sets Magnetometer Temperature in C, to the nearest raw value, ties to even. [`Error::Range`]
+    /// Set Magnetometer Temperature in C to the nearest raw value, ties to even. [`Error::Range`]
     /// if it does not fit or is not finite.
     pub fn set_magnetometer_temperature_c(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_temperature = MAGNETOMETER_TEMPERATURE.raw(value)?;
@@ -119,7 +119,7 @@ impl AdcsTemperatures {
         i32::from(self.magnetometer_temperature) * 100
     }
 
-    /// Sets Magnetometer Temperature in thousandths of C, to the nearest raw value, ties to even.
+    /// Set Magnetometer Temperature in thousandths of C to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_magnetometer_temperature_mc(&mut self, value: i32) -> Result<(), Error> {
         self.magnetometer_temperature = MAGNETOMETER_TEMPERATURE.whole(value.into(), 100, 0)?;
@@ -132,7 +132,7 @@ impl AdcsTemperatures {
         f64::from(self.redundant_mag_temperature) / 10.0
     }
 
-    /// Sets Redundant Magnetometer Temperature in C, to the nearest raw value, ties to even.
+    /// Set Redundant Magnetometer Temperature in C to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_temperature_c(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_temperature = REDUNDANT_MAG_TEMPERATURE.raw(value)?;
@@ -151,8 +151,8 @@ impl AdcsTemperatures {
         i32::from(self.redundant_mag_temperature) * 100
     }
 
-    /// Sets Redundant Magnetometer Temperature in thousandths of C, to the nearest raw value, ties
-    /// to even. [`Error::Range`] if it does not fit.
+    /// Set Redundant Magnetometer Temperature in thousandths of C to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
     pub fn set_redundant_mag_temperature_mc(&mut self, value: i32) -> Result<(), Error> {
         self.redundant_mag_temperature = REDUNDANT_MAG_TEMPERATURE.whole(value.into(), 100, 0)?;
         Ok(())

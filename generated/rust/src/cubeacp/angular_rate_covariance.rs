@@ -48,11 +48,11 @@ impl AngularRateCovariance {
     /// Id of the telemetry.
     pub const ID: u8 = 165;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -61,7 +61,7 @@ impl AngularRateCovariance {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -72,11 +72,11 @@ impl AngularRateCovariance {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -92,7 +92,7 @@ impl AngularRateCovariance {
         f64::from(self.x_angular_rate_covariance) / 1_000.0
     }
 
-    /// Sets X Angular Rate Covariance, as a physical value, to the nearest raw value, ties to even.
+    /// Set X Angular Rate Covariance, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_x_angular_rate_covariance_physical(&mut self, value: f64) -> Result<(), Error> {
         self.x_angular_rate_covariance = X_ANGULAR_RATE_COVARIANCE.raw(value)?;
@@ -111,7 +111,7 @@ impl AngularRateCovariance {
         i32::from(self.x_angular_rate_covariance)
     }
 
-    /// Sets X Angular Rate Covariance in thousandths, to the nearest raw value, ties to even.
+    /// Set X Angular Rate Covariance in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_x_angular_rate_covariance_milli(&mut self, value: i32) -> Result<(), Error> {
         self.x_angular_rate_covariance = X_ANGULAR_RATE_COVARIANCE.whole(value.into(), 1, 0)?;
@@ -124,7 +124,7 @@ impl AngularRateCovariance {
         f64::from(self.y_angular_rate_covariance) / 1_000.0
     }
 
-    /// Sets Y Angular Rate Covariance, as a physical value, to the nearest raw value, ties to even.
+    /// Set Y Angular Rate Covariance, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_y_angular_rate_covariance_physical(&mut self, value: f64) -> Result<(), Error> {
         self.y_angular_rate_covariance = Y_ANGULAR_RATE_COVARIANCE.raw(value)?;
@@ -143,7 +143,7 @@ impl AngularRateCovariance {
         i32::from(self.y_angular_rate_covariance)
     }
 
-    /// Sets Y Angular Rate Covariance in thousandths, to the nearest raw value, ties to even.
+    /// Set Y Angular Rate Covariance in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_y_angular_rate_covariance_milli(&mut self, value: i32) -> Result<(), Error> {
         self.y_angular_rate_covariance = Y_ANGULAR_RATE_COVARIANCE.whole(value.into(), 1, 0)?;
@@ -156,7 +156,7 @@ impl AngularRateCovariance {
         f64::from(self.z_angular_rate_covariance) / 1_000.0
     }
 
-    /// Sets Z Angular Rate Covariance, as a physical value, to the nearest raw value, ties to even.
+    /// Set Z Angular Rate Covariance, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_z_angular_rate_covariance_physical(&mut self, value: f64) -> Result<(), Error> {
         self.z_angular_rate_covariance = Z_ANGULAR_RATE_COVARIANCE.raw(value)?;
@@ -175,7 +175,7 @@ impl AngularRateCovariance {
         i32::from(self.z_angular_rate_covariance)
     }
 
-    /// Sets Z Angular Rate Covariance in thousandths, to the nearest raw value, ties to even.
+    /// Set Z Angular Rate Covariance in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_z_angular_rate_covariance_milli(&mut self, value: i32) -> Result<(), Error> {
         self.z_angular_rate_covariance = Z_ANGULAR_RATE_COVARIANCE.whole(value.into(), 1, 0)?;

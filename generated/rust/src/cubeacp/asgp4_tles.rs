@@ -103,11 +103,11 @@ impl Asgp4Tles {
     /// Id of the telemetry.
     pub const ID: u8 = 228;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -116,7 +116,7 @@ impl Asgp4Tles {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 33]) -> Self {
@@ -134,11 +134,11 @@ impl Asgp4Tles {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// [`Error::Range`] if a value does not fit its field.
+    /// [`Error::Range`] if a value does not fit into its field.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 33], Error> {
         ASGP4_ERROR.fit(self.asgp4_error.raw())?;

@@ -148,11 +148,11 @@ impl AugmentedSgp4Parameters {
     /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 227;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -161,7 +161,7 @@ impl AugmentedSgp4Parameters {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 30]) -> Self {
@@ -186,11 +186,11 @@ impl AugmentedSgp4Parameters {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 30], Error> {
         let mut bytes = [0; 30];
@@ -220,7 +220,7 @@ impl AugmentedSgp4Parameters {
         f64::from(self.incl_coefficient) / 1_000.0
     }
 
-    /// Sets Incl. coefficient, as a physical value, to the nearest raw value, ties to even.
+    /// Set Incl. coefficient, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_incl_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.incl_coefficient = INCL_COEFFICIENT.raw(value)?;
@@ -239,7 +239,7 @@ impl AugmentedSgp4Parameters {
         i32::from(self.incl_coefficient)
     }
 
-    /// Sets Incl. coefficient in thousandths, to the nearest raw value, ties to even.
+    /// Set Incl. coefficient in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_incl_coefficient_milli(&mut self, value: i32) -> Result<(), Error> {
         self.incl_coefficient = INCL_COEFFICIENT.whole(value.into(), 1, 0)?;
@@ -252,7 +252,7 @@ impl AugmentedSgp4Parameters {
         f64::from(self.raan_coefficient) / 1_000.0
     }
 
-    /// Sets Raan coefficient, as a physical value, to the nearest raw value, ties to even.
+    /// Set Raan coefficient, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_raan_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.raan_coefficient = RAAN_COEFFICIENT.raw(value)?;
@@ -271,8 +271,8 @@ impl AugmentedSgp4Parameters {
         i32::from(self.raan_coefficient)
     }
 
-    /// Sets Raan coefficient in thousandths, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit.
+    /// Set Raan coefficient in thousandths to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit.
     pub fn set_raan_coefficient_milli(&mut self, value: i32) -> Result<(), Error> {
         self.raan_coefficient = RAAN_COEFFICIENT.whole(value.into(), 1, 0)?;
         Ok(())
@@ -284,7 +284,7 @@ impl AugmentedSgp4Parameters {
         f64::from(self.ecc_coefficient) / 1_000.0
     }
 
-    /// Sets Ecc coefficient, as a physical value, to the nearest raw value, ties to even.
+    /// Set Ecc coefficient, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_ecc_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.ecc_coefficient = ECC_COEFFICIENT.raw(value)?;
@@ -303,8 +303,8 @@ impl AugmentedSgp4Parameters {
         i32::from(self.ecc_coefficient)
     }
 
-    /// Sets Ecc coefficient in thousandths, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit.
+    /// Set Ecc coefficient in thousandths to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit.
     pub fn set_ecc_coefficient_milli(&mut self, value: i32) -> Result<(), Error> {
         self.ecc_coefficient = ECC_COEFFICIENT.whole(value.into(), 1, 0)?;
         Ok(())
@@ -316,7 +316,7 @@ impl AugmentedSgp4Parameters {
         f64::from(self.aop_coefficient) / 1_000.0
     }
 
-    /// Sets Aop coefficient, as a physical value, to the nearest raw value, ties to even.
+    /// Set Aop coefficient, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_aop_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.aop_coefficient = AOP_COEFFICIENT.raw(value)?;
@@ -335,8 +335,8 @@ impl AugmentedSgp4Parameters {
         i32::from(self.aop_coefficient)
     }
 
-    /// Sets Aop coefficient in thousandths, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit.
+    /// Set Aop coefficient in thousandths to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit.
     pub fn set_aop_coefficient_milli(&mut self, value: i32) -> Result<(), Error> {
         self.aop_coefficient = AOP_COEFFICIENT.whole(value.into(), 1, 0)?;
         Ok(())
@@ -348,7 +348,7 @@ impl AugmentedSgp4Parameters {
         f64::from(self.time_coefficient) / 1_000.0
     }
 
-    /// Sets Time coefficient, as a physical value, to the nearest raw value, ties to even.
+    /// Set Time coefficient, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_time_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.time_coefficient = TIME_COEFFICIENT.raw(value)?;
@@ -367,8 +367,8 @@ impl AugmentedSgp4Parameters {
         i32::from(self.time_coefficient)
     }
 
-    /// Sets Time coefficient in thousandths, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit.
+    /// Set Time coefficient in thousandths to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit.
     pub fn set_time_coefficient_milli(&mut self, value: i32) -> Result<(), Error> {
         self.time_coefficient = TIME_COEFFICIENT.whole(value.into(), 1, 0)?;
         Ok(())
@@ -380,7 +380,7 @@ impl AugmentedSgp4Parameters {
         f64::from(self.pos_coefficient) / 1_000.0
     }
 
-    /// Sets Pos coefficient, as a physical value, to the nearest raw value, ties to even.
+    /// Set Pos coefficient, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_pos_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.pos_coefficient = POS_COEFFICIENT.raw(value)?;
@@ -399,8 +399,8 @@ impl AugmentedSgp4Parameters {
         i32::from(self.pos_coefficient)
     }
 
-    /// Sets Pos coefficient in thousandths, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit.
+    /// Set Pos coefficient in thousandths to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit.
     pub fn set_pos_coefficient_milli(&mut self, value: i32) -> Result<(), Error> {
         self.pos_coefficient = POS_COEFFICIENT.whole(value.into(), 1, 0)?;
         Ok(())
@@ -412,7 +412,7 @@ impl AugmentedSgp4Parameters {
         f64::from(self.maximum_position_error) / 10.0
     }
 
-    /// Sets Maximum position error, as a physical value, to the nearest raw value, ties to even.
+    /// Set Maximum position error, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_maximum_position_error_physical(&mut self, value: f64) -> Result<(), Error> {
         self.maximum_position_error = MAXIMUM_POSITION_ERROR.raw(value)?;
@@ -431,7 +431,7 @@ impl AugmentedSgp4Parameters {
         i32::from(self.maximum_position_error) * 100
     }
 
-    /// Sets Maximum position error in thousandths, to the nearest raw value, ties to even.
+    /// Set Maximum position error in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_maximum_position_error_milli(&mut self, value: i32) -> Result<(), Error> {
         self.maximum_position_error = MAXIMUM_POSITION_ERROR.whole(value.into(), 100, 0)?;
@@ -444,7 +444,7 @@ impl AugmentedSgp4Parameters {
         f64::from(self.xp_coefficient) / 10_000_000.0
     }
 
-    /// Sets xp coefficient, as a physical value, to the nearest raw value, ties to even.
+    /// Set xp coefficient, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_xp_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.xp_coefficient = XP_COEFFICIENT.raw(value)?;
@@ -463,7 +463,7 @@ impl AugmentedSgp4Parameters {
         f64::from(self.yp_coefficient) / 10_000_000.0
     }
 
-    /// Sets yp coefficient, as a physical value, to the nearest raw value, ties to even.
+    /// Set yp coefficient, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_yp_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.yp_coefficient = YP_COEFFICIENT.raw(value)?;
@@ -482,7 +482,7 @@ impl AugmentedSgp4Parameters {
         f64::from(self.position_sd) / 10.0
     }
 
-    /// Sets Position sd, as a physical value, to the nearest raw value, ties to even.
+    /// Set Position sd, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_position_sd_physical(&mut self, value: f64) -> Result<(), Error> {
         self.position_sd = POSITION_SD.raw(value)?;
@@ -501,7 +501,7 @@ impl AugmentedSgp4Parameters {
         i32::from(self.position_sd) * 100
     }
 
-    /// Sets Position sd in thousandths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Position sd in thousandths to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit.
     pub fn set_position_sd_milli(&mut self, value: i32) -> Result<(), Error> {
         self.position_sd = POSITION_SD.whole(value.into(), 100, 0)?;
@@ -514,7 +514,7 @@ impl AugmentedSgp4Parameters {
         f64::from(self.velocity_sd) / 100.0
     }
 
-    /// Sets Velocity sd, as a physical value, to the nearest raw value, ties to even.
+    /// Set Velocity sd, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_velocity_sd_physical(&mut self, value: f64) -> Result<(), Error> {
         self.velocity_sd = VELOCITY_SD.raw(value)?;
@@ -533,7 +533,7 @@ impl AugmentedSgp4Parameters {
         i32::from(self.velocity_sd) * 10
     }
 
-    /// Sets Velocity sd in thousandths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Velocity sd in thousandths to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit.
     pub fn set_velocity_sd_milli(&mut self, value: i32) -> Result<(), Error> {
         self.velocity_sd = VELOCITY_SD.whole(value.into(), 10, 0)?;
@@ -546,8 +546,8 @@ impl AugmentedSgp4Parameters {
         f64::from(self.time_gain) / 100.0
     }
 
-    /// Sets Time gain, as a physical value, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit or is not finite.
+    /// Set Time gain, as a physical value to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_time_gain_physical(&mut self, value: f64) -> Result<(), Error> {
         self.time_gain = TIME_GAIN.raw(value)?;
         Ok(())
@@ -565,8 +565,8 @@ impl AugmentedSgp4Parameters {
         i32::from(self.time_gain) * 10
     }
 
-    /// Sets Time gain in thousandths, to the nearest raw value, ties to even. [`Error::Range`] if
-    /// it does not fit.
+    /// Set Time gain in thousandths to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
     pub fn set_time_gain_milli(&mut self, value: i32) -> Result<(), Error> {
         self.time_gain = TIME_GAIN.whole(value.into(), 10, 0)?;
         Ok(())
@@ -578,7 +578,7 @@ impl AugmentedSgp4Parameters {
         f64::from(self.max_lag) / 100.0
     }
 
-    /// Sets Max. lag, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// Set Max. lag, as a physical value to the nearest raw value, ties to even. [`Error::Range`]
     /// if it does not fit or is not finite.
     pub fn set_max_lag_physical(&mut self, value: f64) -> Result<(), Error> {
         self.max_lag = MAX_LAG.raw(value)?;
@@ -597,7 +597,7 @@ impl AugmentedSgp4Parameters {
         i32::from(self.max_lag) * 10
     }
 
-    /// Sets Max. lag in thousandths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Max. lag in thousandths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_max_lag_milli(&mut self, value: i32) -> Result<(), Error> {
         self.max_lag = MAX_LAG.whole(value.into(), 10, 0)?;

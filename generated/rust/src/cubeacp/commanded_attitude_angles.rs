@@ -45,11 +45,11 @@ impl CommandedAttitudeAngles {
     /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 199;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -58,7 +58,7 @@ impl CommandedAttitudeAngles {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -69,11 +69,11 @@ impl CommandedAttitudeAngles {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -89,8 +89,8 @@ impl CommandedAttitudeAngles {
         f64::from(self.commanded_roll_angle) / 100.0
     }
 
-    /// Sets Commanded Roll Angle in deg, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Commanded Roll Angle in deg to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_commanded_roll_angle_deg(&mut self, value: f64) -> Result<(), Error> {
         self.commanded_roll_angle = COMMANDED_ROLL_ANGLE.raw(value)?;
         Ok(())
@@ -108,7 +108,7 @@ impl CommandedAttitudeAngles {
         i32::from(self.commanded_roll_angle) * 10
     }
 
-    /// Sets Commanded Roll Angle in thousandths of deg, to the nearest raw value, ties to even.
+    /// Set Commanded Roll Angle in thousandths of deg to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_commanded_roll_angle_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.commanded_roll_angle = COMMANDED_ROLL_ANGLE.whole(value.into(), 10, 0)?;
@@ -121,8 +121,8 @@ impl CommandedAttitudeAngles {
         f64::from(self.commanded_pitch_angle) / 100.0
     }
 
-    /// Sets Commanded Pitch Angle in deg, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Commanded Pitch Angle in deg to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_commanded_pitch_angle_deg(&mut self, value: f64) -> Result<(), Error> {
         self.commanded_pitch_angle = COMMANDED_PITCH_ANGLE.raw(value)?;
         Ok(())
@@ -140,7 +140,7 @@ impl CommandedAttitudeAngles {
         i32::from(self.commanded_pitch_angle) * 10
     }
 
-    /// Sets Commanded Pitch Angle in thousandths of deg, to the nearest raw value, ties to even.
+    /// Set Commanded Pitch Angle in thousandths of deg to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_commanded_pitch_angle_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.commanded_pitch_angle = COMMANDED_PITCH_ANGLE.whole(value.into(), 10, 0)?;
@@ -153,7 +153,7 @@ impl CommandedAttitudeAngles {
         f64::from(self.commanded_yaw_angle) / 100.0
     }
 
-    /// Sets Commanded Yaw Angle in deg, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Commanded Yaw Angle in deg to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit or is not finite.
     pub fn set_commanded_yaw_angle_deg(&mut self, value: f64) -> Result<(), Error> {
         self.commanded_yaw_angle = COMMANDED_YAW_ANGLE.raw(value)?;
@@ -172,7 +172,7 @@ impl CommandedAttitudeAngles {
         i32::from(self.commanded_yaw_angle) * 10
     }
 
-    /// Sets Commanded Yaw Angle in thousandths of deg, to the nearest raw value, ties to even.
+    /// Set Commanded Yaw Angle in thousandths of deg to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_commanded_yaw_angle_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.commanded_yaw_angle = COMMANDED_YAW_ANGLE.whole(value.into(), 10, 0)?;

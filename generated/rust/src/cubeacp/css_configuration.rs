@@ -82,11 +82,11 @@ impl CssConfiguration {
     /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 139;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -95,7 +95,7 @@ impl CssConfiguration {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 21]) -> Self {
@@ -124,11 +124,11 @@ impl CssConfiguration {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 21], Error> {
         let mut bytes = [0; 21];
@@ -162,7 +162,7 @@ impl CssConfiguration {
         f64::from(self.css1_relative_scale) / 100.0
     }
 
-    /// Sets CSS1 Relative Scale, as a physical value, to the nearest raw value, ties to even.
+    /// Set CSS1 Relative Scale, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css1_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css1_relative_scale = CSS1_RELATIVE_SCALE.raw(value)?;
@@ -181,7 +181,7 @@ impl CssConfiguration {
         i32::from(self.css1_relative_scale) * 10
     }
 
-    /// Sets CSS1 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// Set CSS1 Relative Scale in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_css1_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
         self.css1_relative_scale = CSS1_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
@@ -194,7 +194,7 @@ impl CssConfiguration {
         f64::from(self.css2_relative_scale) / 100.0
     }
 
-    /// Sets CSS2 Relative Scale, as a physical value, to the nearest raw value, ties to even.
+    /// Set CSS2 Relative Scale, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css2_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css2_relative_scale = CSS2_RELATIVE_SCALE.raw(value)?;
@@ -213,7 +213,7 @@ impl CssConfiguration {
         i32::from(self.css2_relative_scale) * 10
     }
 
-    /// Sets CSS2 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// Set CSS2 Relative Scale in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_css2_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
         self.css2_relative_scale = CSS2_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
@@ -226,7 +226,7 @@ impl CssConfiguration {
         f64::from(self.css3_relative_scale) / 100.0
     }
 
-    /// Sets CSS3 Relative Scale, as a physical value, to the nearest raw value, ties to even.
+    /// Set CSS3 Relative Scale, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css3_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css3_relative_scale = CSS3_RELATIVE_SCALE.raw(value)?;
@@ -245,7 +245,7 @@ impl CssConfiguration {
         i32::from(self.css3_relative_scale) * 10
     }
 
-    /// Sets CSS3 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// Set CSS3 Relative Scale in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_css3_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
         self.css3_relative_scale = CSS3_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
@@ -258,7 +258,7 @@ impl CssConfiguration {
         f64::from(self.css4_relative_scale) / 100.0
     }
 
-    /// Sets CSS4 Relative Scale, as a physical value, to the nearest raw value, ties to even.
+    /// Set CSS4 Relative Scale, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css4_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css4_relative_scale = CSS4_RELATIVE_SCALE.raw(value)?;
@@ -277,7 +277,7 @@ impl CssConfiguration {
         i32::from(self.css4_relative_scale) * 10
     }
 
-    /// Sets CSS4 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// Set CSS4 Relative Scale in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_css4_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
         self.css4_relative_scale = CSS4_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
@@ -290,7 +290,7 @@ impl CssConfiguration {
         f64::from(self.css5_relative_scale) / 100.0
     }
 
-    /// Sets CSS5 Relative Scale, as a physical value, to the nearest raw value, ties to even.
+    /// Set CSS5 Relative Scale, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css5_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css5_relative_scale = CSS5_RELATIVE_SCALE.raw(value)?;
@@ -309,7 +309,7 @@ impl CssConfiguration {
         i32::from(self.css5_relative_scale) * 10
     }
 
-    /// Sets CSS5 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// Set CSS5 Relative Scale in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_css5_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
         self.css5_relative_scale = CSS5_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
@@ -322,7 +322,7 @@ impl CssConfiguration {
         f64::from(self.css6_relative_scale) / 100.0
     }
 
-    /// Sets CSS6 Relative Scale, as a physical value, to the nearest raw value, ties to even.
+    /// Set CSS6 Relative Scale, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css6_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css6_relative_scale = CSS6_RELATIVE_SCALE.raw(value)?;
@@ -341,7 +341,7 @@ impl CssConfiguration {
         i32::from(self.css6_relative_scale) * 10
     }
 
-    /// Sets CSS6 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// Set CSS6 Relative Scale in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_css6_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
         self.css6_relative_scale = CSS6_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
@@ -354,7 +354,7 @@ impl CssConfiguration {
         f64::from(self.css7_relative_scale) / 100.0
     }
 
-    /// Sets CSS7 Relative Scale, as a physical value, to the nearest raw value, ties to even.
+    /// Set CSS7 Relative Scale, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css7_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css7_relative_scale = CSS7_RELATIVE_SCALE.raw(value)?;
@@ -373,7 +373,7 @@ impl CssConfiguration {
         i32::from(self.css7_relative_scale) * 10
     }
 
-    /// Sets CSS7 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// Set CSS7 Relative Scale in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_css7_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
         self.css7_relative_scale = CSS7_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
@@ -386,7 +386,7 @@ impl CssConfiguration {
         f64::from(self.css8_relative_scale) / 100.0
     }
 
-    /// Sets CSS8 Relative Scale, as a physical value, to the nearest raw value, ties to even.
+    /// Set CSS8 Relative Scale, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css8_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css8_relative_scale = CSS8_RELATIVE_SCALE.raw(value)?;
@@ -405,7 +405,7 @@ impl CssConfiguration {
         i32::from(self.css8_relative_scale) * 10
     }
 
-    /// Sets CSS8 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// Set CSS8 Relative Scale in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_css8_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
         self.css8_relative_scale = CSS8_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
@@ -418,7 +418,7 @@ impl CssConfiguration {
         f64::from(self.css9_relative_scale) / 100.0
     }
 
-    /// Sets CSS9 Relative Scale, as a physical value, to the nearest raw value, ties to even.
+    /// Set CSS9 Relative Scale, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css9_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css9_relative_scale = CSS9_RELATIVE_SCALE.raw(value)?;
@@ -437,7 +437,7 @@ impl CssConfiguration {
         i32::from(self.css9_relative_scale) * 10
     }
 
-    /// Sets CSS9 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// Set CSS9 Relative Scale in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_css9_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
         self.css9_relative_scale = CSS9_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
@@ -450,7 +450,7 @@ impl CssConfiguration {
         f64::from(self.css10_relative_scale) / 100.0
     }
 
-    /// Sets CSS10 Relative Scale, as a physical value, to the nearest raw value, ties to even.
+    /// Set CSS10 Relative Scale, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css10_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css10_relative_scale = CSS10_RELATIVE_SCALE.raw(value)?;
@@ -469,7 +469,7 @@ impl CssConfiguration {
         i32::from(self.css10_relative_scale) * 10
     }
 
-    /// Sets CSS10 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// Set CSS10 Relative Scale in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_css10_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
         self.css10_relative_scale = CSS10_RELATIVE_SCALE.whole(value.into(), 10, 0)?;

@@ -41,11 +41,11 @@ impl CubecontrolCurrents {
     /// Id of the telemetry.
     pub const ID: u8 = 172;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -54,7 +54,7 @@ impl CubecontrolCurrents {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -65,11 +65,11 @@ impl CubecontrolCurrents {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -85,7 +85,7 @@ impl CubecontrolCurrents {
         (f64::from(self.cubecontrol_3v3_current) * 125.0) / 256.0
     }
 
-    /// Sets CubeControl 3V3 Current in mA, to the nearest raw value, ties to even. [`Error::Range`]
+    /// Set CubeControl 3V3 Current in mA to the nearest raw value, ties to even. [`Error::Range`]
     /// if it does not fit or is not finite.
     pub fn set_cubecontrol_3v3_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubecontrol_3v3_current = CUBECONTROL_3V3_CURRENT.raw(value)?;
@@ -104,8 +104,8 @@ impl CubecontrolCurrents {
         (f64::from(self.cubecontrol_5v_current) * 125.0) / 256.0
     }
 
-    /// Sets CubeControl 5V Current in mA, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set CubeControl 5V Current in mA to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_cubecontrol_5v_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubecontrol_5v_current = CUBECONTROL_5V_CURRENT.raw(value)?;
         Ok(())
@@ -123,8 +123,8 @@ impl CubecontrolCurrents {
         (f64::from(self.cubecontrol_vbat_current) * 125.0) / 256.0
     }
 
-    /// Sets CubeControl Vbat Current in mA, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit or is not finite.
+    /// Set CubeControl Vbat Current in mA to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_cubecontrol_vbat_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubecontrol_vbat_current = CUBECONTROL_VBAT_CURRENT.raw(value)?;
         Ok(())

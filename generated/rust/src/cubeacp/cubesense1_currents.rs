@@ -41,11 +41,11 @@ impl Cubesense1Currents {
     /// Id of the telemetry.
     pub const ID: u8 = 171;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -54,7 +54,7 @@ impl Cubesense1Currents {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 4]) -> Self {
@@ -64,11 +64,11 @@ impl Cubesense1Currents {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 4], Error> {
         let mut bytes = [0; 4];
@@ -83,8 +83,8 @@ impl Cubesense1Currents {
         f64::from(self.cubesense1_3v3_current) / 10.0
     }
 
-    /// Sets CubeSense1 3V3 Current in mA, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set CubeSense1 3V3 Current in mA to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_cubesense1_3v3_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubesense1_3v3_current = CUBESENSE1_3V3_CURRENT.raw(value)?;
         Ok(())
@@ -102,8 +102,8 @@ impl Cubesense1Currents {
         i32::from(self.cubesense1_3v3_current) * 100
     }
 
-    /// Sets CubeSense1 3V3 Current in uA, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit.
+    /// Set CubeSense1 3V3 Current in uA to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
     pub fn set_cubesense1_3v3_current_ua(&mut self, value: i32) -> Result<(), Error> {
         self.cubesense1_3v3_current = CUBESENSE1_3V3_CURRENT.whole(value.into(), 100, 0)?;
         Ok(())
@@ -115,7 +115,7 @@ impl Cubesense1Currents {
         f64::from(self.cubesense1_cam_sram_current) / 10.0
     }
 
-    /// Sets CubeSense1 Cam SRAM Current in mA, to the nearest raw value, ties to even.
+    /// Set CubeSense1 Cam SRAM Current in mA to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cubesense1_cam_sram_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubesense1_cam_sram_current = CUBESENSE1_CAM_SRAM_CURRENT.raw(value)?;
@@ -134,7 +134,7 @@ impl Cubesense1Currents {
         i32::from(self.cubesense1_cam_sram_current) * 100
     }
 
-    /// Sets CubeSense1 Cam SRAM Current in uA, to the nearest raw value, ties to even.
+    /// Set CubeSense1 Cam SRAM Current in uA to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_cubesense1_cam_sram_current_ua(&mut self, value: i32) -> Result<(), Error> {
         self.cubesense1_cam_sram_current = CUBESENSE1_CAM_SRAM_CURRENT.whole(value.into(), 100, 0)?;

@@ -44,11 +44,11 @@ impl Cubesense2Currents {
     /// Id of the telemetry.
     pub const ID: u8 = 232;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -57,7 +57,7 @@ impl Cubesense2Currents {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 4]) -> Self {
@@ -67,11 +67,11 @@ impl Cubesense2Currents {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 4], Error> {
         let mut bytes = [0; 4];
@@ -86,8 +86,8 @@ impl Cubesense2Currents {
         f64::from(self.cubesense2_3v3_current) / 10.0
     }
 
-    /// Sets CubeSense2 3V3 Current in mA, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set CubeSense2 3V3 Current in mA to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_cubesense2_3v3_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubesense2_3v3_current = CUBESENSE2_3V3_CURRENT.raw(value)?;
         Ok(())
@@ -105,8 +105,8 @@ impl Cubesense2Currents {
         i32::from(self.cubesense2_3v3_current) * 100
     }
 
-    /// Sets CubeSense2 3V3 Current in uA, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit.
+    /// Set CubeSense2 3V3 Current in uA to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
     pub fn set_cubesense2_3v3_current_ua(&mut self, value: i32) -> Result<(), Error> {
         self.cubesense2_3v3_current = CUBESENSE2_3V3_CURRENT.whole(value.into(), 100, 0)?;
         Ok(())
@@ -118,7 +118,7 @@ impl Cubesense2Currents {
         f64::from(self.cubesense2_cam_sram_current) / 10.0
     }
 
-    /// Sets CubeSense2 Cam SRAM Current in mA, to the nearest raw value, ties to even.
+    /// Set CubeSense2 Cam SRAM Current in mA to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cubesense2_cam_sram_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubesense2_cam_sram_current = CUBESENSE2_CAM_SRAM_CURRENT.raw(value)?;
@@ -137,7 +137,7 @@ impl Cubesense2Currents {
         i32::from(self.cubesense2_cam_sram_current) * 100
     }
 
-    /// Sets CubeSense2 Cam SRAM Current in uA, to the nearest raw value, ties to even.
+    /// Set CubeSense2 Cam SRAM Current in uA to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_cubesense2_cam_sram_current_ua(&mut self, value: i32) -> Result<(), Error> {
         self.cubesense2_cam_sram_current = CUBESENSE2_CAM_SRAM_CURRENT.whole(value.into(), 100, 0)?;

@@ -299,11 +299,11 @@ impl CubesenseConfiguration {
     /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 203;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -312,7 +312,7 @@ impl CubesenseConfiguration {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 112]) -> Self {
@@ -380,11 +380,11 @@ impl CubesenseConfiguration {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encode the message; reserved bits are 0.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 112], Error> {
         let mut bytes = [0; 112];
@@ -457,7 +457,7 @@ impl CubesenseConfiguration {
         f64::from(self.cam1_mounting_alpha) / 100.0
     }
 
-    /// Sets Cam1 Sensor Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
+    /// Set Cam1 Sensor Mounting Transform Alpha Angle in deg to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cam1_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
         self.cam1_mounting_alpha = CAM1_MOUNTING_ALPHA.raw(value)?;
@@ -476,7 +476,7 @@ impl CubesenseConfiguration {
         i32::from(self.cam1_mounting_alpha) * 10
     }
 
-    /// Sets Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw
+    /// Set Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_cam1_mounting_alpha_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.cam1_mounting_alpha = CAM1_MOUNTING_ALPHA.whole(value.into(), 10, 0)?;
@@ -489,8 +489,8 @@ impl CubesenseConfiguration {
         f64::from(self.cam1_mounting_beta) / 100.0
     }
 
-    /// Sets Cam1 Sensor Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
-    /// even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Cam1 Sensor Mounting Transform Beta Angle in deg to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cam1_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
         self.cam1_mounting_beta = CAM1_MOUNTING_BETA.raw(value)?;
         Ok(())
@@ -508,7 +508,7 @@ impl CubesenseConfiguration {
         i32::from(self.cam1_mounting_beta) * 10
     }
 
-    /// Sets Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg, to the nearest raw
+    /// Set Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_cam1_mounting_beta_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.cam1_mounting_beta = CAM1_MOUNTING_BETA.whole(value.into(), 10, 0)?;
@@ -521,7 +521,7 @@ impl CubesenseConfiguration {
         f64::from(self.cam1_mounting_gamma) / 100.0
     }
 
-    /// Sets Cam1 Sensor Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
+    /// Set Cam1 Sensor Mounting Transform Gamma Angle in deg to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cam1_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
         self.cam1_mounting_gamma = CAM1_MOUNTING_GAMMA.raw(value)?;
@@ -540,7 +540,7 @@ impl CubesenseConfiguration {
         i32::from(self.cam1_mounting_gamma) * 10
     }
 
-    /// Sets Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw
+    /// Set Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_cam1_mounting_gamma_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.cam1_mounting_gamma = CAM1_MOUNTING_GAMMA.whole(value.into(), 10, 0)?;
@@ -553,7 +553,7 @@ impl CubesenseConfiguration {
         f64::from(self.cam1_boresight_x) / 100.0
     }
 
-    /// Sets Cam1 Boresight X in pixels, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Cam1 Boresight X in pixels to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit or is not finite.
     pub fn set_cam1_boresight_x_pixels(&mut self, value: f64) -> Result<(), Error> {
         self.cam1_boresight_x = CAM1_BORESIGHT_X.raw(value)?;
@@ -572,7 +572,7 @@ impl CubesenseConfiguration {
         i32::from(self.cam1_boresight_x) * 10
     }
 
-    /// Sets Cam1 Boresight X in thousandths of pixels, to the nearest raw value, ties to even.
+    /// Set Cam1 Boresight X in thousandths of pixels to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_cam1_boresight_x_milli_pixels(&mut self, value: i32) -> Result<(), Error> {
         self.cam1_boresight_x = CAM1_BORESIGHT_X.whole(value.into(), 10, 0)?;
@@ -585,7 +585,7 @@ impl CubesenseConfiguration {
         f64::from(self.cam1_boresight_y) / 100.0
     }
 
-    /// Sets Cam1 Boresight Y in pixels, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Cam1 Boresight Y in pixels to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit or is not finite.
     pub fn set_cam1_boresight_y_pixels(&mut self, value: f64) -> Result<(), Error> {
         self.cam1_boresight_y = CAM1_BORESIGHT_Y.raw(value)?;
@@ -604,7 +604,7 @@ impl CubesenseConfiguration {
         i32::from(self.cam1_boresight_y) * 10
     }
 
-    /// Sets Cam1 Boresight Y in thousandths of pixels, to the nearest raw value, ties to even.
+    /// Set Cam1 Boresight Y in thousandths of pixels to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_cam1_boresight_y_milli_pixels(&mut self, value: i32) -> Result<(), Error> {
         self.cam1_boresight_y = CAM1_BORESIGHT_Y.whole(value.into(), 10, 0)?;
@@ -617,7 +617,7 @@ impl CubesenseConfiguration {
         f64::from(self.cam2_mounting_alpha) / 100.0
     }
 
-    /// Sets Cam2 Sensor Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
+    /// Set Cam2 Sensor Mounting Transform Alpha Angle in deg to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cam2_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
         self.cam2_mounting_alpha = CAM2_MOUNTING_ALPHA.raw(value)?;
@@ -636,7 +636,7 @@ impl CubesenseConfiguration {
         i32::from(self.cam2_mounting_alpha) * 10
     }
 
-    /// Sets Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw
+    /// Set Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_cam2_mounting_alpha_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.cam2_mounting_alpha = CAM2_MOUNTING_ALPHA.whole(value.into(), 10, 0)?;
@@ -649,8 +649,8 @@ impl CubesenseConfiguration {
         f64::from(self.cam2_mounting_beta) / 100.0
     }
 
-    /// Sets Cam2 Sensor Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
-    /// even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Cam2 Sensor Mounting Transform Beta Angle in deg to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cam2_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
         self.cam2_mounting_beta = CAM2_MOUNTING_BETA.raw(value)?;
         Ok(())
@@ -668,7 +668,7 @@ impl CubesenseConfiguration {
         i32::from(self.cam2_mounting_beta) * 10
     }
 
-    /// Sets Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg, to the nearest raw
+    /// Set Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_cam2_mounting_beta_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.cam2_mounting_beta = CAM2_MOUNTING_BETA.whole(value.into(), 10, 0)?;
@@ -681,7 +681,7 @@ impl CubesenseConfiguration {
         f64::from(self.cam2_mounting_gamma) / 100.0
     }
 
-    /// Sets Cam2 Sensor Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
+    /// Set Cam2 Sensor Mounting Transform Gamma Angle in deg to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cam2_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
         self.cam2_mounting_gamma = CAM2_MOUNTING_GAMMA.raw(value)?;
@@ -700,7 +700,7 @@ impl CubesenseConfiguration {
         i32::from(self.cam2_mounting_gamma) * 10
     }
 
-    /// Sets Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw
+    /// Set Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_cam2_mounting_gamma_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.cam2_mounting_gamma = CAM2_MOUNTING_GAMMA.whole(value.into(), 10, 0)?;
@@ -713,7 +713,7 @@ impl CubesenseConfiguration {
         f64::from(self.cam2_boresight_x) / 100.0
     }
 
-    /// Sets Cam2 Boresight X in pixels, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Cam2 Boresight X in pixels to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit or is not finite.
     pub fn set_cam2_boresight_x_pixels(&mut self, value: f64) -> Result<(), Error> {
         self.cam2_boresight_x = CAM2_BORESIGHT_X.raw(value)?;
@@ -732,7 +732,7 @@ impl CubesenseConfiguration {
         i32::from(self.cam2_boresight_x) * 10
     }
 
-    /// Sets Cam2 Boresight X in thousandths of pixels, to the nearest raw value, ties to even.
+    /// Set Cam2 Boresight X in thousandths of pixels to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_cam2_boresight_x_milli_pixels(&mut self, value: i32) -> Result<(), Error> {
         self.cam2_boresight_x = CAM2_BORESIGHT_X.whole(value.into(), 10, 0)?;
@@ -745,7 +745,7 @@ impl CubesenseConfiguration {
         f64::from(self.cam2_boresight_y) / 100.0
     }
 
-    /// Sets Cam2 Boresight Y in pixels, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Cam2 Boresight Y in pixels to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit or is not finite.
     pub fn set_cam2_boresight_y_pixels(&mut self, value: f64) -> Result<(), Error> {
         self.cam2_boresight_y = CAM2_BORESIGHT_Y.raw(value)?;
@@ -764,7 +764,7 @@ impl CubesenseConfiguration {
         i32::from(self.cam2_boresight_y) * 10
     }
 
-    /// Sets Cam2 Boresight Y in thousandths of pixels, to the nearest raw value, ties to even.
+    /// Set Cam2 Boresight Y in thousandths of pixels to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_cam2_boresight_y_milli_pixels(&mut self, value: i32) -> Result<(), Error> {
         self.cam2_boresight_y = CAM2_BORESIGHT_Y.whole(value.into(), 10, 0)?;

@@ -55,11 +55,11 @@ impl CubestarEstimatedQuaternion {
     /// Id of the telemetry.
     pub const ID: u8 = 230;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -68,7 +68,7 @@ impl CubestarEstimatedQuaternion {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -79,11 +79,11 @@ impl CubestarEstimatedQuaternion {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -99,7 +99,7 @@ impl CubestarEstimatedQuaternion {
         f64::from(self.q0) / 10_000.0
     }
 
-    /// Sets Q0, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Q0, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit or is not finite.
     pub fn set_q0_physical(&mut self, value: f64) -> Result<(), Error> {
         self.q0 = Q0.raw(value)?;
@@ -118,8 +118,8 @@ impl CubestarEstimatedQuaternion {
         i32::from(self.q0) * 100
     }
 
-    /// Sets Q0 in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it does
-    /// not fit.
+    /// Set Q0 in millionths to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit.
     pub fn set_q0_micro(&mut self, value: i32) -> Result<(), Error> {
         self.q0 = Q0.whole(value.into(), 100, 0)?;
         Ok(())
@@ -131,7 +131,7 @@ impl CubestarEstimatedQuaternion {
         f64::from(self.q1) / 10_000.0
     }
 
-    /// Sets Q1, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Q1, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit or is not finite.
     pub fn set_q1_physical(&mut self, value: f64) -> Result<(), Error> {
         self.q1 = Q1.raw(value)?;
@@ -150,8 +150,8 @@ impl CubestarEstimatedQuaternion {
         i32::from(self.q1) * 100
     }
 
-    /// Sets Q1 in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it does
-    /// not fit.
+    /// Set Q1 in millionths to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit.
     pub fn set_q1_micro(&mut self, value: i32) -> Result<(), Error> {
         self.q1 = Q1.whole(value.into(), 100, 0)?;
         Ok(())
@@ -163,7 +163,7 @@ impl CubestarEstimatedQuaternion {
         f64::from(self.q2) / 10_000.0
     }
 
-    /// Sets Q2, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Q2, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit or is not finite.
     pub fn set_q2_physical(&mut self, value: f64) -> Result<(), Error> {
         self.q2 = Q2.raw(value)?;
@@ -182,8 +182,8 @@ impl CubestarEstimatedQuaternion {
         i32::from(self.q2) * 100
     }
 
-    /// Sets Q2 in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it does
-    /// not fit.
+    /// Set Q2 in millionths to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit.
     pub fn set_q2_micro(&mut self, value: i32) -> Result<(), Error> {
         self.q2 = Q2.whole(value.into(), 100, 0)?;
         Ok(())

@@ -51,11 +51,11 @@ impl CubestarEstimatedRates {
     /// Id of the telemetry.
     pub const ID: u8 = 229;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -64,7 +64,7 @@ impl CubestarEstimatedRates {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -75,11 +75,11 @@ impl CubestarEstimatedRates {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -95,7 +95,7 @@ impl CubestarEstimatedRates {
         f64::from(self.x_axis_rate) / 10_000.0
     }
 
-    /// Sets x-Axis rate, as a physical value, to the nearest raw value, ties to even.
+    /// Set x-Axis rate, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_x_axis_rate_physical(&mut self, value: f64) -> Result<(), Error> {
         self.x_axis_rate = X_AXIS_RATE.raw(value)?;
@@ -114,8 +114,8 @@ impl CubestarEstimatedRates {
         i32::from(self.x_axis_rate) * 100
     }
 
-    /// Sets x-Axis rate in millionths, to the nearest raw value, ties to even. [`Error::Range`] if
-    /// it does not fit.
+    /// Set x-Axis rate in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
     pub fn set_x_axis_rate_micro(&mut self, value: i32) -> Result<(), Error> {
         self.x_axis_rate = X_AXIS_RATE.whole(value.into(), 100, 0)?;
         Ok(())
@@ -127,7 +127,7 @@ impl CubestarEstimatedRates {
         f64::from(self.y_axis_rate) / 10_000.0
     }
 
-    /// Sets y-Axis rate, as a physical value, to the nearest raw value, ties to even.
+    /// Set y-Axis rate, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_y_axis_rate_physical(&mut self, value: f64) -> Result<(), Error> {
         self.y_axis_rate = Y_AXIS_RATE.raw(value)?;
@@ -146,8 +146,8 @@ impl CubestarEstimatedRates {
         i32::from(self.y_axis_rate) * 100
     }
 
-    /// Sets y-Axis rate in millionths, to the nearest raw value, ties to even. [`Error::Range`] if
-    /// it does not fit.
+    /// Set y-Axis rate in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
     pub fn set_y_axis_rate_micro(&mut self, value: i32) -> Result<(), Error> {
         self.y_axis_rate = Y_AXIS_RATE.whole(value.into(), 100, 0)?;
         Ok(())
@@ -159,7 +159,7 @@ impl CubestarEstimatedRates {
         f64::from(self.z_axis_rate) / 10_000.0
     }
 
-    /// Sets z-Axis rate, as a physical value, to the nearest raw value, ties to even.
+    /// Set z-Axis rate, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_z_axis_rate_physical(&mut self, value: f64) -> Result<(), Error> {
         self.z_axis_rate = Z_AXIS_RATE.raw(value)?;
@@ -178,8 +178,8 @@ impl CubestarEstimatedRates {
         i32::from(self.z_axis_rate) * 100
     }
 
-    /// Sets z-Axis rate in millionths, to the nearest raw value, ties to even. [`Error::Range`] if
-    /// it does not fit.
+    /// Set z-Axis rate in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
     pub fn set_z_axis_rate_micro(&mut self, value: i32) -> Result<(), Error> {
         self.z_axis_rate = Z_AXIS_RATE.whole(value.into(), 100, 0)?;
         Ok(())

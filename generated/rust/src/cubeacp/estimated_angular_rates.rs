@@ -43,11 +43,11 @@ impl EstimatedAngularRates {
     /// Id of the telemetry.
     pub const ID: u8 = 147;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -56,7 +56,7 @@ impl EstimatedAngularRates {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -67,11 +67,11 @@ impl EstimatedAngularRates {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -87,7 +87,7 @@ impl EstimatedAngularRates {
         f64::from(self.estimated_x_angular_rate) / 100.0
     }
 
-    /// Sets Estimated X Angular Rate in deg/s, to the nearest raw value, ties to even.
+    /// Set Estimated X Angular Rate in deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_estimated_x_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_x_angular_rate = ESTIMATED_X_ANGULAR_RATE.raw(value)?;
@@ -106,8 +106,8 @@ impl EstimatedAngularRates {
         i32::from(self.estimated_x_angular_rate) * 10
     }
 
-    /// Sets Estimated X Angular Rate in thousandths of deg/s, to the nearest raw value, ties to
-    /// even. [`Error::Range`] if it does not fit.
+    /// Set Estimated X Angular Rate in thousandths of deg/s to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
     pub fn set_estimated_x_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.estimated_x_angular_rate = ESTIMATED_X_ANGULAR_RATE.whole(value.into(), 10, 0)?;
         Ok(())
@@ -119,7 +119,7 @@ impl EstimatedAngularRates {
         f64::from(self.estimated_y_angular_rate) / 100.0
     }
 
-    /// Sets Estimated Y Angular Rate in deg/s, to the nearest raw value, ties to even.
+    /// Set Estimated Y Angular Rate in deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_estimated_y_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_y_angular_rate = ESTIMATED_Y_ANGULAR_RATE.raw(value)?;
@@ -138,8 +138,8 @@ impl EstimatedAngularRates {
         i32::from(self.estimated_y_angular_rate) * 10
     }
 
-    /// Sets Estimated Y Angular Rate in thousandths of deg/s, to the nearest raw value, ties to
-    /// even. [`Error::Range`] if it does not fit.
+    /// Set Estimated Y Angular Rate in thousandths of deg/s to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
     pub fn set_estimated_y_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.estimated_y_angular_rate = ESTIMATED_Y_ANGULAR_RATE.whole(value.into(), 10, 0)?;
         Ok(())
@@ -151,7 +151,7 @@ impl EstimatedAngularRates {
         f64::from(self.estimated_z_angular_rate) / 100.0
     }
 
-    /// Sets Estimated Z Angular Rate in deg/s, to the nearest raw value, ties to even.
+    /// Set Estimated Z Angular Rate in deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_estimated_z_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_z_angular_rate = ESTIMATED_Z_ANGULAR_RATE.raw(value)?;
@@ -170,8 +170,8 @@ impl EstimatedAngularRates {
         i32::from(self.estimated_z_angular_rate) * 10
     }
 
-    /// Sets Estimated Z Angular Rate in thousandths of deg/s, to the nearest raw value, ties to
-    /// even. [`Error::Range`] if it does not fit.
+    /// Set Estimated Z Angular Rate in thousandths of deg/s to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
     pub fn set_estimated_z_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.estimated_z_angular_rate = ESTIMATED_Z_ANGULAR_RATE.whole(value.into(), 10, 0)?;
         Ok(())

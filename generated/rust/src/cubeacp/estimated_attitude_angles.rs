@@ -44,11 +44,11 @@ impl EstimatedAttitudeAngles {
     /// Id of the telemetry.
     pub const ID: u8 = 146;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -57,7 +57,7 @@ impl EstimatedAttitudeAngles {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -68,11 +68,11 @@ impl EstimatedAttitudeAngles {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -88,8 +88,8 @@ impl EstimatedAttitudeAngles {
         f64::from(self.estimated_roll_angle) / 100.0
     }
 
-    /// Sets Estimated Roll Angle in deg, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Estimated Roll Angle in deg to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_estimated_roll_angle_deg(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_roll_angle = ESTIMATED_ROLL_ANGLE.raw(value)?;
         Ok(())
@@ -107,7 +107,7 @@ impl EstimatedAttitudeAngles {
         i32::from(self.estimated_roll_angle) * 10
     }
 
-    /// Sets Estimated Roll Angle in thousandths of deg, to the nearest raw value, ties to even.
+    /// Set Estimated Roll Angle in thousandths of deg to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_estimated_roll_angle_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.estimated_roll_angle = ESTIMATED_ROLL_ANGLE.whole(value.into(), 10, 0)?;
@@ -120,8 +120,8 @@ impl EstimatedAttitudeAngles {
         f64::from(self.estimated_pitch_angle) / 100.0
     }
 
-    /// Sets Estimated Pitch Angle in deg, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Estimated Pitch Angle in deg to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_estimated_pitch_angle_deg(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_pitch_angle = ESTIMATED_PITCH_ANGLE.raw(value)?;
         Ok(())
@@ -139,7 +139,7 @@ impl EstimatedAttitudeAngles {
         i32::from(self.estimated_pitch_angle) * 10
     }
 
-    /// Sets Estimated Pitch Angle in thousandths of deg, to the nearest raw value, ties to even.
+    /// Set Estimated Pitch Angle in thousandths of deg to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_estimated_pitch_angle_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.estimated_pitch_angle = ESTIMATED_PITCH_ANGLE.whole(value.into(), 10, 0)?;
@@ -152,7 +152,7 @@ impl EstimatedAttitudeAngles {
         f64::from(self.estimated_yaw_angle) / 100.0
     }
 
-    /// Sets Estimated Yaw Angle in deg, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Estimated Yaw Angle in deg to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit or is not finite.
     pub fn set_estimated_yaw_angle_deg(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_yaw_angle = ESTIMATED_YAW_ANGLE.raw(value)?;
@@ -171,7 +171,7 @@ impl EstimatedAttitudeAngles {
         i32::from(self.estimated_yaw_angle) * 10
     }
 
-    /// Sets Estimated Yaw Angle in thousandths of deg, to the nearest raw value, ties to even.
+    /// Set Estimated Yaw Angle in thousandths of deg to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_estimated_yaw_angle_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.estimated_yaw_angle = ESTIMATED_YAW_ANGLE.whole(value.into(), 10, 0)?;

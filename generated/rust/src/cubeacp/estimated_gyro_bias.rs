@@ -43,11 +43,11 @@ impl EstimatedGyroBias {
     /// Id of the telemetry.
     pub const ID: u8 = 161;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -56,7 +56,7 @@ impl EstimatedGyroBias {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -67,11 +67,11 @@ impl EstimatedGyroBias {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -87,8 +87,8 @@ impl EstimatedGyroBias {
         f64::from(self.estimated_x_gyro_bias) / 1_000.0
     }
 
-    /// Sets Estimated X-gyro Bias in deg/s, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit or is not finite.
+    /// Set Estimated X-gyro Bias in deg/s to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_estimated_x_gyro_bias_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_x_gyro_bias = ESTIMATED_X_GYRO_BIAS.raw(value)?;
         Ok(())
@@ -106,7 +106,7 @@ impl EstimatedGyroBias {
         i32::from(self.estimated_x_gyro_bias)
     }
 
-    /// Sets Estimated X-gyro Bias in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// Set Estimated X-gyro Bias in thousandths of deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_estimated_x_gyro_bias_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.estimated_x_gyro_bias = ESTIMATED_X_GYRO_BIAS.whole(value.into(), 1, 0)?;
@@ -119,8 +119,8 @@ impl EstimatedGyroBias {
         f64::from(self.estimated_y_gyro_bias) / 1_000.0
     }
 
-    /// Sets Estimated Y-gyro Bias in deg/s, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit or is not finite.
+    /// Set Estimated Y-gyro Bias in deg/s to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_estimated_y_gyro_bias_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_y_gyro_bias = ESTIMATED_Y_GYRO_BIAS.raw(value)?;
         Ok(())
@@ -138,7 +138,7 @@ impl EstimatedGyroBias {
         i32::from(self.estimated_y_gyro_bias)
     }
 
-    /// Sets Estimated Y-gyro Bias in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// Set Estimated Y-gyro Bias in thousandths of deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_estimated_y_gyro_bias_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.estimated_y_gyro_bias = ESTIMATED_Y_GYRO_BIAS.whole(value.into(), 1, 0)?;
@@ -151,8 +151,8 @@ impl EstimatedGyroBias {
         f64::from(self.estimated_z_gyro_bias) / 1_000.0
     }
 
-    /// Sets Estimated Z-gyro Bias in deg/s, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit or is not finite.
+    /// Set Estimated Z-gyro Bias in deg/s to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_estimated_z_gyro_bias_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_z_gyro_bias = ESTIMATED_Z_GYRO_BIAS.raw(value)?;
         Ok(())
@@ -170,7 +170,7 @@ impl EstimatedGyroBias {
         i32::from(self.estimated_z_gyro_bias)
     }
 
-    /// Sets Estimated Z-gyro Bias in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// Set Estimated Z-gyro Bias in thousandths of deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_estimated_z_gyro_bias_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.estimated_z_gyro_bias = ESTIMATED_Z_GYRO_BIAS.whole(value.into(), 1, 0)?;

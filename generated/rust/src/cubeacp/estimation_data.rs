@@ -123,11 +123,11 @@ impl EstimationData {
     /// Id of the telemetry.
     pub const ID: u8 = 193;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -136,7 +136,7 @@ impl EstimationData {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 42]) -> Self {
@@ -165,11 +165,11 @@ impl EstimationData {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 42], Error> {
         let mut bytes = [0; 42];
@@ -203,7 +203,7 @@ impl EstimationData {
         f64::from(self.igrf_modelled_magnetic_field_x) / 100.0
     }
 
-    /// Sets IGRF Modelled Magnetic Field X in uT, to the nearest raw value, ties to even.
+    /// Set IGRF Modelled Magnetic Field X in uT to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_igrf_modelled_magnetic_field_x_ut(&mut self, value: f64) -> Result<(), Error> {
         self.igrf_modelled_magnetic_field_x = IGRF_MODELLED_MAGNETIC_FIELD_X.raw(value)?;
@@ -222,7 +222,7 @@ impl EstimationData {
         i32::from(self.igrf_modelled_magnetic_field_x) * 10
     }
 
-    /// Sets IGRF Modelled Magnetic Field X in nT, to the nearest raw value, ties to even.
+    /// Set IGRF Modelled Magnetic Field X in nT to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_igrf_modelled_magnetic_field_x_nt(&mut self, value: i32) -> Result<(), Error> {
         self.igrf_modelled_magnetic_field_x =
@@ -236,7 +236,7 @@ impl EstimationData {
         f64::from(self.igrf_modelled_magnetic_field_y) / 100.0
     }
 
-    /// Sets IGRF Modelled Magnetic Field Y in uT, to the nearest raw value, ties to even.
+    /// Set IGRF Modelled Magnetic Field Y in uT to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_igrf_modelled_magnetic_field_y_ut(&mut self, value: f64) -> Result<(), Error> {
         self.igrf_modelled_magnetic_field_y = IGRF_MODELLED_MAGNETIC_FIELD_Y.raw(value)?;
@@ -255,7 +255,7 @@ impl EstimationData {
         i32::from(self.igrf_modelled_magnetic_field_y) * 10
     }
 
-    /// Sets IGRF Modelled Magnetic Field Y in nT, to the nearest raw value, ties to even.
+    /// Set IGRF Modelled Magnetic Field Y in nT to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_igrf_modelled_magnetic_field_y_nt(&mut self, value: i32) -> Result<(), Error> {
         self.igrf_modelled_magnetic_field_y =
@@ -269,7 +269,7 @@ impl EstimationData {
         f64::from(self.igrf_modelled_magnetic_field_z) / 100.0
     }
 
-    /// Sets IGRF Modelled Magnetic Field Z in uT, to the nearest raw value, ties to even.
+    /// Set IGRF Modelled Magnetic Field Z in uT to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_igrf_modelled_magnetic_field_z_ut(&mut self, value: f64) -> Result<(), Error> {
         self.igrf_modelled_magnetic_field_z = IGRF_MODELLED_MAGNETIC_FIELD_Z.raw(value)?;
@@ -288,7 +288,7 @@ impl EstimationData {
         i32::from(self.igrf_modelled_magnetic_field_z) * 10
     }
 
-    /// Sets IGRF Modelled Magnetic Field Z in nT, to the nearest raw value, ties to even.
+    /// Set IGRF Modelled Magnetic Field Z in nT to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_igrf_modelled_magnetic_field_z_nt(&mut self, value: i32) -> Result<(), Error> {
         self.igrf_modelled_magnetic_field_z =
@@ -302,7 +302,7 @@ impl EstimationData {
         f64::from(self.modelled_sun_vector_x) / 10_000.0
     }
 
-    /// Sets Modelled Sun Vector X, as a physical value, to the nearest raw value, ties to even.
+    /// Set Modelled Sun Vector X, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_modelled_sun_vector_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.modelled_sun_vector_x = MODELLED_SUN_VECTOR_X.raw(value)?;
@@ -321,7 +321,7 @@ impl EstimationData {
         i32::from(self.modelled_sun_vector_x) * 100
     }
 
-    /// Sets Modelled Sun Vector X in millionths, to the nearest raw value, ties to even.
+    /// Set Modelled Sun Vector X in millionths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_modelled_sun_vector_x_micro(&mut self, value: i32) -> Result<(), Error> {
         self.modelled_sun_vector_x = MODELLED_SUN_VECTOR_X.whole(value.into(), 100, 0)?;
@@ -334,7 +334,7 @@ impl EstimationData {
         f64::from(self.modelled_sun_vector_y) / 10_000.0
     }
 
-    /// Sets Modelled Sun Vector Y, as a physical value, to the nearest raw value, ties to even.
+    /// Set Modelled Sun Vector Y, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_modelled_sun_vector_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.modelled_sun_vector_y = MODELLED_SUN_VECTOR_Y.raw(value)?;
@@ -353,7 +353,7 @@ impl EstimationData {
         i32::from(self.modelled_sun_vector_y) * 100
     }
 
-    /// Sets Modelled Sun Vector Y in millionths, to the nearest raw value, ties to even.
+    /// Set Modelled Sun Vector Y in millionths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_modelled_sun_vector_y_micro(&mut self, value: i32) -> Result<(), Error> {
         self.modelled_sun_vector_y = MODELLED_SUN_VECTOR_Y.whole(value.into(), 100, 0)?;
@@ -366,7 +366,7 @@ impl EstimationData {
         f64::from(self.modelled_sun_vector_z) / 10_000.0
     }
 
-    /// Sets Modelled Sun Vector Z, as a physical value, to the nearest raw value, ties to even.
+    /// Set Modelled Sun Vector Z, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_modelled_sun_vector_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.modelled_sun_vector_z = MODELLED_SUN_VECTOR_Z.raw(value)?;
@@ -385,7 +385,7 @@ impl EstimationData {
         i32::from(self.modelled_sun_vector_z) * 100
     }
 
-    /// Sets Modelled Sun Vector Z in millionths, to the nearest raw value, ties to even.
+    /// Set Modelled Sun Vector Z in millionths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_modelled_sun_vector_z_micro(&mut self, value: i32) -> Result<(), Error> {
         self.modelled_sun_vector_z = MODELLED_SUN_VECTOR_Z.whole(value.into(), 100, 0)?;
@@ -398,8 +398,8 @@ impl EstimationData {
         f64::from(self.estimated_x_gyro_bias) / 1_000.0
     }
 
-    /// Sets Estimated X-gyro Bias in deg/s, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit or is not finite.
+    /// Set Estimated X-gyro Bias in deg/s to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_estimated_x_gyro_bias_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_x_gyro_bias = ESTIMATED_X_GYRO_BIAS.raw(value)?;
         Ok(())
@@ -417,7 +417,7 @@ impl EstimationData {
         i32::from(self.estimated_x_gyro_bias)
     }
 
-    /// Sets Estimated X-gyro Bias in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// Set Estimated X-gyro Bias in thousandths of deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_estimated_x_gyro_bias_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.estimated_x_gyro_bias = ESTIMATED_X_GYRO_BIAS.whole(value.into(), 1, 0)?;
@@ -430,8 +430,8 @@ impl EstimationData {
         f64::from(self.estimated_y_gyro_bias) / 1_000.0
     }
 
-    /// Sets Estimated Y-gyro Bias in deg/s, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit or is not finite.
+    /// Set Estimated Y-gyro Bias in deg/s to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_estimated_y_gyro_bias_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_y_gyro_bias = ESTIMATED_Y_GYRO_BIAS.raw(value)?;
         Ok(())
@@ -449,7 +449,7 @@ impl EstimationData {
         i32::from(self.estimated_y_gyro_bias)
     }
 
-    /// Sets Estimated Y-gyro Bias in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// Set Estimated Y-gyro Bias in thousandths of deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_estimated_y_gyro_bias_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.estimated_y_gyro_bias = ESTIMATED_Y_GYRO_BIAS.whole(value.into(), 1, 0)?;
@@ -462,8 +462,8 @@ impl EstimationData {
         f64::from(self.estimated_z_gyro_bias) / 1_000.0
     }
 
-    /// Sets Estimated Z-gyro Bias in deg/s, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit or is not finite.
+    /// Set Estimated Z-gyro Bias in deg/s to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_estimated_z_gyro_bias_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_z_gyro_bias = ESTIMATED_Z_GYRO_BIAS.raw(value)?;
         Ok(())
@@ -481,7 +481,7 @@ impl EstimationData {
         i32::from(self.estimated_z_gyro_bias)
     }
 
-    /// Sets Estimated Z-gyro Bias in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// Set Estimated Z-gyro Bias in thousandths of deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_estimated_z_gyro_bias_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.estimated_z_gyro_bias = ESTIMATED_Z_GYRO_BIAS.whole(value.into(), 1, 0)?;
@@ -494,7 +494,7 @@ impl EstimationData {
         f64::from(self.innovation_vector_x) / 10_000.0
     }
 
-    /// Sets Innovation Vector X, as a physical value, to the nearest raw value, ties to even.
+    /// Set Innovation Vector X, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_innovation_vector_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.innovation_vector_x = INNOVATION_VECTOR_X.raw(value)?;
@@ -513,7 +513,7 @@ impl EstimationData {
         i32::from(self.innovation_vector_x) * 100
     }
 
-    /// Sets Innovation Vector X in millionths, to the nearest raw value, ties to even.
+    /// Set Innovation Vector X in millionths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_innovation_vector_x_micro(&mut self, value: i32) -> Result<(), Error> {
         self.innovation_vector_x = INNOVATION_VECTOR_X.whole(value.into(), 100, 0)?;
@@ -526,7 +526,7 @@ impl EstimationData {
         f64::from(self.innovation_vector_y) / 10_000.0
     }
 
-    /// Sets Innovation Vector Y, as a physical value, to the nearest raw value, ties to even.
+    /// Set Innovation Vector Y, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_innovation_vector_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.innovation_vector_y = INNOVATION_VECTOR_Y.raw(value)?;
@@ -545,7 +545,7 @@ impl EstimationData {
         i32::from(self.innovation_vector_y) * 100
     }
 
-    /// Sets Innovation Vector Y in millionths, to the nearest raw value, ties to even.
+    /// Set Innovation Vector Y in millionths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_innovation_vector_y_micro(&mut self, value: i32) -> Result<(), Error> {
         self.innovation_vector_y = INNOVATION_VECTOR_Y.whole(value.into(), 100, 0)?;
@@ -558,7 +558,7 @@ impl EstimationData {
         f64::from(self.innovation_vector_z) / 10_000.0
     }
 
-    /// Sets Innovation Vector Z, as a physical value, to the nearest raw value, ties to even.
+    /// Set Innovation Vector Z, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_innovation_vector_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.innovation_vector_z = INNOVATION_VECTOR_Z.raw(value)?;
@@ -577,7 +577,7 @@ impl EstimationData {
         i32::from(self.innovation_vector_z) * 100
     }
 
-    /// Sets Innovation Vector Z in millionths, to the nearest raw value, ties to even.
+    /// Set Innovation Vector Z in millionths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_innovation_vector_z_micro(&mut self, value: i32) -> Result<(), Error> {
         self.innovation_vector_z = INNOVATION_VECTOR_Z.whole(value.into(), 100, 0)?;
@@ -590,7 +590,7 @@ impl EstimationData {
         f64::from(self.quaternion_error_q1) / 10_000.0
     }
 
-    /// Sets Quaternion Error - Q1, as a physical value, to the nearest raw value, ties to even.
+    /// Set Quaternion Error - Q1, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_quaternion_error_q1_physical(&mut self, value: f64) -> Result<(), Error> {
         self.quaternion_error_q1 = QUATERNION_ERROR_Q1.raw(value)?;
@@ -609,7 +609,7 @@ impl EstimationData {
         i32::from(self.quaternion_error_q1) * 100
     }
 
-    /// Sets Quaternion Error - Q1 in millionths, to the nearest raw value, ties to even.
+    /// Set Quaternion Error - Q1 in millionths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_quaternion_error_q1_micro(&mut self, value: i32) -> Result<(), Error> {
         self.quaternion_error_q1 = QUATERNION_ERROR_Q1.whole(value.into(), 100, 0)?;
@@ -622,7 +622,7 @@ impl EstimationData {
         f64::from(self.quaternion_error_q2) / 10_000.0
     }
 
-    /// Sets Quaternion Error - Q2, as a physical value, to the nearest raw value, ties to even.
+    /// Set Quaternion Error - Q2, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_quaternion_error_q2_physical(&mut self, value: f64) -> Result<(), Error> {
         self.quaternion_error_q2 = QUATERNION_ERROR_Q2.raw(value)?;
@@ -641,7 +641,7 @@ impl EstimationData {
         i32::from(self.quaternion_error_q2) * 100
     }
 
-    /// Sets Quaternion Error - Q2 in millionths, to the nearest raw value, ties to even.
+    /// Set Quaternion Error - Q2 in millionths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_quaternion_error_q2_micro(&mut self, value: i32) -> Result<(), Error> {
         self.quaternion_error_q2 = QUATERNION_ERROR_Q2.whole(value.into(), 100, 0)?;
@@ -654,7 +654,7 @@ impl EstimationData {
         f64::from(self.quaternion_error_q3) / 10_000.0
     }
 
-    /// Sets Quaternion Error - Q3, as a physical value, to the nearest raw value, ties to even.
+    /// Set Quaternion Error - Q3, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_quaternion_error_q3_physical(&mut self, value: f64) -> Result<(), Error> {
         self.quaternion_error_q3 = QUATERNION_ERROR_Q3.raw(value)?;
@@ -673,7 +673,7 @@ impl EstimationData {
         i32::from(self.quaternion_error_q3) * 100
     }
 
-    /// Sets Quaternion Error - Q3 in millionths, to the nearest raw value, ties to even.
+    /// Set Quaternion Error - Q3 in millionths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_quaternion_error_q3_micro(&mut self, value: i32) -> Result<(), Error> {
         self.quaternion_error_q3 = QUATERNION_ERROR_Q3.whole(value.into(), 100, 0)?;
@@ -686,7 +686,7 @@ impl EstimationData {
         f64::from(self.quaternion_covariance_q1_rms) / 1_000.0
     }
 
-    /// Sets Quaternion Covariance - Q1 RMS, as a physical value, to the nearest raw value, ties to
+    /// Set Quaternion Covariance - Q1 RMS, as a physical value to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_quaternion_covariance_q1_rms_physical(&mut self, value: f64) -> Result<(), Error> {
         self.quaternion_covariance_q1_rms = QUATERNION_COVARIANCE_Q1_RMS.raw(value)?;
@@ -705,7 +705,7 @@ impl EstimationData {
         i32::from(self.quaternion_covariance_q1_rms)
     }
 
-    /// Sets Quaternion Covariance - Q1 RMS in thousandths, to the nearest raw value, ties to even.
+    /// Set Quaternion Covariance - Q1 RMS in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_quaternion_covariance_q1_rms_milli(&mut self, value: i32) -> Result<(), Error> {
         self.quaternion_covariance_q1_rms = QUATERNION_COVARIANCE_Q1_RMS.whole(value.into(), 1, 0)?;
@@ -718,7 +718,7 @@ impl EstimationData {
         f64::from(self.quaternion_covariance_q2_rms) / 1_000.0
     }
 
-    /// Sets Quaternion Covariance - Q2 RMS, as a physical value, to the nearest raw value, ties to
+    /// Set Quaternion Covariance - Q2 RMS, as a physical value to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_quaternion_covariance_q2_rms_physical(&mut self, value: f64) -> Result<(), Error> {
         self.quaternion_covariance_q2_rms = QUATERNION_COVARIANCE_Q2_RMS.raw(value)?;
@@ -737,7 +737,7 @@ impl EstimationData {
         i32::from(self.quaternion_covariance_q2_rms)
     }
 
-    /// Sets Quaternion Covariance - Q2 RMS in thousandths, to the nearest raw value, ties to even.
+    /// Set Quaternion Covariance - Q2 RMS in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_quaternion_covariance_q2_rms_milli(&mut self, value: i32) -> Result<(), Error> {
         self.quaternion_covariance_q2_rms = QUATERNION_COVARIANCE_Q2_RMS.whole(value.into(), 1, 0)?;
@@ -750,7 +750,7 @@ impl EstimationData {
         f64::from(self.quaternion_covariance_q3_rms) / 1_000.0
     }
 
-    /// Sets Quaternion Covariance - Q3 RMS, as a physical value, to the nearest raw value, ties to
+    /// Set Quaternion Covariance - Q3 RMS, as a physical value to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_quaternion_covariance_q3_rms_physical(&mut self, value: f64) -> Result<(), Error> {
         self.quaternion_covariance_q3_rms = QUATERNION_COVARIANCE_Q3_RMS.raw(value)?;
@@ -769,7 +769,7 @@ impl EstimationData {
         i32::from(self.quaternion_covariance_q3_rms)
     }
 
-    /// Sets Quaternion Covariance - Q3 RMS in thousandths, to the nearest raw value, ties to even.
+    /// Set Quaternion Covariance - Q3 RMS in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_quaternion_covariance_q3_rms_milli(&mut self, value: i32) -> Result<(), Error> {
         self.quaternion_covariance_q3_rms = QUATERNION_COVARIANCE_Q3_RMS.whole(value.into(), 1, 0)?;
@@ -782,7 +782,7 @@ impl EstimationData {
         f64::from(self.x_angular_rate_covariance) / 1_000.0
     }
 
-    /// Sets X Angular Rate Covariance, as a physical value, to the nearest raw value, ties to even.
+    /// Set X Angular Rate Covariance, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_x_angular_rate_covariance_physical(&mut self, value: f64) -> Result<(), Error> {
         self.x_angular_rate_covariance = X_ANGULAR_RATE_COVARIANCE.raw(value)?;
@@ -801,7 +801,7 @@ impl EstimationData {
         i32::from(self.x_angular_rate_covariance)
     }
 
-    /// Sets X Angular Rate Covariance in thousandths, to the nearest raw value, ties to even.
+    /// Set X Angular Rate Covariance in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_x_angular_rate_covariance_milli(&mut self, value: i32) -> Result<(), Error> {
         self.x_angular_rate_covariance = X_ANGULAR_RATE_COVARIANCE.whole(value.into(), 1, 0)?;
@@ -814,7 +814,7 @@ impl EstimationData {
         f64::from(self.y_angular_rate_covariance) / 1_000.0
     }
 
-    /// Sets Y Angular Rate Covariance, as a physical value, to the nearest raw value, ties to even.
+    /// Set Y Angular Rate Covariance, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_y_angular_rate_covariance_physical(&mut self, value: f64) -> Result<(), Error> {
         self.y_angular_rate_covariance = Y_ANGULAR_RATE_COVARIANCE.raw(value)?;
@@ -833,7 +833,7 @@ impl EstimationData {
         i32::from(self.y_angular_rate_covariance)
     }
 
-    /// Sets Y Angular Rate Covariance in thousandths, to the nearest raw value, ties to even.
+    /// Set Y Angular Rate Covariance in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_y_angular_rate_covariance_milli(&mut self, value: i32) -> Result<(), Error> {
         self.y_angular_rate_covariance = Y_ANGULAR_RATE_COVARIANCE.whole(value.into(), 1, 0)?;
@@ -846,7 +846,7 @@ impl EstimationData {
         f64::from(self.z_angular_rate_covariance) / 1_000.0
     }
 
-    /// Sets Z Angular Rate Covariance, as a physical value, to the nearest raw value, ties to even.
+    /// Set Z Angular Rate Covariance, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_z_angular_rate_covariance_physical(&mut self, value: f64) -> Result<(), Error> {
         self.z_angular_rate_covariance = Z_ANGULAR_RATE_COVARIANCE.raw(value)?;
@@ -865,7 +865,7 @@ impl EstimationData {
         i32::from(self.z_angular_rate_covariance)
     }
 
-    /// Sets Z Angular Rate Covariance in thousandths, to the nearest raw value, ties to even.
+    /// Set Z Angular Rate Covariance in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_z_angular_rate_covariance_milli(&mut self, value: i32) -> Result<(), Error> {
         self.z_angular_rate_covariance = Z_ANGULAR_RATE_COVARIANCE.whole(value.into(), 1, 0)?;

@@ -48,11 +48,11 @@ impl EstimationInnovationVector {
     /// Id of the telemetry.
     pub const ID: u8 = 162;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -61,7 +61,7 @@ impl EstimationInnovationVector {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -72,11 +72,11 @@ impl EstimationInnovationVector {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -92,7 +92,7 @@ impl EstimationInnovationVector {
         f64::from(self.innovation_vector_x) / 10_000.0
     }
 
-    /// Sets Innovation Vector X, as a physical value, to the nearest raw value, ties to even.
+    /// Set Innovation Vector X, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_innovation_vector_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.innovation_vector_x = INNOVATION_VECTOR_X.raw(value)?;
@@ -111,7 +111,7 @@ impl EstimationInnovationVector {
         i32::from(self.innovation_vector_x) * 100
     }
 
-    /// Sets Innovation Vector X in millionths, to the nearest raw value, ties to even.
+    /// Set Innovation Vector X in millionths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_innovation_vector_x_micro(&mut self, value: i32) -> Result<(), Error> {
         self.innovation_vector_x = INNOVATION_VECTOR_X.whole(value.into(), 100, 0)?;
@@ -124,7 +124,7 @@ impl EstimationInnovationVector {
         f64::from(self.innovation_vector_y) / 10_000.0
     }
 
-    /// Sets Innovation Vector Y, as a physical value, to the nearest raw value, ties to even.
+    /// Set Innovation Vector Y, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_innovation_vector_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.innovation_vector_y = INNOVATION_VECTOR_Y.raw(value)?;
@@ -143,7 +143,7 @@ impl EstimationInnovationVector {
         i32::from(self.innovation_vector_y) * 100
     }
 
-    /// Sets Innovation Vector Y in millionths, to the nearest raw value, ties to even.
+    /// Set Innovation Vector Y in millionths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_innovation_vector_y_micro(&mut self, value: i32) -> Result<(), Error> {
         self.innovation_vector_y = INNOVATION_VECTOR_Y.whole(value.into(), 100, 0)?;
@@ -156,7 +156,7 @@ impl EstimationInnovationVector {
         f64::from(self.innovation_vector_z) / 10_000.0
     }
 
-    /// Sets Innovation Vector Z, as a physical value, to the nearest raw value, ties to even.
+    /// Set Innovation Vector Z, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_innovation_vector_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.innovation_vector_z = INNOVATION_VECTOR_Z.raw(value)?;
@@ -175,7 +175,7 @@ impl EstimationInnovationVector {
         i32::from(self.innovation_vector_z) * 100
     }
 
-    /// Sets Innovation Vector Z in millionths, to the nearest raw value, ties to even.
+    /// Set Innovation Vector Z in millionths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_innovation_vector_z_micro(&mut self, value: i32) -> Result<(), Error> {
         self.innovation_vector_z = INNOVATION_VECTOR_Z.whole(value.into(), 100, 0)?;

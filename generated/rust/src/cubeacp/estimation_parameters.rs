@@ -133,11 +133,11 @@ impl EstimationParameters {
     /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 223;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -146,7 +146,7 @@ impl EstimationParameters {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 31]) -> Self {
@@ -173,11 +173,11 @@ impl EstimationParameters {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encode the message; reserved bits are 0.
     ///
     /// # Errors
     ///
-    /// [`Error::Range`] if a value does not fit its field.
+    /// [`Error::Range`] if a value does not fit into its field.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 31], Error> {
         MAGNETOMETER_MODE.fit(self.magnetometer_mode.raw())?;

@@ -58,11 +58,11 @@ impl FineAngularRates {
     /// Id of the telemetry.
     pub const ID: u8 = 201;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -71,7 +71,7 @@ impl FineAngularRates {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -82,11 +82,11 @@ impl FineAngularRates {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -102,7 +102,7 @@ impl FineAngularRates {
         f64::from(self.estimated_x_angular_rate) / 1_000.0
     }
 
-    /// Sets Estimated X Angular Rate in deg/s, to the nearest raw value, ties to even.
+    /// Set Estimated X Angular Rate in deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_estimated_x_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_x_angular_rate = ESTIMATED_X_ANGULAR_RATE.raw(value)?;
@@ -121,8 +121,8 @@ impl FineAngularRates {
         i32::from(self.estimated_x_angular_rate)
     }
 
-    /// Sets Estimated X Angular Rate in thousandths of deg/s, to the nearest raw value, ties to
-    /// even. [`Error::Range`] if it does not fit.
+    /// Set Estimated X Angular Rate in thousandths of deg/s to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
     pub fn set_estimated_x_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.estimated_x_angular_rate = ESTIMATED_X_ANGULAR_RATE.whole(value.into(), 1, 0)?;
         Ok(())
@@ -134,7 +134,7 @@ impl FineAngularRates {
         f64::from(self.estimated_y_angular_rate) / 1_000.0
     }
 
-    /// Sets Estimated Y Angular Rate in deg/s, to the nearest raw value, ties to even.
+    /// Set Estimated Y Angular Rate in deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_estimated_y_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_y_angular_rate = ESTIMATED_Y_ANGULAR_RATE.raw(value)?;
@@ -153,8 +153,8 @@ impl FineAngularRates {
         i32::from(self.estimated_y_angular_rate)
     }
 
-    /// Sets Estimated Y Angular Rate in thousandths of deg/s, to the nearest raw value, ties to
-    /// even. [`Error::Range`] if it does not fit.
+    /// Set Estimated Y Angular Rate in thousandths of deg/s to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
     pub fn set_estimated_y_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.estimated_y_angular_rate = ESTIMATED_Y_ANGULAR_RATE.whole(value.into(), 1, 0)?;
         Ok(())
@@ -166,7 +166,7 @@ impl FineAngularRates {
         f64::from(self.estimated_z_angular_rate) / 1_000.0
     }
 
-    /// Sets Estimated Z Angular Rate in deg/s, to the nearest raw value, ties to even.
+    /// Set Estimated Z Angular Rate in deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_estimated_z_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_z_angular_rate = ESTIMATED_Z_ANGULAR_RATE.raw(value)?;
@@ -185,8 +185,8 @@ impl FineAngularRates {
         i32::from(self.estimated_z_angular_rate)
     }
 
-    /// Sets Estimated Z Angular Rate in thousandths of deg/s, to the nearest raw value, ties to
-    /// even. [`Error::Range`] if it does not fit.
+    /// Set Estimated Z Angular Rate in thousandths of deg/s to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
     pub fn set_estimated_z_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.estimated_z_angular_rate = ESTIMATED_Z_ANGULAR_RATE.whole(value.into(), 1, 0)?;
         Ok(())

@@ -44,11 +44,11 @@ impl FineSunVector {
     /// Id of the telemetry.
     pub const ID: u8 = 153;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -57,7 +57,7 @@ impl FineSunVector {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -68,11 +68,11 @@ impl FineSunVector {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -88,7 +88,7 @@ impl FineSunVector {
         f64::from(self.sun_x) / 10_000.0
     }
 
-    /// Sets Sun X, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Sun X, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit or is not finite.
     pub fn set_sun_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sun_x = SUN_X.raw(value)?;
@@ -107,8 +107,8 @@ impl FineSunVector {
         i32::from(self.sun_x) * 100
     }
 
-    /// Sets Sun X in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
-    /// does not fit.
+    /// Set Sun X in millionths to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
     pub fn set_sun_x_micro(&mut self, value: i32) -> Result<(), Error> {
         self.sun_x = SUN_X.whole(value.into(), 100, 0)?;
         Ok(())
@@ -120,7 +120,7 @@ impl FineSunVector {
         f64::from(self.sun_y) / 10_000.0
     }
 
-    /// Sets Sun Y, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Sun Y, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit or is not finite.
     pub fn set_sun_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sun_y = SUN_Y.raw(value)?;
@@ -139,8 +139,8 @@ impl FineSunVector {
         i32::from(self.sun_y) * 100
     }
 
-    /// Sets Sun Y in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
-    /// does not fit.
+    /// Set Sun Y in millionths to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
     pub fn set_sun_y_micro(&mut self, value: i32) -> Result<(), Error> {
         self.sun_y = SUN_Y.whole(value.into(), 100, 0)?;
         Ok(())
@@ -152,7 +152,7 @@ impl FineSunVector {
         f64::from(self.sun_z) / 10_000.0
     }
 
-    /// Sets Sun Z, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Sun Z, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit or is not finite.
     pub fn set_sun_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sun_z = SUN_Z.raw(value)?;
@@ -171,8 +171,8 @@ impl FineSunVector {
         i32::from(self.sun_z) * 100
     }
 
-    /// Sets Sun Z in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
-    /// does not fit.
+    /// Set Sun Z in millionths to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
     pub fn set_sun_z_micro(&mut self, value: i32) -> Result<(), Error> {
         self.sun_z = SUN_Z.whole(value.into(), 100, 0)?;
         Ok(())

@@ -43,11 +43,11 @@ impl IgrfModelledMagneticFieldVector {
     /// Id of the telemetry.
     pub const ID: u8 = 159;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -56,7 +56,7 @@ impl IgrfModelledMagneticFieldVector {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -67,11 +67,11 @@ impl IgrfModelledMagneticFieldVector {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -87,7 +87,7 @@ impl IgrfModelledMagneticFieldVector {
         f64::from(self.field_x) / 100.0
     }
 
-    /// Sets IGRF Modelled Magnetic Field X in uT, to the nearest raw value, ties to even.
+    /// Set IGRF Modelled Magnetic Field X in uT to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_field_x_ut(&mut self, value: f64) -> Result<(), Error> {
         self.field_x = FIELD_X.raw(value)?;
@@ -106,7 +106,7 @@ impl IgrfModelledMagneticFieldVector {
         i32::from(self.field_x) * 10
     }
 
-    /// Sets IGRF Modelled Magnetic Field X in nT, to the nearest raw value, ties to even.
+    /// Set IGRF Modelled Magnetic Field X in nT to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_field_x_nt(&mut self, value: i32) -> Result<(), Error> {
         self.field_x = FIELD_X.whole(value.into(), 10, 0)?;
@@ -119,7 +119,7 @@ impl IgrfModelledMagneticFieldVector {
         f64::from(self.field_y) / 100.0
     }
 
-    /// Sets IGRF Modelled Magnetic Field Y in uT, to the nearest raw value, ties to even.
+    /// Set IGRF Modelled Magnetic Field Y in uT to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_field_y_ut(&mut self, value: f64) -> Result<(), Error> {
         self.field_y = FIELD_Y.raw(value)?;
@@ -138,7 +138,7 @@ impl IgrfModelledMagneticFieldVector {
         i32::from(self.field_y) * 10
     }
 
-    /// Sets IGRF Modelled Magnetic Field Y in nT, to the nearest raw value, ties to even.
+    /// Set IGRF Modelled Magnetic Field Y in nT to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_field_y_nt(&mut self, value: i32) -> Result<(), Error> {
         self.field_y = FIELD_Y.whole(value.into(), 10, 0)?;
@@ -151,7 +151,7 @@ impl IgrfModelledMagneticFieldVector {
         f64::from(self.field_z) / 100.0
     }
 
-    /// Sets IGRF Modelled Magnetic Field Z in uT, to the nearest raw value, ties to even.
+    /// Set IGRF Modelled Magnetic Field Z in uT to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_field_z_ut(&mut self, value: f64) -> Result<(), Error> {
         self.field_z = FIELD_Z.raw(value)?;
@@ -170,7 +170,7 @@ impl IgrfModelledMagneticFieldVector {
         i32::from(self.field_z) * 10
     }
 
-    /// Sets IGRF Modelled Magnetic Field Z in nT, to the nearest raw value, ties to even.
+    /// Set IGRF Modelled Magnetic Field Z in nT to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_field_z_nt(&mut self, value: i32) -> Result<(), Error> {
         self.field_z = FIELD_Z.whole(value.into(), 10, 0)?;

@@ -56,11 +56,11 @@ impl InertialPointingReferenceVector {
     /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 238;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -69,7 +69,7 @@ impl InertialPointingReferenceVector {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -80,11 +80,11 @@ impl InertialPointingReferenceVector {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -100,7 +100,7 @@ impl InertialPointingReferenceVector {
         f64::from(self.reference_x) / 10_000.0
     }
 
-    /// Sets Inertial Reference X, as a physical value, to the nearest raw value, ties to even.
+    /// Set Inertial Reference X, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_reference_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.reference_x = REFERENCE_X.raw(value)?;
@@ -119,7 +119,7 @@ impl InertialPointingReferenceVector {
         i32::from(self.reference_x) * 100
     }
 
-    /// Sets Inertial Reference X in millionths, to the nearest raw value, ties to even.
+    /// Set Inertial Reference X in millionths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_reference_x_micro(&mut self, value: i32) -> Result<(), Error> {
         self.reference_x = REFERENCE_X.whole(value.into(), 100, 0)?;
@@ -132,7 +132,7 @@ impl InertialPointingReferenceVector {
         f64::from(self.reference_y) / 10_000.0
     }
 
-    /// Sets Inertial Reference Y, as a physical value, to the nearest raw value, ties to even.
+    /// Set Inertial Reference Y, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_reference_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.reference_y = REFERENCE_Y.raw(value)?;
@@ -151,7 +151,7 @@ impl InertialPointingReferenceVector {
         i32::from(self.reference_y) * 100
     }
 
-    /// Sets Inertial Reference Y in millionths, to the nearest raw value, ties to even.
+    /// Set Inertial Reference Y in millionths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_reference_y_micro(&mut self, value: i32) -> Result<(), Error> {
         self.reference_y = REFERENCE_Y.whole(value.into(), 100, 0)?;
@@ -164,7 +164,7 @@ impl InertialPointingReferenceVector {
         f64::from(self.reference_z) / 10_000.0
     }
 
-    /// Sets Inertial Reference Z, as a physical value, to the nearest raw value, ties to even.
+    /// Set Inertial Reference Z, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_reference_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.reference_z = REFERENCE_Z.raw(value)?;
@@ -183,7 +183,7 @@ impl InertialPointingReferenceVector {
         i32::from(self.reference_z) * 100
     }
 
-    /// Sets Inertial Reference Z in millionths, to the nearest raw value, ties to even.
+    /// Set Inertial Reference Z in millionths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_reference_z_micro(&mut self, value: i32) -> Result<(), Error> {
         self.reference_z = REFERENCE_Z.whole(value.into(), 100, 0)?;

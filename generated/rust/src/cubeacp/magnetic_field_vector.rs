@@ -47,11 +47,11 @@ impl MagneticFieldVector {
     /// Id of the telemetry.
     pub const ID: u8 = 151;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -60,7 +60,7 @@ impl MagneticFieldVector {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -71,11 +71,11 @@ impl MagneticFieldVector {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -91,7 +91,7 @@ impl MagneticFieldVector {
         f64::from(self.magnetic_field_x) / 100.0
     }
 
-    /// Sets Magnetic Field X in uT, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Magnetic Field X in uT to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit or is not finite.
     pub fn set_magnetic_field_x_ut(&mut self, value: f64) -> Result<(), Error> {
         self.magnetic_field_x = MAGNETIC_FIELD_X.raw(value)?;
@@ -110,7 +110,7 @@ impl MagneticFieldVector {
         i32::from(self.magnetic_field_x) * 10
     }
 
-    /// Sets Magnetic Field X in nT, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Magnetic Field X in nT to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_magnetic_field_x_nt(&mut self, value: i32) -> Result<(), Error> {
         self.magnetic_field_x = MAGNETIC_FIELD_X.whole(value.into(), 10, 0)?;
@@ -123,7 +123,7 @@ impl MagneticFieldVector {
         f64::from(self.magnetic_field_y) / 100.0
     }
 
-    /// Sets Magnetic Field Y in uT, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Magnetic Field Y in uT to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit or is not finite.
     pub fn set_magnetic_field_y_ut(&mut self, value: f64) -> Result<(), Error> {
         self.magnetic_field_y = MAGNETIC_FIELD_Y.raw(value)?;
@@ -142,7 +142,7 @@ impl MagneticFieldVector {
         i32::from(self.magnetic_field_y) * 10
     }
 
-    /// Sets Magnetic Field Y in nT, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Magnetic Field Y in nT to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_magnetic_field_y_nt(&mut self, value: i32) -> Result<(), Error> {
         self.magnetic_field_y = MAGNETIC_FIELD_Y.whole(value.into(), 10, 0)?;
@@ -155,7 +155,7 @@ impl MagneticFieldVector {
         f64::from(self.magnetic_field_z) / 100.0
     }
 
-    /// Sets Magnetic Field Z in uT, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Magnetic Field Z in uT to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit or is not finite.
     pub fn set_magnetic_field_z_ut(&mut self, value: f64) -> Result<(), Error> {
         self.magnetic_field_z = MAGNETIC_FIELD_Z.raw(value)?;
@@ -174,7 +174,7 @@ impl MagneticFieldVector {
         i32::from(self.magnetic_field_z) * 10
     }
 
-    /// Sets Magnetic Field Z in nT, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Magnetic Field Z in nT to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_magnetic_field_z_nt(&mut self, value: i32) -> Result<(), Error> {
         self.magnetic_field_z = MAGNETIC_FIELD_Z.whole(value.into(), 10, 0)?;

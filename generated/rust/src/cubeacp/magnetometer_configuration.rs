@@ -96,11 +96,11 @@ impl MagnetometerConfiguration {
     /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 204;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -109,7 +109,7 @@ impl MagnetometerConfiguration {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 30]) -> Self {
@@ -132,11 +132,11 @@ impl MagnetometerConfiguration {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 30], Error> {
         let mut bytes = [0; 30];
@@ -164,7 +164,7 @@ impl MagnetometerConfiguration {
         f64::from(self.mounting_alpha) / 100.0
     }
 
-    /// Sets Magnetometer Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
+    /// Set Magnetometer Mounting Transform Alpha Angle in deg to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
         self.mounting_alpha = MOUNTING_ALPHA.raw(value)?;
@@ -183,7 +183,7 @@ impl MagnetometerConfiguration {
         i32::from(self.mounting_alpha) * 10
     }
 
-    /// Sets Magnetometer Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw
+    /// Set Magnetometer Mounting Transform Alpha Angle in thousandths of deg to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_mounting_alpha_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.mounting_alpha = MOUNTING_ALPHA.whole(value.into(), 10, 0)?;
@@ -196,7 +196,7 @@ impl MagnetometerConfiguration {
         f64::from(self.mounting_beta) / 100.0
     }
 
-    /// Sets Magnetometer Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
+    /// Set Magnetometer Mounting Transform Beta Angle in deg to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
         self.mounting_beta = MOUNTING_BETA.raw(value)?;
@@ -215,7 +215,7 @@ impl MagnetometerConfiguration {
         i32::from(self.mounting_beta) * 10
     }
 
-    /// Sets Magnetometer Mounting Transform Beta Angle in thousandths of deg, to the nearest raw
+    /// Set Magnetometer Mounting Transform Beta Angle in thousandths of deg to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_mounting_beta_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.mounting_beta = MOUNTING_BETA.whole(value.into(), 10, 0)?;
@@ -228,7 +228,7 @@ impl MagnetometerConfiguration {
         f64::from(self.mounting_gamma) / 100.0
     }
 
-    /// Sets Magnetometer Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
+    /// Set Magnetometer Mounting Transform Gamma Angle in deg to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
         self.mounting_gamma = MOUNTING_GAMMA.raw(value)?;
@@ -247,7 +247,7 @@ impl MagnetometerConfiguration {
         i32::from(self.mounting_gamma) * 10
     }
 
-    /// Sets Magnetometer Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw
+    /// Set Magnetometer Mounting Transform Gamma Angle in thousandths of deg to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_mounting_gamma_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.mounting_gamma = MOUNTING_GAMMA.whole(value.into(), 10, 0)?;
@@ -260,7 +260,7 @@ impl MagnetometerConfiguration {
         f64::from(self.channel_1_offset) / 1_000.0
     }
 
-    /// Sets Magnetometer Channel 1 Offset, as a physical value, to the nearest raw value, ties to
+    /// Set Magnetometer Channel 1 Offset, as a physical value to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_channel_1_offset_physical(&mut self, value: f64) -> Result<(), Error> {
         self.channel_1_offset = CHANNEL_1_OFFSET.raw(value)?;
@@ -279,7 +279,7 @@ impl MagnetometerConfiguration {
         i32::from(self.channel_1_offset)
     }
 
-    /// Sets Magnetometer Channel 1 Offset in thousandths, to the nearest raw value, ties to even.
+    /// Set Magnetometer Channel 1 Offset in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_channel_1_offset_milli(&mut self, value: i32) -> Result<(), Error> {
         self.channel_1_offset = CHANNEL_1_OFFSET.whole(value.into(), 1, 0)?;
@@ -292,7 +292,7 @@ impl MagnetometerConfiguration {
         f64::from(self.channel_2_offset) / 1_000.0
     }
 
-    /// Sets Magnetometer Channel 2 Offset, as a physical value, to the nearest raw value, ties to
+    /// Set Magnetometer Channel 2 Offset, as a physical value to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_channel_2_offset_physical(&mut self, value: f64) -> Result<(), Error> {
         self.channel_2_offset = CHANNEL_2_OFFSET.raw(value)?;
@@ -311,7 +311,7 @@ impl MagnetometerConfiguration {
         i32::from(self.channel_2_offset)
     }
 
-    /// Sets Magnetometer Channel 2 Offset in thousandths, to the nearest raw value, ties to even.
+    /// Set Magnetometer Channel 2 Offset in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_channel_2_offset_milli(&mut self, value: i32) -> Result<(), Error> {
         self.channel_2_offset = CHANNEL_2_OFFSET.whole(value.into(), 1, 0)?;
@@ -324,7 +324,7 @@ impl MagnetometerConfiguration {
         f64::from(self.channel_3_offset) / 1_000.0
     }
 
-    /// Sets Magnetometer Channel 3 Offset, as a physical value, to the nearest raw value, ties to
+    /// Set Magnetometer Channel 3 Offset, as a physical value to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_channel_3_offset_physical(&mut self, value: f64) -> Result<(), Error> {
         self.channel_3_offset = CHANNEL_3_OFFSET.raw(value)?;
@@ -343,7 +343,7 @@ impl MagnetometerConfiguration {
         i32::from(self.channel_3_offset)
     }
 
-    /// Sets Magnetometer Channel 3 Offset in thousandths, to the nearest raw value, ties to even.
+    /// Set Magnetometer Channel 3 Offset in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_channel_3_offset_milli(&mut self, value: i32) -> Result<(), Error> {
         self.channel_3_offset = CHANNEL_3_OFFSET.whole(value.into(), 1, 0)?;
@@ -356,8 +356,8 @@ impl MagnetometerConfiguration {
         f64::from(self.sensitivity_s11) / 1_000.0
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S11, as a physical value, to the nearest raw value,
-    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Magnetometer Sensitivity Matrix S11, as a physical value to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s11_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s11 = SENSITIVITY_S11.raw(value)?;
         Ok(())
@@ -375,7 +375,7 @@ impl MagnetometerConfiguration {
         i32::from(self.sensitivity_s11)
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S11 in thousandths, to the nearest raw value, ties to
+    /// Set Magnetometer Sensitivity Matrix S11 in thousandths to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit.
     pub fn set_sensitivity_s11_milli(&mut self, value: i32) -> Result<(), Error> {
         self.sensitivity_s11 = SENSITIVITY_S11.whole(value.into(), 1, 0)?;
@@ -388,8 +388,8 @@ impl MagnetometerConfiguration {
         f64::from(self.sensitivity_s22) / 1_000.0
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S22, as a physical value, to the nearest raw value,
-    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Magnetometer Sensitivity Matrix S22, as a physical value to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s22_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s22 = SENSITIVITY_S22.raw(value)?;
         Ok(())
@@ -407,7 +407,7 @@ impl MagnetometerConfiguration {
         i32::from(self.sensitivity_s22)
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S22 in thousandths, to the nearest raw value, ties to
+    /// Set Magnetometer Sensitivity Matrix S22 in thousandths to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit.
     pub fn set_sensitivity_s22_milli(&mut self, value: i32) -> Result<(), Error> {
         self.sensitivity_s22 = SENSITIVITY_S22.whole(value.into(), 1, 0)?;
@@ -420,8 +420,8 @@ impl MagnetometerConfiguration {
         f64::from(self.sensitivity_s33) / 1_000.0
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S33, as a physical value, to the nearest raw value,
-    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Magnetometer Sensitivity Matrix S33, as a physical value to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s33_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s33 = SENSITIVITY_S33.raw(value)?;
         Ok(())
@@ -439,7 +439,7 @@ impl MagnetometerConfiguration {
         i32::from(self.sensitivity_s33)
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S33 in thousandths, to the nearest raw value, ties to
+    /// Set Magnetometer Sensitivity Matrix S33 in thousandths to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit.
     pub fn set_sensitivity_s33_milli(&mut self, value: i32) -> Result<(), Error> {
         self.sensitivity_s33 = SENSITIVITY_S33.whole(value.into(), 1, 0)?;
@@ -452,8 +452,8 @@ impl MagnetometerConfiguration {
         f64::from(self.sensitivity_s12) / 1_000.0
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S12, as a physical value, to the nearest raw value,
-    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Magnetometer Sensitivity Matrix S12, as a physical value to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s12_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s12 = SENSITIVITY_S12.raw(value)?;
         Ok(())
@@ -471,7 +471,7 @@ impl MagnetometerConfiguration {
         i32::from(self.sensitivity_s12)
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S12 in thousandths, to the nearest raw value, ties to
+    /// Set Magnetometer Sensitivity Matrix S12 in thousandths to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit.
     pub fn set_sensitivity_s12_milli(&mut self, value: i32) -> Result<(), Error> {
         self.sensitivity_s12 = SENSITIVITY_S12.whole(value.into(), 1, 0)?;
@@ -484,8 +484,8 @@ impl MagnetometerConfiguration {
         f64::from(self.sensitivity_s13) / 1_000.0
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S13, as a physical value, to the nearest raw value,
-    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Magnetometer Sensitivity Matrix S13, as a physical value to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s13_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s13 = SENSITIVITY_S13.raw(value)?;
         Ok(())
@@ -503,7 +503,7 @@ impl MagnetometerConfiguration {
         i32::from(self.sensitivity_s13)
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S13 in thousandths, to the nearest raw value, ties to
+    /// Set Magnetometer Sensitivity Matrix S13 in thousandths to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit.
     pub fn set_sensitivity_s13_milli(&mut self, value: i32) -> Result<(), Error> {
         self.sensitivity_s13 = SENSITIVITY_S13.whole(value.into(), 1, 0)?;
@@ -516,8 +516,8 @@ impl MagnetometerConfiguration {
         f64::from(self.sensitivity_s21) / 1_000.0
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S21, as a physical value, to the nearest raw value,
-    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Magnetometer Sensitivity Matrix S21, as a physical value to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s21_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s21 = SENSITIVITY_S21.raw(value)?;
         Ok(())
@@ -535,7 +535,7 @@ impl MagnetometerConfiguration {
         i32::from(self.sensitivity_s21)
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S21 in thousandths, to the nearest raw value, ties to
+    /// Set Magnetometer Sensitivity Matrix S21 in thousandths to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit.
     pub fn set_sensitivity_s21_milli(&mut self, value: i32) -> Result<(), Error> {
         self.sensitivity_s21 = SENSITIVITY_S21.whole(value.into(), 1, 0)?;
@@ -548,8 +548,8 @@ impl MagnetometerConfiguration {
         f64::from(self.sensitivity_s23) / 1_000.0
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S23, as a physical value, to the nearest raw value,
-    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Magnetometer Sensitivity Matrix S23, as a physical value to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s23_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s23 = SENSITIVITY_S23.raw(value)?;
         Ok(())
@@ -567,7 +567,7 @@ impl MagnetometerConfiguration {
         i32::from(self.sensitivity_s23)
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S23 in thousandths, to the nearest raw value, ties to
+    /// Set Magnetometer Sensitivity Matrix S23 in thousandths to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit.
     pub fn set_sensitivity_s23_milli(&mut self, value: i32) -> Result<(), Error> {
         self.sensitivity_s23 = SENSITIVITY_S23.whole(value.into(), 1, 0)?;
@@ -580,8 +580,8 @@ impl MagnetometerConfiguration {
         f64::from(self.sensitivity_s31) / 1_000.0
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S31, as a physical value, to the nearest raw value,
-    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Magnetometer Sensitivity Matrix S31, as a physical value to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s31_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s31 = SENSITIVITY_S31.raw(value)?;
         Ok(())
@@ -599,7 +599,7 @@ impl MagnetometerConfiguration {
         i32::from(self.sensitivity_s31)
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S31 in thousandths, to the nearest raw value, ties to
+    /// Set Magnetometer Sensitivity Matrix S31 in thousandths to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit.
     pub fn set_sensitivity_s31_milli(&mut self, value: i32) -> Result<(), Error> {
         self.sensitivity_s31 = SENSITIVITY_S31.whole(value.into(), 1, 0)?;
@@ -612,8 +612,8 @@ impl MagnetometerConfiguration {
         f64::from(self.sensitivity_s32) / 1_000.0
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S32, as a physical value, to the nearest raw value,
-    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Magnetometer Sensitivity Matrix S32, as a physical value to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s32_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s32 = SENSITIVITY_S32.raw(value)?;
         Ok(())
@@ -631,7 +631,7 @@ impl MagnetometerConfiguration {
         i32::from(self.sensitivity_s32)
     }
 
-    /// Sets Magnetometer Sensitivity Matrix S32 in thousandths, to the nearest raw value, ties to
+    /// Set Magnetometer Sensitivity Matrix S32 in thousandths to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit.
     pub fn set_sensitivity_s32_milli(&mut self, value: i32) -> Result<(), Error> {
         self.sensitivity_s32 = SENSITIVITY_S32.whole(value.into(), 1, 0)?;

@@ -375,7 +375,7 @@ pub use self::inertial_pointing_reference_vector::InertialPointingReferenceVecto
 
 pub use crate::wire::links::cubeacp::{LINK, LONGEST};
 
-/// The node as a type: [`LINK`], a client for it and the messages that the client takes have it in common.
+/// Type of the node. It restricts a client that is created with [`LINK`] to the messages of this node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Node {}
 
@@ -384,7 +384,7 @@ pub const NODE_TYPE: u8 = 10;
 /// Version of the interface described here.
 pub const INTERFACE_VERSION: u8 = 7;
 
-/// Every telecommand of the node.
+/// Any telecommand message of the node.
 ///
 /// ```
 /// use icd::cubeacp::Telecommand;
@@ -536,11 +536,11 @@ pub enum Telecommand {
 }
 
 impl Telecommand {
-    /// Decodes the telecommand of that id.
+    /// Decode the telecommand frame with this id.
     ///
     /// # Errors
     ///
-    /// [`Error::UnknownId`] if there is none, [`Error::Length`] if it has another length.
+    /// [`Error::UnknownId`] if there is no such message, [`Error::Length`] if the frame has the wrong length.
     pub fn from_bytes(id: u8, bytes: &[u8]) -> Result<Self, Error> {
         Ok(match id {
             crate::common::Reset::ID => match bytes.try_into() {
@@ -819,11 +819,11 @@ impl Telecommand {
         })
     }
 
-    /// Encodes it to the beginning of `buffer` and says how many bytes it has.
+    /// Encode the message to the beginning of `buffer` and return the number of bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if the buffer is too short, [`Error::Range`] if a value does not fit.
+    /// [`Error::Length`] if the buffer is too small, [`Error::Range`] if a value does not fit into its field.
     pub fn write_to(&self, buffer: &mut [u8]) -> Result<usize, Error> {
         match self {
             Self::Reset(message) => write_to(buffer, &message.to_bytes()?),
@@ -907,7 +907,7 @@ impl Telecommand {
         }
     }
 
-    /// The id.
+    /// Return the id.
     #[must_use]
     pub const fn id(&self) -> u8 {
         match self {
@@ -986,7 +986,7 @@ impl Telecommand {
         }
     }
 
-    /// Length in bytes, without the id.
+    /// Return the length in bytes, without the id.
     #[must_use]
     pub const fn length(&self) -> usize {
         match self {
@@ -1067,7 +1067,7 @@ impl Telecommand {
         }
     }
 
-    /// Name in the ICD.
+    /// Return the name in the ICD.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -1147,7 +1147,7 @@ impl Telecommand {
     }
 }
 
-/// Its name and the values of its fields: physical ones, with their units.
+/// Show the name and the values of the fields, physical values with their units.
 impl ::core::fmt::Display for Telecommand {
     fn fmt(&self, out: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
         match self {
@@ -1306,7 +1306,7 @@ impl crate::wire::TelecommandOf<Node> for SdLog2Configuration {}
 impl crate::wire::TelecommandOf<Node> for UartLogConfiguration {}
 impl crate::wire::TelecommandOf<Node> for InertialPointingReferenceVector {}
 
-/// Every telemetry of the node.
+/// Any telemetry message of the node.
 ///
 /// ```
 /// use icd::cubeacp::Telemetry;
@@ -1574,11 +1574,11 @@ pub enum Telemetry {
 }
 
 impl Telemetry {
-    /// Decodes the telemetry of that id.
+    /// Decode the telemetry frame with this id.
     ///
     /// # Errors
     ///
-    /// [`Error::UnknownId`] if there is none, [`Error::Length`] if it has another length.
+    /// [`Error::UnknownId`] if there is no such message, [`Error::Length`] if the frame has the wrong length.
     pub fn from_bytes(id: u8, bytes: &[u8]) -> Result<Self, Error> {
         Ok(match id {
             crate::common::Identification::ID => match bytes.try_into() {
@@ -2089,11 +2089,11 @@ impl Telemetry {
         })
     }
 
-    /// Encodes it to the beginning of `buffer` and says how many bytes it has.
+    /// Encode the message to the beginning of `buffer` and return the number of bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if the buffer is too short, [`Error::Range`] if a value does not fit.
+    /// [`Error::Length`] if the buffer is too small, [`Error::Range`] if a value does not fit into its field.
     pub fn write_to(&self, buffer: &mut [u8]) -> Result<usize, Error> {
         match self {
             Self::Identification(message) => write_to(buffer, &message.to_bytes()?),
@@ -2243,7 +2243,7 @@ impl Telemetry {
         }
     }
 
-    /// The id.
+    /// Return the id.
     #[must_use]
     pub const fn id(&self) -> u8 {
         match self {
@@ -2386,7 +2386,7 @@ impl Telemetry {
         }
     }
 
-    /// Length in bytes, without the id.
+    /// Return the length in bytes, without the id.
     #[must_use]
     pub const fn length(&self) -> usize {
         match self {
@@ -2531,7 +2531,7 @@ impl Telemetry {
         }
     }
 
-    /// Name in the ICD.
+    /// Return the name in the ICD.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -2677,7 +2677,7 @@ impl Telemetry {
     }
 }
 
-/// Its name and the values of its fields: physical ones, with their units.
+/// Show the name and the values of the fields, physical values with their units.
 impl ::core::fmt::Display for Telemetry {
     fn fmt(&self, out: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
         match self {

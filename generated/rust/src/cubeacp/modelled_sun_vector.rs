@@ -43,11 +43,11 @@ impl ModelledSunVector {
     /// Id of the telemetry.
     pub const ID: u8 = 160;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -56,7 +56,7 @@ impl ModelledSunVector {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -67,11 +67,11 @@ impl ModelledSunVector {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -87,7 +87,7 @@ impl ModelledSunVector {
         f64::from(self.modelled_sun_vector_x) / 10_000.0
     }
 
-    /// Sets Modelled Sun Vector X, as a physical value, to the nearest raw value, ties to even.
+    /// Set Modelled Sun Vector X, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_modelled_sun_vector_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.modelled_sun_vector_x = MODELLED_SUN_VECTOR_X.raw(value)?;
@@ -106,7 +106,7 @@ impl ModelledSunVector {
         i32::from(self.modelled_sun_vector_x) * 100
     }
 
-    /// Sets Modelled Sun Vector X in millionths, to the nearest raw value, ties to even.
+    /// Set Modelled Sun Vector X in millionths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_modelled_sun_vector_x_micro(&mut self, value: i32) -> Result<(), Error> {
         self.modelled_sun_vector_x = MODELLED_SUN_VECTOR_X.whole(value.into(), 100, 0)?;
@@ -119,7 +119,7 @@ impl ModelledSunVector {
         f64::from(self.modelled_sun_vector_y) / 10_000.0
     }
 
-    /// Sets Modelled Sun Vector Y, as a physical value, to the nearest raw value, ties to even.
+    /// Set Modelled Sun Vector Y, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_modelled_sun_vector_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.modelled_sun_vector_y = MODELLED_SUN_VECTOR_Y.raw(value)?;
@@ -138,7 +138,7 @@ impl ModelledSunVector {
         i32::from(self.modelled_sun_vector_y) * 100
     }
 
-    /// Sets Modelled Sun Vector Y in millionths, to the nearest raw value, ties to even.
+    /// Set Modelled Sun Vector Y in millionths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_modelled_sun_vector_y_micro(&mut self, value: i32) -> Result<(), Error> {
         self.modelled_sun_vector_y = MODELLED_SUN_VECTOR_Y.whole(value.into(), 100, 0)?;
@@ -151,7 +151,7 @@ impl ModelledSunVector {
         f64::from(self.modelled_sun_vector_z) / 10_000.0
     }
 
-    /// Sets Modelled Sun Vector Z, as a physical value, to the nearest raw value, ties to even.
+    /// Set Modelled Sun Vector Z, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_modelled_sun_vector_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.modelled_sun_vector_z = MODELLED_SUN_VECTOR_Z.raw(value)?;
@@ -170,7 +170,7 @@ impl ModelledSunVector {
         i32::from(self.modelled_sun_vector_z) * 100
     }
 
-    /// Sets Modelled Sun Vector Z in millionths, to the nearest raw value, ties to even.
+    /// Set Modelled Sun Vector Z in millionths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_modelled_sun_vector_z_micro(&mut self, value: i32) -> Result<(), Error> {
         self.modelled_sun_vector_z = MODELLED_SUN_VECTOR_Z.whole(value.into(), 100, 0)?;

@@ -44,11 +44,11 @@ impl NadirVector {
     /// Id of the telemetry.
     pub const ID: u8 = 154;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -57,7 +57,7 @@ impl NadirVector {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -68,11 +68,11 @@ impl NadirVector {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -88,8 +88,8 @@ impl NadirVector {
         f64::from(self.nadir_x) / 10_000.0
     }
 
-    /// Sets Nadir X, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Nadir X, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_nadir_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.nadir_x = NADIR_X.raw(value)?;
         Ok(())
@@ -107,7 +107,7 @@ impl NadirVector {
         i32::from(self.nadir_x) * 100
     }
 
-    /// Sets Nadir X in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Nadir X in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_nadir_x_micro(&mut self, value: i32) -> Result<(), Error> {
         self.nadir_x = NADIR_X.whole(value.into(), 100, 0)?;
@@ -120,8 +120,8 @@ impl NadirVector {
         f64::from(self.nadir_y) / 10_000.0
     }
 
-    /// Sets Nadir Y, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Nadir Y, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_nadir_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.nadir_y = NADIR_Y.raw(value)?;
         Ok(())
@@ -139,7 +139,7 @@ impl NadirVector {
         i32::from(self.nadir_y) * 100
     }
 
-    /// Sets Nadir Y in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Nadir Y in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_nadir_y_micro(&mut self, value: i32) -> Result<(), Error> {
         self.nadir_y = NADIR_Y.whole(value.into(), 100, 0)?;
@@ -152,8 +152,8 @@ impl NadirVector {
         f64::from(self.nadir_z) / 10_000.0
     }
 
-    /// Sets Nadir Z, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Nadir Z, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_nadir_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.nadir_z = NADIR_Z.raw(value)?;
         Ok(())
@@ -171,7 +171,7 @@ impl NadirVector {
         i32::from(self.nadir_z) * 100
     }
 
-    /// Sets Nadir Z in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Nadir Z in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_nadir_z_micro(&mut self, value: i32) -> Result<(), Error> {
         self.nadir_z = NADIR_Z.whole(value.into(), 100, 0)?;

@@ -125,11 +125,11 @@ impl PowerAndTemperature {
     /// Id of the telemetry.
     pub const ID: u8 = 195;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -138,7 +138,7 @@ impl PowerAndTemperature {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 38]) -> Self {
@@ -165,11 +165,11 @@ impl PowerAndTemperature {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 38], Error> {
         let mut bytes = [0; 38];
@@ -201,8 +201,8 @@ impl PowerAndTemperature {
         f64::from(self.cubesense1_3v3_current) / 10.0
     }
 
-    /// Sets CubeSense1 3V3 Current in mA, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set CubeSense1 3V3 Current in mA to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_cubesense1_3v3_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubesense1_3v3_current = CUBESENSE1_3V3_CURRENT.raw(value)?;
         Ok(())
@@ -220,8 +220,8 @@ impl PowerAndTemperature {
         i32::from(self.cubesense1_3v3_current) * 100
     }
 
-    /// Sets CubeSense1 3V3 Current in uA, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit.
+    /// Set CubeSense1 3V3 Current in uA to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
     pub fn set_cubesense1_3v3_current_ua(&mut self, value: i32) -> Result<(), Error> {
         self.cubesense1_3v3_current = CUBESENSE1_3V3_CURRENT.whole(value.into(), 100, 0)?;
         Ok(())
@@ -233,7 +233,7 @@ impl PowerAndTemperature {
         f64::from(self.cubesense1_cam_sram_current) / 10.0
     }
 
-    /// Sets CubeSense1 Cam SRAM Current in mA, to the nearest raw value, ties to even.
+    /// Set CubeSense1 Cam SRAM Current in mA to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cubesense1_cam_sram_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubesense1_cam_sram_current = CUBESENSE1_CAM_SRAM_CURRENT.raw(value)?;
@@ -252,7 +252,7 @@ impl PowerAndTemperature {
         i32::from(self.cubesense1_cam_sram_current) * 100
     }
 
-    /// Sets CubeSense1 Cam SRAM Current in uA, to the nearest raw value, ties to even.
+    /// Set CubeSense1 Cam SRAM Current in uA to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_cubesense1_cam_sram_current_ua(&mut self, value: i32) -> Result<(), Error> {
         self.cubesense1_cam_sram_current = CUBESENSE1_CAM_SRAM_CURRENT.whole(value.into(), 100, 0)?;
@@ -265,8 +265,8 @@ impl PowerAndTemperature {
         f64::from(self.cubesense2_3v3_current) / 10.0
     }
 
-    /// Sets CubeSense2 3V3 Current in mA, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set CubeSense2 3V3 Current in mA to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_cubesense2_3v3_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubesense2_3v3_current = CUBESENSE2_3V3_CURRENT.raw(value)?;
         Ok(())
@@ -284,8 +284,8 @@ impl PowerAndTemperature {
         i32::from(self.cubesense2_3v3_current) * 100
     }
 
-    /// Sets CubeSense2 3V3 Current in uA, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit.
+    /// Set CubeSense2 3V3 Current in uA to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
     pub fn set_cubesense2_3v3_current_ua(&mut self, value: i32) -> Result<(), Error> {
         self.cubesense2_3v3_current = CUBESENSE2_3V3_CURRENT.whole(value.into(), 100, 0)?;
         Ok(())
@@ -297,7 +297,7 @@ impl PowerAndTemperature {
         f64::from(self.cubesense2_cam_sram_current) / 10.0
     }
 
-    /// Sets CubeSense2 Cam SRAM Current in mA, to the nearest raw value, ties to even.
+    /// Set CubeSense2 Cam SRAM Current in mA to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cubesense2_cam_sram_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubesense2_cam_sram_current = CUBESENSE2_CAM_SRAM_CURRENT.raw(value)?;
@@ -316,7 +316,7 @@ impl PowerAndTemperature {
         i32::from(self.cubesense2_cam_sram_current) * 100
     }
 
-    /// Sets CubeSense2 Cam SRAM Current in uA, to the nearest raw value, ties to even.
+    /// Set CubeSense2 Cam SRAM Current in uA to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_cubesense2_cam_sram_current_ua(&mut self, value: i32) -> Result<(), Error> {
         self.cubesense2_cam_sram_current = CUBESENSE2_CAM_SRAM_CURRENT.whole(value.into(), 100, 0)?;
@@ -329,7 +329,7 @@ impl PowerAndTemperature {
         (f64::from(self.cubecontrol_3v3_current) * 125.0) / 256.0
     }
 
-    /// Sets CubeControl 3V3 Current in mA, to the nearest raw value, ties to even. [`Error::Range`]
+    /// Set CubeControl 3V3 Current in mA to the nearest raw value, ties to even. [`Error::Range`]
     /// if it does not fit or is not finite.
     pub fn set_cubecontrol_3v3_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubecontrol_3v3_current = CUBECONTROL_3V3_CURRENT.raw(value)?;
@@ -348,8 +348,8 @@ impl PowerAndTemperature {
         (f64::from(self.cubecontrol_5v_current) * 125.0) / 256.0
     }
 
-    /// Sets CubeControl 5V Current in mA, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set CubeControl 5V Current in mA to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_cubecontrol_5v_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubecontrol_5v_current = CUBECONTROL_5V_CURRENT.raw(value)?;
         Ok(())
@@ -367,8 +367,8 @@ impl PowerAndTemperature {
         (f64::from(self.cubecontrol_vbat_current) * 125.0) / 256.0
     }
 
-    /// Sets CubeControl Vbat Current in mA, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit or is not finite.
+    /// Set CubeControl Vbat Current in mA to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_cubecontrol_vbat_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubecontrol_vbat_current = CUBECONTROL_VBAT_CURRENT.raw(value)?;
         Ok(())
@@ -386,8 +386,8 @@ impl PowerAndTemperature {
         f64::from(self.wheel1_current) / 100.0
     }
 
-    /// Sets Wheel1Current in mA, to the nearest raw value, ties to even. [`Error::Range`] if it
-    /// does not fit or is not finite.
+    /// Set Wheel1Current in mA to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit or is not finite.
     pub fn set_wheel1_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.wheel1_current = WHEEL1_CURRENT.raw(value)?;
         Ok(())
@@ -405,8 +405,8 @@ impl PowerAndTemperature {
         i32::from(self.wheel1_current) * 10
     }
 
-    /// Sets Wheel1Current in uA, to the nearest raw value, ties to even. [`Error::Range`] if it
-    /// does not fit.
+    /// Set Wheel1Current in uA to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
     pub fn set_wheel1_current_ua(&mut self, value: i32) -> Result<(), Error> {
         self.wheel1_current = WHEEL1_CURRENT.whole(value.into(), 10, 0)?;
         Ok(())
@@ -418,8 +418,8 @@ impl PowerAndTemperature {
         f64::from(self.wheel2_current) / 100.0
     }
 
-    /// Sets Wheel2Current in mA, to the nearest raw value, ties to even. [`Error::Range`] if it
-    /// does not fit or is not finite.
+    /// Set Wheel2Current in mA to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit or is not finite.
     pub fn set_wheel2_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.wheel2_current = WHEEL2_CURRENT.raw(value)?;
         Ok(())
@@ -437,8 +437,8 @@ impl PowerAndTemperature {
         i32::from(self.wheel2_current) * 10
     }
 
-    /// Sets Wheel2Current in uA, to the nearest raw value, ties to even. [`Error::Range`] if it
-    /// does not fit.
+    /// Set Wheel2Current in uA to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
     pub fn set_wheel2_current_ua(&mut self, value: i32) -> Result<(), Error> {
         self.wheel2_current = WHEEL2_CURRENT.whole(value.into(), 10, 0)?;
         Ok(())
@@ -450,8 +450,8 @@ impl PowerAndTemperature {
         f64::from(self.wheel3_current) / 100.0
     }
 
-    /// Sets Wheel3Current in mA, to the nearest raw value, ties to even. [`Error::Range`] if it
-    /// does not fit or is not finite.
+    /// Set Wheel3Current in mA to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit or is not finite.
     pub fn set_wheel3_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.wheel3_current = WHEEL3_CURRENT.raw(value)?;
         Ok(())
@@ -469,8 +469,8 @@ impl PowerAndTemperature {
         i32::from(self.wheel3_current) * 10
     }
 
-    /// Sets Wheel3Current in uA, to the nearest raw value, ties to even. [`Error::Range`] if it
-    /// does not fit.
+    /// Set Wheel3Current in uA to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
     pub fn set_wheel3_current_ua(&mut self, value: i32) -> Result<(), Error> {
         self.wheel3_current = WHEEL3_CURRENT.whole(value.into(), 10, 0)?;
         Ok(())
@@ -482,7 +482,7 @@ impl PowerAndTemperature {
         f64::from(self.cubestar_current) / 100.0
     }
 
-    /// Sets CubeStarCurrent in mA, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set CubeStarCurrent in mA to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit or is not finite.
     pub fn set_cubestar_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubestar_current = CUBESTAR_CURRENT.raw(value)?;
@@ -501,7 +501,7 @@ impl PowerAndTemperature {
         i32::from(self.cubestar_current) * 10
     }
 
-    /// Sets CubeStarCurrent in uA, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set CubeStarCurrent in uA to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_cubestar_current_ua(&mut self, value: i32) -> Result<(), Error> {
         self.cubestar_current = CUBESTAR_CURRENT.whole(value.into(), 10, 0)?;
@@ -514,7 +514,7 @@ impl PowerAndTemperature {
         f64::from(self.magnetorquer_current) / 10.0
     }
 
-    /// Sets Magnetorquer Current in mA, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Magnetorquer Current in mA to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit or is not finite.
     pub fn set_magnetorquer_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.magnetorquer_current = MAGNETORQUER_CURRENT.raw(value)?;
@@ -533,7 +533,7 @@ impl PowerAndTemperature {
         i32::from(self.magnetorquer_current) * 100
     }
 
-    /// Sets Magnetorquer Current in uA, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// Set Magnetorquer Current in uA to the nearest raw value, ties to even. [`Error::Range`] if
     /// it does not fit.
     pub fn set_magnetorquer_current_ua(&mut self, value: i32) -> Result<(), Error> {
         self.magnetorquer_current = MAGNETORQUER_CURRENT.whole(value.into(), 100, 0)?;
@@ -546,7 +546,7 @@ impl PowerAndTemperature {
         f64::from(self.cubestar_mcu_temperature) / 100.0
     }
 
-    /// Sets CubeStar MCU temperature in C, to the nearest raw value, ties to even. [`Error::Range`]
+    /// Set CubeStar MCU temperature in C to the nearest raw value, ties to even. [`Error::Range`]
     /// if it does not fit or is not finite.
     pub fn set_cubestar_mcu_temperature_c(&mut self, value: f64) -> Result<(), Error> {
         self.cubestar_mcu_temperature = CUBESTAR_MCU_TEMPERATURE.raw(value)?;
@@ -565,7 +565,7 @@ impl PowerAndTemperature {
         i32::from(self.cubestar_mcu_temperature) * 10
     }
 
-    /// Sets CubeStar MCU temperature in thousandths of C, to the nearest raw value, ties to even.
+    /// Set CubeStar MCU temperature in thousandths of C to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_cubestar_mcu_temperature_mc(&mut self, value: i32) -> Result<(), Error> {
         self.cubestar_mcu_temperature = CUBESTAR_MCU_TEMPERATURE.whole(value.into(), 10, 0)?;
@@ -578,7 +578,7 @@ impl PowerAndTemperature {
         f64::from(self.magnetometer_temperature) / 10.0
     }
 
-    /// Sets Magnetometer Temperature in C, to the nearest raw value, ties to even. [`Error::Range`]
+    /// Set Magnetometer Temperature in C to the nearest raw value, ties to even. [`Error::Range`]
     /// if it does not fit or is not finite.
     pub fn set_magnetometer_temperature_c(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_temperature = MAGNETOMETER_TEMPERATURE.raw(value)?;
@@ -597,7 +597,7 @@ impl PowerAndTemperature {
         i32::from(self.magnetometer_temperature) * 100
     }
 
-    /// Sets Magnetometer Temperature in thousandths of C, to the nearest raw value, ties to even.
+    /// Set Magnetometer Temperature in thousandths of C to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_magnetometer_temperature_mc(&mut self, value: i32) -> Result<(), Error> {
         self.magnetometer_temperature = MAGNETOMETER_TEMPERATURE.whole(value.into(), 100, 0)?;
@@ -610,7 +610,7 @@ impl PowerAndTemperature {
         f64::from(self.redundant_mag_temperature) / 10.0
     }
 
-    /// Sets Redundant Magnetometer Temperature in C, to the nearest raw value, ties to even.
+    /// Set Redundant Magnetometer Temperature in C to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_temperature_c(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_temperature = REDUNDANT_MAG_TEMPERATURE.raw(value)?;
@@ -629,8 +629,8 @@ impl PowerAndTemperature {
         i32::from(self.redundant_mag_temperature) * 100
     }
 
-    /// Sets Redundant Magnetometer Temperature in thousandths of C, to the nearest raw value, ties
-    /// to even. [`Error::Range`] if it does not fit.
+    /// Set Redundant Magnetometer Temperature in thousandths of C to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
     pub fn set_redundant_mag_temperature_mc(&mut self, value: i32) -> Result<(), Error> {
         self.redundant_mag_temperature = REDUNDANT_MAG_TEMPERATURE.whole(value.into(), 100, 0)?;
         Ok(())

@@ -49,11 +49,11 @@ impl QuaternionCovariance {
     /// Id of the telemetry.
     pub const ID: u8 = 164;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -62,7 +62,7 @@ impl QuaternionCovariance {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -73,11 +73,11 @@ impl QuaternionCovariance {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -93,7 +93,7 @@ impl QuaternionCovariance {
         f64::from(self.q1_rms) / 1_000.0
     }
 
-    /// Sets Quaternion Covariance - Q1 RMS, as a physical value, to the nearest raw value, ties to
+    /// Set Quaternion Covariance - Q1 RMS, as a physical value to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_q1_rms_physical(&mut self, value: f64) -> Result<(), Error> {
         self.q1_rms = Q1_RMS.raw(value)?;
@@ -112,7 +112,7 @@ impl QuaternionCovariance {
         i32::from(self.q1_rms)
     }
 
-    /// Sets Quaternion Covariance - Q1 RMS in thousandths, to the nearest raw value, ties to even.
+    /// Set Quaternion Covariance - Q1 RMS in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_q1_rms_milli(&mut self, value: i32) -> Result<(), Error> {
         self.q1_rms = Q1_RMS.whole(value.into(), 1, 0)?;
@@ -125,7 +125,7 @@ impl QuaternionCovariance {
         f64::from(self.q2_rms) / 1_000.0
     }
 
-    /// Sets Quaternion Covariance - Q2 RMS, as a physical value, to the nearest raw value, ties to
+    /// Set Quaternion Covariance - Q2 RMS, as a physical value to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_q2_rms_physical(&mut self, value: f64) -> Result<(), Error> {
         self.q2_rms = Q2_RMS.raw(value)?;
@@ -144,7 +144,7 @@ impl QuaternionCovariance {
         i32::from(self.q2_rms)
     }
 
-    /// Sets Quaternion Covariance - Q2 RMS in thousandths, to the nearest raw value, ties to even.
+    /// Set Quaternion Covariance - Q2 RMS in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_q2_rms_milli(&mut self, value: i32) -> Result<(), Error> {
         self.q2_rms = Q2_RMS.whole(value.into(), 1, 0)?;
@@ -157,7 +157,7 @@ impl QuaternionCovariance {
         f64::from(self.q3_rms) / 1_000.0
     }
 
-    /// Sets Quaternion Covariance - Q3 RMS, as a physical value, to the nearest raw value, ties to
+    /// Set Quaternion Covariance - Q3 RMS, as a physical value to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_q3_rms_physical(&mut self, value: f64) -> Result<(), Error> {
         self.q3_rms = Q3_RMS.raw(value)?;
@@ -176,7 +176,7 @@ impl QuaternionCovariance {
         i32::from(self.q3_rms)
     }
 
-    /// Sets Quaternion Covariance - Q3 RMS in thousandths, to the nearest raw value, ties to even.
+    /// Set Quaternion Covariance - Q3 RMS in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_q3_rms_milli(&mut self, value: i32) -> Result<(), Error> {
         self.q3_rms = Q3_RMS.whole(value.into(), 1, 0)?;

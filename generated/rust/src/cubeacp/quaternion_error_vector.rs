@@ -44,11 +44,11 @@ impl QuaternionErrorVector {
     /// Id of the telemetry.
     pub const ID: u8 = 163;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -57,7 +57,7 @@ impl QuaternionErrorVector {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -68,11 +68,11 @@ impl QuaternionErrorVector {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -88,7 +88,7 @@ impl QuaternionErrorVector {
         f64::from(self.quaternion_error_q1) / 10_000.0
     }
 
-    /// Sets Quaternion Error - Q1, as a physical value, to the nearest raw value, ties to even.
+    /// Set Quaternion Error - Q1, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_quaternion_error_q1_physical(&mut self, value: f64) -> Result<(), Error> {
         self.quaternion_error_q1 = QUATERNION_ERROR_Q1.raw(value)?;
@@ -107,7 +107,7 @@ impl QuaternionErrorVector {
         i32::from(self.quaternion_error_q1) * 100
     }
 
-    /// Sets Quaternion Error - Q1 in millionths, to the nearest raw value, ties to even.
+    /// Set Quaternion Error - Q1 in millionths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_quaternion_error_q1_micro(&mut self, value: i32) -> Result<(), Error> {
         self.quaternion_error_q1 = QUATERNION_ERROR_Q1.whole(value.into(), 100, 0)?;
@@ -120,7 +120,7 @@ impl QuaternionErrorVector {
         f64::from(self.quaternion_error_q2) / 10_000.0
     }
 
-    /// Sets Quaternion Error - Q2, as a physical value, to the nearest raw value, ties to even.
+    /// Set Quaternion Error - Q2, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_quaternion_error_q2_physical(&mut self, value: f64) -> Result<(), Error> {
         self.quaternion_error_q2 = QUATERNION_ERROR_Q2.raw(value)?;
@@ -139,7 +139,7 @@ impl QuaternionErrorVector {
         i32::from(self.quaternion_error_q2) * 100
     }
 
-    /// Sets Quaternion Error - Q2 in millionths, to the nearest raw value, ties to even.
+    /// Set Quaternion Error - Q2 in millionths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_quaternion_error_q2_micro(&mut self, value: i32) -> Result<(), Error> {
         self.quaternion_error_q2 = QUATERNION_ERROR_Q2.whole(value.into(), 100, 0)?;
@@ -152,7 +152,7 @@ impl QuaternionErrorVector {
         f64::from(self.quaternion_error_q3) / 10_000.0
     }
 
-    /// Sets Quaternion Error - Q3, as a physical value, to the nearest raw value, ties to even.
+    /// Set Quaternion Error - Q3, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_quaternion_error_q3_physical(&mut self, value: f64) -> Result<(), Error> {
         self.quaternion_error_q3 = QUATERNION_ERROR_Q3.raw(value)?;
@@ -171,7 +171,7 @@ impl QuaternionErrorVector {
         i32::from(self.quaternion_error_q3) * 100
     }
 
-    /// Sets Quaternion Error - Q3 in millionths, to the nearest raw value, ties to even.
+    /// Set Quaternion Error - Q3 in millionths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_quaternion_error_q3_micro(&mut self, value: i32) -> Result<(), Error> {
         self.quaternion_error_q3 = QUATERNION_ERROR_Q3.whole(value.into(), 100, 0)?;

@@ -47,11 +47,11 @@ impl RateSensorRates {
     /// Id of the telemetry.
     pub const ID: u8 = 155;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -60,7 +60,7 @@ impl RateSensorRates {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -71,11 +71,11 @@ impl RateSensorRates {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -91,7 +91,7 @@ impl RateSensorRates {
         f64::from(self.x_angular_rate) / 100.0
     }
 
-    /// Sets X Angular Rate in deg/s, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set X Angular Rate in deg/s to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit or is not finite.
     pub fn set_x_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.x_angular_rate = X_ANGULAR_RATE.raw(value)?;
@@ -110,7 +110,7 @@ impl RateSensorRates {
         i32::from(self.x_angular_rate) * 10
     }
 
-    /// Sets X Angular Rate in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// Set X Angular Rate in thousandths of deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_x_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.x_angular_rate = X_ANGULAR_RATE.whole(value.into(), 10, 0)?;
@@ -123,7 +123,7 @@ impl RateSensorRates {
         f64::from(self.y_angular_rate) / 100.0
     }
 
-    /// Sets Y Angular Rate in deg/s, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Y Angular Rate in deg/s to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit or is not finite.
     pub fn set_y_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.y_angular_rate = Y_ANGULAR_RATE.raw(value)?;
@@ -142,7 +142,7 @@ impl RateSensorRates {
         i32::from(self.y_angular_rate) * 10
     }
 
-    /// Sets Y Angular Rate in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// Set Y Angular Rate in thousandths of deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_y_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.y_angular_rate = Y_ANGULAR_RATE.whole(value.into(), 10, 0)?;
@@ -155,7 +155,7 @@ impl RateSensorRates {
         f64::from(self.z_angular_rate) / 100.0
     }
 
-    /// Sets Z Angular Rate in deg/s, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Z Angular Rate in deg/s to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit or is not finite.
     pub fn set_z_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.z_angular_rate = Z_ANGULAR_RATE.raw(value)?;
@@ -174,7 +174,7 @@ impl RateSensorRates {
         i32::from(self.z_angular_rate) * 10
     }
 
-    /// Sets Z Angular Rate in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// Set Z Angular Rate in thousandths of deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_z_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.z_angular_rate = Z_ANGULAR_RATE.whole(value.into(), 10, 0)?;

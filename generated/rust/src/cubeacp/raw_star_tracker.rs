@@ -193,11 +193,11 @@ impl RawStarTracker {
     /// Id of the telemetry.
     pub const ID: u8 = 211;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -206,7 +206,7 @@ impl RawStarTracker {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 54]) -> Self {
@@ -254,11 +254,11 @@ impl RawStarTracker {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 54], Error> {
         let mut bytes = [0; 54];
@@ -310,7 +310,7 @@ impl RawStarTracker {
         f64::from(self.x_axis_rate) / 10_000.0
     }
 
-    /// Sets x-Axis rate, as a physical value, to the nearest raw value, ties to even.
+    /// Set x-Axis rate, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_x_axis_rate_physical(&mut self, value: f64) -> Result<(), Error> {
         self.x_axis_rate = X_AXIS_RATE.raw(value)?;
@@ -329,8 +329,8 @@ impl RawStarTracker {
         i32::from(self.x_axis_rate) * 100
     }
 
-    /// Sets x-Axis rate in millionths, to the nearest raw value, ties to even. [`Error::Range`] if
-    /// it does not fit.
+    /// Set x-Axis rate in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
     pub fn set_x_axis_rate_micro(&mut self, value: i32) -> Result<(), Error> {
         self.x_axis_rate = X_AXIS_RATE.whole(value.into(), 100, 0)?;
         Ok(())
@@ -342,7 +342,7 @@ impl RawStarTracker {
         f64::from(self.y_axis_rate) / 10_000.0
     }
 
-    /// Sets y-Axis rate, as a physical value, to the nearest raw value, ties to even.
+    /// Set y-Axis rate, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_y_axis_rate_physical(&mut self, value: f64) -> Result<(), Error> {
         self.y_axis_rate = Y_AXIS_RATE.raw(value)?;
@@ -361,8 +361,8 @@ impl RawStarTracker {
         i32::from(self.y_axis_rate) * 100
     }
 
-    /// Sets y-Axis rate in millionths, to the nearest raw value, ties to even. [`Error::Range`] if
-    /// it does not fit.
+    /// Set y-Axis rate in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
     pub fn set_y_axis_rate_micro(&mut self, value: i32) -> Result<(), Error> {
         self.y_axis_rate = Y_AXIS_RATE.whole(value.into(), 100, 0)?;
         Ok(())
@@ -374,7 +374,7 @@ impl RawStarTracker {
         f64::from(self.z_axis_rate) / 10_000.0
     }
 
-    /// Sets z-Axis rate, as a physical value, to the nearest raw value, ties to even.
+    /// Set z-Axis rate, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_z_axis_rate_physical(&mut self, value: f64) -> Result<(), Error> {
         self.z_axis_rate = Z_AXIS_RATE.raw(value)?;
@@ -393,8 +393,8 @@ impl RawStarTracker {
         i32::from(self.z_axis_rate) * 100
     }
 
-    /// Sets z-Axis rate in millionths, to the nearest raw value, ties to even. [`Error::Range`] if
-    /// it does not fit.
+    /// Set z-Axis rate in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
     pub fn set_z_axis_rate_micro(&mut self, value: i32) -> Result<(), Error> {
         self.z_axis_rate = Z_AXIS_RATE.whole(value.into(), 100, 0)?;
         Ok(())
@@ -406,7 +406,7 @@ impl RawStarTracker {
         f64::from(self.q0) / 10_000.0
     }
 
-    /// Sets Q0, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Q0, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit or is not finite.
     pub fn set_q0_physical(&mut self, value: f64) -> Result<(), Error> {
         self.q0 = Q0.raw(value)?;
@@ -425,8 +425,8 @@ impl RawStarTracker {
         i32::from(self.q0) * 100
     }
 
-    /// Sets Q0 in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it does
-    /// not fit.
+    /// Set Q0 in millionths to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit.
     pub fn set_q0_micro(&mut self, value: i32) -> Result<(), Error> {
         self.q0 = Q0.whole(value.into(), 100, 0)?;
         Ok(())
@@ -438,7 +438,7 @@ impl RawStarTracker {
         f64::from(self.q1) / 10_000.0
     }
 
-    /// Sets Q1, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Q1, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit or is not finite.
     pub fn set_q1_physical(&mut self, value: f64) -> Result<(), Error> {
         self.q1 = Q1.raw(value)?;
@@ -457,8 +457,8 @@ impl RawStarTracker {
         i32::from(self.q1) * 100
     }
 
-    /// Sets Q1 in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it does
-    /// not fit.
+    /// Set Q1 in millionths to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit.
     pub fn set_q1_micro(&mut self, value: i32) -> Result<(), Error> {
         self.q1 = Q1.whole(value.into(), 100, 0)?;
         Ok(())
@@ -470,7 +470,7 @@ impl RawStarTracker {
         f64::from(self.q2) / 10_000.0
     }
 
-    /// Sets Q2, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Q2, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit or is not finite.
     pub fn set_q2_physical(&mut self, value: f64) -> Result<(), Error> {
         self.q2 = Q2.raw(value)?;
@@ -489,8 +489,8 @@ impl RawStarTracker {
         i32::from(self.q2) * 100
     }
 
-    /// Sets Q2 in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it does
-    /// not fit.
+    /// Set Q2 in millionths to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit.
     pub fn set_q2_micro(&mut self, value: i32) -> Result<(), Error> {
         self.q2 = Q2.whole(value.into(), 100, 0)?;
         Ok(())

@@ -96,11 +96,11 @@ impl RedundantMagConfiguration {
     /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 205;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -109,7 +109,7 @@ impl RedundantMagConfiguration {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 30]) -> Self {
@@ -132,11 +132,11 @@ impl RedundantMagConfiguration {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 30], Error> {
         let mut bytes = [0; 30];
@@ -164,7 +164,7 @@ impl RedundantMagConfiguration {
         f64::from(self.mounting_alpha) / 100.0
     }
 
-    /// Sets Redundant Magnetometer Mounting Transform Alpha Angle in deg, to the nearest raw value,
+    /// Set Redundant Magnetometer Mounting Transform Alpha Angle in deg to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
         self.mounting_alpha = MOUNTING_ALPHA.raw(value)?;
@@ -184,7 +184,7 @@ impl RedundantMagConfiguration {
         i32::from(self.mounting_alpha) * 10
     }
 
-    /// Sets Redundant Magnetometer Mounting Transform Alpha Angle in thousandths of deg, to the
+    /// Set Redundant Magnetometer Mounting Transform Alpha Angle in thousandths of deg to the
     /// nearest raw value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_mounting_alpha_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.mounting_alpha = MOUNTING_ALPHA.whole(value.into(), 10, 0)?;
@@ -197,7 +197,7 @@ impl RedundantMagConfiguration {
         f64::from(self.mounting_beta) / 100.0
     }
 
-    /// Sets Redundant Magnetometer Mounting Transform Beta Angle in deg, to the nearest raw value,
+    /// Set Redundant Magnetometer Mounting Transform Beta Angle in deg to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
         self.mounting_beta = MOUNTING_BETA.raw(value)?;
@@ -217,7 +217,7 @@ impl RedundantMagConfiguration {
         i32::from(self.mounting_beta) * 10
     }
 
-    /// Sets Redundant Magnetometer Mounting Transform Beta Angle in thousandths of deg, to the
+    /// Set Redundant Magnetometer Mounting Transform Beta Angle in thousandths of deg to the
     /// nearest raw value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_mounting_beta_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.mounting_beta = MOUNTING_BETA.whole(value.into(), 10, 0)?;
@@ -230,7 +230,7 @@ impl RedundantMagConfiguration {
         f64::from(self.mounting_gamma) / 100.0
     }
 
-    /// Sets Redundant Magnetometer Mounting Transform Gamma Angle in deg, to the nearest raw value,
+    /// Set Redundant Magnetometer Mounting Transform Gamma Angle in deg to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
         self.mounting_gamma = MOUNTING_GAMMA.raw(value)?;
@@ -250,7 +250,7 @@ impl RedundantMagConfiguration {
         i32::from(self.mounting_gamma) * 10
     }
 
-    /// Sets Redundant Magnetometer Mounting Transform Gamma Angle in thousandths of deg, to the
+    /// Set Redundant Magnetometer Mounting Transform Gamma Angle in thousandths of deg to the
     /// nearest raw value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_mounting_gamma_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.mounting_gamma = MOUNTING_GAMMA.whole(value.into(), 10, 0)?;
@@ -263,7 +263,7 @@ impl RedundantMagConfiguration {
         f64::from(self.channel_1_offset) / 1_000.0
     }
 
-    /// Sets Redundant Magnetometer Channel 1 Offset, as a physical value, to the nearest raw value,
+    /// Set Redundant Magnetometer Channel 1 Offset, as a physical value to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_channel_1_offset_physical(&mut self, value: f64) -> Result<(), Error> {
         self.channel_1_offset = CHANNEL_1_OFFSET.raw(value)?;
@@ -282,8 +282,8 @@ impl RedundantMagConfiguration {
         i32::from(self.channel_1_offset)
     }
 
-    /// Sets Redundant Magnetometer Channel 1 Offset in thousandths, to the nearest raw value, ties
-    /// to even. [`Error::Range`] if it does not fit.
+    /// Set Redundant Magnetometer Channel 1 Offset in thousandths to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
     pub fn set_channel_1_offset_milli(&mut self, value: i32) -> Result<(), Error> {
         self.channel_1_offset = CHANNEL_1_OFFSET.whole(value.into(), 1, 0)?;
         Ok(())
@@ -295,7 +295,7 @@ impl RedundantMagConfiguration {
         f64::from(self.channel_2_offset) / 1_000.0
     }
 
-    /// Sets Redundant Magnetometer Channel 2 Offset, as a physical value, to the nearest raw value,
+    /// Set Redundant Magnetometer Channel 2 Offset, as a physical value to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_channel_2_offset_physical(&mut self, value: f64) -> Result<(), Error> {
         self.channel_2_offset = CHANNEL_2_OFFSET.raw(value)?;
@@ -314,8 +314,8 @@ impl RedundantMagConfiguration {
         i32::from(self.channel_2_offset)
     }
 
-    /// Sets Redundant Magnetometer Channel 2 Offset in thousandths, to the nearest raw value, ties
-    /// to even. [`Error::Range`] if it does not fit.
+    /// Set Redundant Magnetometer Channel 2 Offset in thousandths to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
     pub fn set_channel_2_offset_milli(&mut self, value: i32) -> Result<(), Error> {
         self.channel_2_offset = CHANNEL_2_OFFSET.whole(value.into(), 1, 0)?;
         Ok(())
@@ -327,7 +327,7 @@ impl RedundantMagConfiguration {
         f64::from(self.channel_3_offset) / 1_000.0
     }
 
-    /// Sets Redundant Magnetometer Channel 3 Offset, as a physical value, to the nearest raw value,
+    /// Set Redundant Magnetometer Channel 3 Offset, as a physical value to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_channel_3_offset_physical(&mut self, value: f64) -> Result<(), Error> {
         self.channel_3_offset = CHANNEL_3_OFFSET.raw(value)?;
@@ -346,8 +346,8 @@ impl RedundantMagConfiguration {
         i32::from(self.channel_3_offset)
     }
 
-    /// Sets Redundant Magnetometer Channel 3 Offset in thousandths, to the nearest raw value, ties
-    /// to even. [`Error::Range`] if it does not fit.
+    /// Set Redundant Magnetometer Channel 3 Offset in thousandths to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
     pub fn set_channel_3_offset_milli(&mut self, value: i32) -> Result<(), Error> {
         self.channel_3_offset = CHANNEL_3_OFFSET.whole(value.into(), 1, 0)?;
         Ok(())
@@ -359,7 +359,7 @@ impl RedundantMagConfiguration {
         f64::from(self.sensitivity_s11) / 1_000.0
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S11, as a physical value, to the nearest raw
+    /// Set Redundant Magnetometer Sensitivity Matrix S11, as a physical value to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s11_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s11 = SENSITIVITY_S11.raw(value)?;
@@ -379,7 +379,7 @@ impl RedundantMagConfiguration {
         i32::from(self.sensitivity_s11)
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S11 in thousandths, to the nearest raw value,
+    /// Set Redundant Magnetometer Sensitivity Matrix S11 in thousandths to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit.
     pub fn set_sensitivity_s11_milli(&mut self, value: i32) -> Result<(), Error> {
         self.sensitivity_s11 = SENSITIVITY_S11.whole(value.into(), 1, 0)?;
@@ -392,7 +392,7 @@ impl RedundantMagConfiguration {
         f64::from(self.sensitivity_s22) / 1_000.0
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S22, as a physical value, to the nearest raw
+    /// Set Redundant Magnetometer Sensitivity Matrix S22, as a physical value to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s22_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s22 = SENSITIVITY_S22.raw(value)?;
@@ -412,7 +412,7 @@ impl RedundantMagConfiguration {
         i32::from(self.sensitivity_s22)
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S22 in thousandths, to the nearest raw value,
+    /// Set Redundant Magnetometer Sensitivity Matrix S22 in thousandths to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit.
     pub fn set_sensitivity_s22_milli(&mut self, value: i32) -> Result<(), Error> {
         self.sensitivity_s22 = SENSITIVITY_S22.whole(value.into(), 1, 0)?;
@@ -425,7 +425,7 @@ impl RedundantMagConfiguration {
         f64::from(self.sensitivity_s33) / 1_000.0
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S33, as a physical value, to the nearest raw
+    /// Set Redundant Magnetometer Sensitivity Matrix S33, as a physical value to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s33_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s33 = SENSITIVITY_S33.raw(value)?;
@@ -445,7 +445,7 @@ impl RedundantMagConfiguration {
         i32::from(self.sensitivity_s33)
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S33 in thousandths, to the nearest raw value,
+    /// Set Redundant Magnetometer Sensitivity Matrix S33 in thousandths to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit.
     pub fn set_sensitivity_s33_milli(&mut self, value: i32) -> Result<(), Error> {
         self.sensitivity_s33 = SENSITIVITY_S33.whole(value.into(), 1, 0)?;
@@ -458,7 +458,7 @@ impl RedundantMagConfiguration {
         f64::from(self.sensitivity_s12) / 1_000.0
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S12, as a physical value, to the nearest raw
+    /// Set Redundant Magnetometer Sensitivity Matrix S12, as a physical value to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s12_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s12 = SENSITIVITY_S12.raw(value)?;
@@ -478,7 +478,7 @@ impl RedundantMagConfiguration {
         i32::from(self.sensitivity_s12)
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S12 in thousandths, to the nearest raw value,
+    /// Set Redundant Magnetometer Sensitivity Matrix S12 in thousandths to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit.
     pub fn set_sensitivity_s12_milli(&mut self, value: i32) -> Result<(), Error> {
         self.sensitivity_s12 = SENSITIVITY_S12.whole(value.into(), 1, 0)?;
@@ -491,7 +491,7 @@ impl RedundantMagConfiguration {
         f64::from(self.sensitivity_s13) / 1_000.0
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S13, as a physical value, to the nearest raw
+    /// Set Redundant Magnetometer Sensitivity Matrix S13, as a physical value to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s13_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s13 = SENSITIVITY_S13.raw(value)?;
@@ -511,7 +511,7 @@ impl RedundantMagConfiguration {
         i32::from(self.sensitivity_s13)
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S13 in thousandths, to the nearest raw value,
+    /// Set Redundant Magnetometer Sensitivity Matrix S13 in thousandths to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit.
     pub fn set_sensitivity_s13_milli(&mut self, value: i32) -> Result<(), Error> {
         self.sensitivity_s13 = SENSITIVITY_S13.whole(value.into(), 1, 0)?;
@@ -524,7 +524,7 @@ impl RedundantMagConfiguration {
         f64::from(self.sensitivity_s21) / 1_000.0
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S21, as a physical value, to the nearest raw
+    /// Set Redundant Magnetometer Sensitivity Matrix S21, as a physical value to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s21_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s21 = SENSITIVITY_S21.raw(value)?;
@@ -544,7 +544,7 @@ impl RedundantMagConfiguration {
         i32::from(self.sensitivity_s21)
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S21 in thousandths, to the nearest raw value,
+    /// Set Redundant Magnetometer Sensitivity Matrix S21 in thousandths to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit.
     pub fn set_sensitivity_s21_milli(&mut self, value: i32) -> Result<(), Error> {
         self.sensitivity_s21 = SENSITIVITY_S21.whole(value.into(), 1, 0)?;
@@ -557,7 +557,7 @@ impl RedundantMagConfiguration {
         f64::from(self.sensitivity_s23) / 1_000.0
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S23, as a physical value, to the nearest raw
+    /// Set Redundant Magnetometer Sensitivity Matrix S23, as a physical value to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s23_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s23 = SENSITIVITY_S23.raw(value)?;
@@ -577,7 +577,7 @@ impl RedundantMagConfiguration {
         i32::from(self.sensitivity_s23)
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S23 in thousandths, to the nearest raw value,
+    /// Set Redundant Magnetometer Sensitivity Matrix S23 in thousandths to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit.
     pub fn set_sensitivity_s23_milli(&mut self, value: i32) -> Result<(), Error> {
         self.sensitivity_s23 = SENSITIVITY_S23.whole(value.into(), 1, 0)?;
@@ -590,7 +590,7 @@ impl RedundantMagConfiguration {
         f64::from(self.sensitivity_s31) / 1_000.0
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S31, as a physical value, to the nearest raw
+    /// Set Redundant Magnetometer Sensitivity Matrix S31, as a physical value to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s31_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s31 = SENSITIVITY_S31.raw(value)?;
@@ -610,7 +610,7 @@ impl RedundantMagConfiguration {
         i32::from(self.sensitivity_s31)
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S31 in thousandths, to the nearest raw value,
+    /// Set Redundant Magnetometer Sensitivity Matrix S31 in thousandths to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit.
     pub fn set_sensitivity_s31_milli(&mut self, value: i32) -> Result<(), Error> {
         self.sensitivity_s31 = SENSITIVITY_S31.whole(value.into(), 1, 0)?;
@@ -623,7 +623,7 @@ impl RedundantMagConfiguration {
         f64::from(self.sensitivity_s32) / 1_000.0
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S32, as a physical value, to the nearest raw
+    /// Set Redundant Magnetometer Sensitivity Matrix S32, as a physical value to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s32_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s32 = SENSITIVITY_S32.raw(value)?;
@@ -643,7 +643,7 @@ impl RedundantMagConfiguration {
         i32::from(self.sensitivity_s32)
     }
 
-    /// Sets Redundant Magnetometer Sensitivity Matrix S32 in thousandths, to the nearest raw value,
+    /// Set Redundant Magnetometer Sensitivity Matrix S32 in thousandths to the nearest raw value,
     /// ties to even. [`Error::Range`] if it does not fit.
     pub fn set_sensitivity_s32_milli(&mut self, value: i32) -> Result<(), Error> {
         self.sensitivity_s32 = SENSITIVITY_S32.whole(value.into(), 1, 0)?;

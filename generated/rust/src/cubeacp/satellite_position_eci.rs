@@ -38,11 +38,11 @@ impl SatellitePositionEci {
     /// Id of the telemetry.
     pub const ID: u8 = 148;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -51,7 +51,7 @@ impl SatellitePositionEci {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -62,11 +62,11 @@ impl SatellitePositionEci {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -82,8 +82,8 @@ impl SatellitePositionEci {
         f64::from(self.x_position) / 4.0
     }
 
-    /// Sets X position in km, to the nearest raw value, ties to even. [`Error::Range`] if it does
-    /// not fit or is not finite.
+    /// Set X position in km to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit or is not finite.
     pub fn set_x_position_km(&mut self, value: f64) -> Result<(), Error> {
         self.x_position = X_POSITION.raw(value)?;
         Ok(())
@@ -101,8 +101,8 @@ impl SatellitePositionEci {
         i32::from(self.x_position) * 250
     }
 
-    /// Sets X position in m, to the nearest raw value, ties to even. [`Error::Range`] if it does
-    /// not fit.
+    /// Set X position in m to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit.
     pub fn set_x_position_m(&mut self, value: i32) -> Result<(), Error> {
         self.x_position = X_POSITION.whole(value.into(), 250, 0)?;
         Ok(())
@@ -114,8 +114,8 @@ impl SatellitePositionEci {
         f64::from(self.y_position) / 4.0
     }
 
-    /// Sets Y position in km, to the nearest raw value, ties to even. [`Error::Range`] if it does
-    /// not fit or is not finite.
+    /// Set Y position in km to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit or is not finite.
     pub fn set_y_position_km(&mut self, value: f64) -> Result<(), Error> {
         self.y_position = Y_POSITION.raw(value)?;
         Ok(())
@@ -133,8 +133,8 @@ impl SatellitePositionEci {
         i32::from(self.y_position) * 250
     }
 
-    /// Sets Y position in m, to the nearest raw value, ties to even. [`Error::Range`] if it does
-    /// not fit.
+    /// Set Y position in m to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit.
     pub fn set_y_position_m(&mut self, value: i32) -> Result<(), Error> {
         self.y_position = Y_POSITION.whole(value.into(), 250, 0)?;
         Ok(())
@@ -146,8 +146,8 @@ impl SatellitePositionEci {
         f64::from(self.z_position) / 4.0
     }
 
-    /// Sets Z position in km, to the nearest raw value, ties to even. [`Error::Range`] if it does
-    /// not fit or is not finite.
+    /// Set Z position in km to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit or is not finite.
     pub fn set_z_position_km(&mut self, value: f64) -> Result<(), Error> {
         self.z_position = Z_POSITION.raw(value)?;
         Ok(())
@@ -165,8 +165,8 @@ impl SatellitePositionEci {
         i32::from(self.z_position) * 250
     }
 
-    /// Sets Z position in m, to the nearest raw value, ties to even. [`Error::Range`] if it does
-    /// not fit.
+    /// Set Z position in m to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit.
     pub fn set_z_position_m(&mut self, value: i32) -> Result<(), Error> {
         self.z_position = Z_POSITION.whole(value.into(), 250, 0)?;
         Ok(())

@@ -48,11 +48,11 @@ impl SatellitePositionLlh {
     /// Id of the telemetry.
     pub const ID: u8 = 150;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -61,7 +61,7 @@ impl SatellitePositionLlh {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -72,11 +72,11 @@ impl SatellitePositionLlh {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -92,8 +92,8 @@ impl SatellitePositionLlh {
         f64::from(self.latitude) / 100.0
     }
 
-    /// Sets Latitude in deg, to the nearest raw value, ties to even. [`Error::Range`] if it does
-    /// not fit or is not finite.
+    /// Set Latitude in deg to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit or is not finite.
     pub fn set_latitude_deg(&mut self, value: f64) -> Result<(), Error> {
         self.latitude = LATITUDE.raw(value)?;
         Ok(())
@@ -111,8 +111,8 @@ impl SatellitePositionLlh {
         i32::from(self.latitude) * 10
     }
 
-    /// Sets Latitude in thousandths of deg, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit.
+    /// Set Latitude in thousandths of deg to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit.
     pub fn set_latitude_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.latitude = LATITUDE.whole(value.into(), 10, 0)?;
         Ok(())
@@ -124,8 +124,8 @@ impl SatellitePositionLlh {
         f64::from(self.longitude) / 100.0
     }
 
-    /// Sets Longitude in deg, to the nearest raw value, ties to even. [`Error::Range`] if it does
-    /// not fit or is not finite.
+    /// Set Longitude in deg to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit or is not finite.
     pub fn set_longitude_deg(&mut self, value: f64) -> Result<(), Error> {
         self.longitude = LONGITUDE.raw(value)?;
         Ok(())
@@ -143,8 +143,8 @@ impl SatellitePositionLlh {
         i32::from(self.longitude) * 10
     }
 
-    /// Sets Longitude in thousandths of deg, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit.
+    /// Set Longitude in thousandths of deg to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit.
     pub fn set_longitude_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.longitude = LONGITUDE.whole(value.into(), 10, 0)?;
         Ok(())
@@ -156,7 +156,7 @@ impl SatellitePositionLlh {
         f64::from(self.altitude) / 100.0
     }
 
-    /// Sets Altitude in km, to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// Set Altitude in km to the nearest raw value, ties to even. [`Error::Range`] if it does not
     /// fit or is not finite.
     pub fn set_altitude_km(&mut self, value: f64) -> Result<(), Error> {
         self.altitude = ALTITUDE.raw(value)?;
@@ -175,7 +175,7 @@ impl SatellitePositionLlh {
         i32::from(self.altitude) * 10
     }
 
-    /// Sets Altitude in m, to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// Set Altitude in m to the nearest raw value, ties to even. [`Error::Range`] if it does not
     /// fit.
     pub fn set_altitude_m(&mut self, value: i32) -> Result<(), Error> {
         self.altitude = ALTITUDE.whole(value.into(), 10, 0)?;

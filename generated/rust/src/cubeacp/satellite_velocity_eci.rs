@@ -38,11 +38,11 @@ impl SatelliteVelocityEci {
     /// Id of the telemetry.
     pub const ID: u8 = 149;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -51,7 +51,7 @@ impl SatelliteVelocityEci {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -62,11 +62,11 @@ impl SatelliteVelocityEci {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -82,7 +82,7 @@ impl SatelliteVelocityEci {
         f64::from(self.x_velocity) / 4.0
     }
 
-    /// Sets X Velocity in m/s, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// Set X Velocity in m/s to the nearest raw value, ties to even. [`Error::Range`] if it does
     /// not fit or is not finite.
     pub fn set_x_velocity_m_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.x_velocity = X_VELOCITY.raw(value)?;
@@ -101,7 +101,7 @@ impl SatelliteVelocityEci {
         i32::from(self.x_velocity) * 250
     }
 
-    /// Sets X Velocity in mm/s, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// Set X Velocity in mm/s to the nearest raw value, ties to even. [`Error::Range`] if it does
     /// not fit.
     pub fn set_x_velocity_mm_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.x_velocity = X_VELOCITY.whole(value.into(), 250, 0)?;
@@ -114,7 +114,7 @@ impl SatelliteVelocityEci {
         f64::from(self.y_velocity) / 4.0
     }
 
-    /// Sets Y Velocity in m/s, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// Set Y Velocity in m/s to the nearest raw value, ties to even. [`Error::Range`] if it does
     /// not fit or is not finite.
     pub fn set_y_velocity_m_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.y_velocity = Y_VELOCITY.raw(value)?;
@@ -133,7 +133,7 @@ impl SatelliteVelocityEci {
         i32::from(self.y_velocity) * 250
     }
 
-    /// Sets Y Velocity in mm/s, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// Set Y Velocity in mm/s to the nearest raw value, ties to even. [`Error::Range`] if it does
     /// not fit.
     pub fn set_y_velocity_mm_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.y_velocity = Y_VELOCITY.whole(value.into(), 250, 0)?;
@@ -146,7 +146,7 @@ impl SatelliteVelocityEci {
         f64::from(self.z_velocity) / 4.0
     }
 
-    /// Sets Z Velocity in m/s, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// Set Z Velocity in m/s to the nearest raw value, ties to even. [`Error::Range`] if it does
     /// not fit or is not finite.
     pub fn set_z_velocity_m_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.z_velocity = Z_VELOCITY.raw(value)?;
@@ -165,7 +165,7 @@ impl SatelliteVelocityEci {
         i32::from(self.z_velocity) * 250
     }
 
-    /// Sets Z Velocity in mm/s, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// Set Z Velocity in mm/s to the nearest raw value, ties to even. [`Error::Range`] if it does
     /// not fit.
     pub fn set_z_velocity_mm_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.z_velocity = Z_VELOCITY.whole(value.into(), 250, 0)?;

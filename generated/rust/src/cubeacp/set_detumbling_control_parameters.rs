@@ -68,11 +68,11 @@ impl SetDetumblingControlParameters {
     /// Reference spin rate in deg/s: must be below this.
     pub const SPIN_RATE_DEG_PER_S_BELOW: f64 = 0.0;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -81,7 +81,7 @@ impl SetDetumblingControlParameters {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 14]) -> Self {
@@ -93,11 +93,11 @@ impl SetDetumblingControlParameters {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 14], Error> {
         let mut bytes = [0; 14];
@@ -115,8 +115,8 @@ impl SetDetumblingControlParameters {
         f64::from(self.spin_rate) / 1_000.0
     }
 
-    /// Sets Reference spin rate in deg/s, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Reference spin rate in deg/s to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_spin_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.spin_rate = SPIN_RATE.raw(value)?;
         Ok(())
@@ -134,7 +134,7 @@ impl SetDetumblingControlParameters {
         i32::from(self.spin_rate)
     }
 
-    /// Sets Reference spin rate in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// Set Reference spin rate in thousandths of deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_spin_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.spin_rate = SPIN_RATE.whole(value.into(), 1, 0)?;

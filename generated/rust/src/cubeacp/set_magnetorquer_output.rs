@@ -58,11 +58,11 @@ impl SetMagnetorquerOutput {
     /// Id of the telecommand.
     pub const ID: u8 = 16;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -71,7 +71,7 @@ impl SetMagnetorquerOutput {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -82,11 +82,11 @@ impl SetMagnetorquerOutput {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -102,8 +102,8 @@ impl SetMagnetorquerOutput {
         f64::from(self.x_duty_cycle) / 1_000.0
     }
 
-    /// Sets Commanded X Magnetorquer duty cycle, as a physical value, to the nearest raw value,
-    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Commanded X Magnetorquer duty cycle, as a physical value to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_x_duty_cycle_physical(&mut self, value: f64) -> Result<(), Error> {
         self.x_duty_cycle = X_DUTY_CYCLE.raw(value)?;
         Ok(())
@@ -121,7 +121,7 @@ impl SetMagnetorquerOutput {
         i32::from(self.x_duty_cycle)
     }
 
-    /// Sets Commanded X Magnetorquer duty cycle in thousandths, to the nearest raw value, ties to
+    /// Set Commanded X Magnetorquer duty cycle in thousandths to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit.
     pub fn set_x_duty_cycle_milli(&mut self, value: i32) -> Result<(), Error> {
         self.x_duty_cycle = X_DUTY_CYCLE.whole(value.into(), 1, 0)?;
@@ -134,8 +134,8 @@ impl SetMagnetorquerOutput {
         f64::from(self.y_duty_cycle) / 1_000.0
     }
 
-    /// Sets Commanded Y Magnetorquer duty cycle, as a physical value, to the nearest raw value,
-    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Commanded Y Magnetorquer duty cycle, as a physical value to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_y_duty_cycle_physical(&mut self, value: f64) -> Result<(), Error> {
         self.y_duty_cycle = Y_DUTY_CYCLE.raw(value)?;
         Ok(())
@@ -153,7 +153,7 @@ impl SetMagnetorquerOutput {
         i32::from(self.y_duty_cycle)
     }
 
-    /// Sets Commanded Y Magnetorquer duty cycle in thousandths, to the nearest raw value, ties to
+    /// Set Commanded Y Magnetorquer duty cycle in thousandths to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit.
     pub fn set_y_duty_cycle_milli(&mut self, value: i32) -> Result<(), Error> {
         self.y_duty_cycle = Y_DUTY_CYCLE.whole(value.into(), 1, 0)?;
@@ -166,8 +166,8 @@ impl SetMagnetorquerOutput {
         f64::from(self.z_duty_cycle) / 1_000.0
     }
 
-    /// Sets Commanded Z Magnetorquer duty cycle, as a physical value, to the nearest raw value,
-    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Commanded Z Magnetorquer duty cycle, as a physical value to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_z_duty_cycle_physical(&mut self, value: f64) -> Result<(), Error> {
         self.z_duty_cycle = Z_DUTY_CYCLE.raw(value)?;
         Ok(())
@@ -185,7 +185,7 @@ impl SetMagnetorquerOutput {
         i32::from(self.z_duty_cycle)
     }
 
-    /// Sets Commanded Z Magnetorquer duty cycle in thousandths, to the nearest raw value, ties to
+    /// Set Commanded Z Magnetorquer duty cycle in thousandths to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit.
     pub fn set_z_duty_cycle_milli(&mut self, value: i32) -> Result<(), Error> {
         self.z_duty_cycle = Z_DUTY_CYCLE.whole(value.into(), 1, 0)?;

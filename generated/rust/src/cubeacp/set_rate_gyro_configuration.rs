@@ -71,11 +71,11 @@ impl SetRateGyroConfiguration {
     /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 138;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -84,7 +84,7 @@ impl SetRateGyroConfiguration {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 10]) -> Self {
@@ -99,11 +99,11 @@ impl SetRateGyroConfiguration {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 10], Error> {
         let mut bytes = [0; 10];
@@ -123,7 +123,7 @@ impl SetRateGyroConfiguration {
         f64::from(self.x_rate_sensor_offset) / 1_000.0
     }
 
-    /// Sets X-Rate Sensor Offset in deg/s, to the nearest raw value, ties to even. [`Error::Range`]
+    /// Set X-Rate Sensor Offset in deg/s to the nearest raw value, ties to even. [`Error::Range`]
     /// if it does not fit or is not finite.
     pub fn set_x_rate_sensor_offset_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.x_rate_sensor_offset = X_RATE_SENSOR_OFFSET.raw(value)?;
@@ -142,7 +142,7 @@ impl SetRateGyroConfiguration {
         i32::from(self.x_rate_sensor_offset)
     }
 
-    /// Sets X-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// Set X-Rate Sensor Offset in thousandths of deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_x_rate_sensor_offset_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.x_rate_sensor_offset = X_RATE_SENSOR_OFFSET.whole(value.into(), 1, 0)?;
@@ -155,7 +155,7 @@ impl SetRateGyroConfiguration {
         f64::from(self.y_rate_sensor_offset) / 1_000.0
     }
 
-    /// Sets Y-Rate Sensor Offset in deg/s, to the nearest raw value, ties to even. [`Error::Range`]
+    /// Set Y-Rate Sensor Offset in deg/s to the nearest raw value, ties to even. [`Error::Range`]
     /// if it does not fit or is not finite.
     pub fn set_y_rate_sensor_offset_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.y_rate_sensor_offset = Y_RATE_SENSOR_OFFSET.raw(value)?;
@@ -174,7 +174,7 @@ impl SetRateGyroConfiguration {
         i32::from(self.y_rate_sensor_offset)
     }
 
-    /// Sets Y-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// Set Y-Rate Sensor Offset in thousandths of deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_y_rate_sensor_offset_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.y_rate_sensor_offset = Y_RATE_SENSOR_OFFSET.whole(value.into(), 1, 0)?;
@@ -187,7 +187,7 @@ impl SetRateGyroConfiguration {
         f64::from(self.z_rate_sensor_offset) / 1_000.0
     }
 
-    /// Sets Z-Rate Sensor Offset in deg/s, to the nearest raw value, ties to even. [`Error::Range`]
+    /// Set Z-Rate Sensor Offset in deg/s to the nearest raw value, ties to even. [`Error::Range`]
     /// if it does not fit or is not finite.
     pub fn set_z_rate_sensor_offset_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.z_rate_sensor_offset = Z_RATE_SENSOR_OFFSET.raw(value)?;
@@ -206,7 +206,7 @@ impl SetRateGyroConfiguration {
         i32::from(self.z_rate_sensor_offset)
     }
 
-    /// Sets Z-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// Set Z-Rate Sensor Offset in thousandths of deg/s to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_z_rate_sensor_offset_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
         self.z_rate_sensor_offset = Z_RATE_SENSOR_OFFSET.whole(value.into(), 1, 0)?;

@@ -77,11 +77,11 @@ impl SetReactionWheelControlParameters {
     /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 217;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -90,7 +90,7 @@ impl SetReactionWheelControlParameters {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 13]) -> Self {
@@ -103,11 +103,11 @@ impl SetReactionWheelControlParameters {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// [`Error::Range`] if a value does not fit its field.
+    /// [`Error::Range`] if a value does not fit into its field.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 13], Error> {
         SUN_POINTING_FACET.fit(self.sun_pointing_facet.raw())?;

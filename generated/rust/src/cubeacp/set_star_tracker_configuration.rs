@@ -172,11 +172,11 @@ impl SetStarTrackerConfiguration {
     /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 202;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -185,7 +185,7 @@ impl SetStarTrackerConfiguration {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 53]) -> Self {
@@ -219,11 +219,11 @@ impl SetStarTrackerConfiguration {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encode the message; reserved bits are 0.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 53], Error> {
         let mut bytes = [0; 53];
@@ -262,7 +262,7 @@ impl SetStarTrackerConfiguration {
         f64::from(self.mounting_alpha) / 100.0
     }
 
-    /// Sets StarTracker Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
+    /// Set StarTracker Mounting Transform Alpha Angle in deg to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
         self.mounting_alpha = MOUNTING_ALPHA.raw(value)?;
@@ -281,7 +281,7 @@ impl SetStarTrackerConfiguration {
         i32::from(self.mounting_alpha) * 10
     }
 
-    /// Sets StarTracker Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw
+    /// Set StarTracker Mounting Transform Alpha Angle in thousandths of deg to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_mounting_alpha_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.mounting_alpha = MOUNTING_ALPHA.whole(value.into(), 10, 0)?;
@@ -294,8 +294,8 @@ impl SetStarTrackerConfiguration {
         f64::from(self.mounting_beta) / 100.0
     }
 
-    /// Sets StarTracker Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
-    /// even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set StarTracker Mounting Transform Beta Angle in deg to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
         self.mounting_beta = MOUNTING_BETA.raw(value)?;
         Ok(())
@@ -313,7 +313,7 @@ impl SetStarTrackerConfiguration {
         i32::from(self.mounting_beta) * 10
     }
 
-    /// Sets StarTracker Mounting Transform Beta Angle in thousandths of deg, to the nearest raw
+    /// Set StarTracker Mounting Transform Beta Angle in thousandths of deg to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_mounting_beta_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.mounting_beta = MOUNTING_BETA.whole(value.into(), 10, 0)?;
@@ -326,7 +326,7 @@ impl SetStarTrackerConfiguration {
         f64::from(self.mounting_gamma) / 100.0
     }
 
-    /// Sets StarTracker Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
+    /// Set StarTracker Mounting Transform Gamma Angle in deg to the nearest raw value, ties to
     /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
         self.mounting_gamma = MOUNTING_GAMMA.raw(value)?;
@@ -345,7 +345,7 @@ impl SetStarTrackerConfiguration {
         i32::from(self.mounting_gamma) * 10
     }
 
-    /// Sets StarTracker Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw
+    /// Set StarTracker Mounting Transform Gamma Angle in thousandths of deg to the nearest raw
     /// value, ties to even. [`Error::Range`] if it does not fit.
     pub fn set_mounting_gamma_mdeg(&mut self, value: i32) -> Result<(), Error> {
         self.mounting_gamma = MOUNTING_GAMMA.whole(value.into(), 10, 0)?;
@@ -358,8 +358,8 @@ impl SetStarTrackerConfiguration {
         f64::from(self.error_margin) / 100.0
     }
 
-    /// Sets Star Tracker Error Margin in %, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit or is not finite.
+    /// Set Star Tracker Error Margin in % to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_error_margin_percent(&mut self, value: f64) -> Result<(), Error> {
         self.error_margin = ERROR_MARGIN.raw(value)?;
         Ok(())
@@ -377,7 +377,7 @@ impl SetStarTrackerConfiguration {
         i32::from(self.error_margin) * 10
     }
 
-    /// Sets Star Tracker Error Margin in thousandths of %, to the nearest raw value, ties to even.
+    /// Set Star Tracker Error Margin in thousandths of % to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_error_margin_milli_percent(&mut self, value: i32) -> Result<(), Error> {
         self.error_margin = ERROR_MARGIN.whole(value.into(), 10, 0)?;
@@ -390,7 +390,7 @@ impl SetStarTrackerConfiguration {
         f64::from(self.tracking_margin) / 100.0
     }
 
-    /// Sets Star Tracking Margin, as a physical value, to the nearest raw value, ties to even.
+    /// Set Star Tracking Margin, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_tracking_margin_physical(&mut self, value: f64) -> Result<(), Error> {
         self.tracking_margin = TRACKING_MARGIN.raw(value)?;
@@ -409,7 +409,7 @@ impl SetStarTrackerConfiguration {
         i32::from(self.tracking_margin) * 10
     }
 
-    /// Sets Star Tracking Margin in thousandths, to the nearest raw value, ties to even.
+    /// Set Star Tracking Margin in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_tracking_margin_milli(&mut self, value: i32) -> Result<(), Error> {
         self.tracking_margin = TRACKING_MARGIN.whole(value.into(), 10, 0)?;
@@ -422,7 +422,7 @@ impl SetStarTrackerConfiguration {
         f64::from(self.validation_margin) / 100.0
     }
 
-    /// Sets Star Validation Margin, as a physical value, to the nearest raw value, ties to even.
+    /// Set Star Validation Margin, as a physical value to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_validation_margin_physical(&mut self, value: f64) -> Result<(), Error> {
         self.validation_margin = VALIDATION_MARGIN.raw(value)?;
@@ -441,7 +441,7 @@ impl SetStarTrackerConfiguration {
         i32::from(self.validation_margin) * 10
     }
 
-    /// Sets Star Validation Margin in thousandths, to the nearest raw value, ties to even.
+    /// Set Star Validation Margin in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_validation_margin_milli(&mut self, value: i32) -> Result<(), Error> {
         self.validation_margin = VALIDATION_MARGIN.whole(value.into(), 10, 0)?;
@@ -454,8 +454,8 @@ impl SetStarTrackerConfiguration {
         f64::from(self.search_width) / 5.0
     }
 
-    /// Sets Star Tracking Search Width, as a physical value, to the nearest raw value, ties to
-    /// even. [`Error::Range`] if it does not fit or is not finite.
+    /// Set Star Tracking Search Width, as a physical value to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_search_width_physical(&mut self, value: f64) -> Result<(), Error> {
         self.search_width = SEARCH_WIDTH.raw(value)?;
         Ok(())
@@ -473,7 +473,7 @@ impl SetStarTrackerConfiguration {
         i32::from(self.search_width) * 200
     }
 
-    /// Sets Star Tracking Search Width in thousandths, to the nearest raw value, ties to even.
+    /// Set Star Tracking Search Width in thousandths to the nearest raw value, ties to even.
     /// [`Error::Range`] if it does not fit.
     pub fn set_search_width_milli(&mut self, value: i32) -> Result<(), Error> {
         self.search_width = SEARCH_WIDTH.whole(value.into(), 200, 0)?;

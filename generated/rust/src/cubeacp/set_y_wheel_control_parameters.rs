@@ -80,11 +80,11 @@ impl SetYWheelControlParameters {
     /// Reference Wheel Momentum in Nms: must be below this.
     pub const REFERENCE_WHEEL_MOMENTUM_BELOW: f64 = 0.0;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -93,7 +93,7 @@ impl SetYWheelControlParameters {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 20]) -> Self {
@@ -106,11 +106,11 @@ impl SetYWheelControlParameters {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 20], Error> {
         let mut bytes = [0; 20];

@@ -51,11 +51,11 @@ impl Star2BodyVector {
     /// Id of the telemetry.
     pub const ID: u8 = 182;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -64,7 +64,7 @@ impl Star2BodyVector {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -75,11 +75,11 @@ impl Star2BodyVector {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -95,8 +95,8 @@ impl Star2BodyVector {
         f64::from(self.star2_body_x) / 10_000.0
     }
 
-    /// Sets Star2BX, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Star2BX, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_star2_body_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star2_body_x = STAR2_BODY_X.raw(value)?;
         Ok(())
@@ -114,7 +114,7 @@ impl Star2BodyVector {
         i32::from(self.star2_body_x) * 100
     }
 
-    /// Sets Star2BX in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Star2BX in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_star2_body_x_micro(&mut self, value: i32) -> Result<(), Error> {
         self.star2_body_x = STAR2_BODY_X.whole(value.into(), 100, 0)?;
@@ -127,8 +127,8 @@ impl Star2BodyVector {
         f64::from(self.star2_body_y) / 10_000.0
     }
 
-    /// Sets Star2BY, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Star2BY, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_star2_body_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star2_body_y = STAR2_BODY_Y.raw(value)?;
         Ok(())
@@ -146,7 +146,7 @@ impl Star2BodyVector {
         i32::from(self.star2_body_y) * 100
     }
 
-    /// Sets Star2BY in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Star2BY in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_star2_body_y_micro(&mut self, value: i32) -> Result<(), Error> {
         self.star2_body_y = STAR2_BODY_Y.whole(value.into(), 100, 0)?;
@@ -159,8 +159,8 @@ impl Star2BodyVector {
         f64::from(self.star2_body_z) / 10_000.0
     }
 
-    /// Sets Star2BZ, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Star2BZ, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_star2_body_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star2_body_z = STAR2_BODY_Z.raw(value)?;
         Ok(())
@@ -178,7 +178,7 @@ impl Star2BodyVector {
         i32::from(self.star2_body_z) * 100
     }
 
-    /// Sets Star2BZ in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Star2BZ in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_star2_body_z_micro(&mut self, value: i32) -> Result<(), Error> {
         self.star2_body_z = STAR2_BODY_Z.whole(value.into(), 100, 0)?;

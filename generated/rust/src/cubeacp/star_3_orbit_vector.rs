@@ -51,11 +51,11 @@ impl Star3OrbitVector {
     /// Id of the telemetry.
     pub const ID: u8 = 186;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -64,7 +64,7 @@ impl Star3OrbitVector {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -75,11 +75,11 @@ impl Star3OrbitVector {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -95,8 +95,8 @@ impl Star3OrbitVector {
         f64::from(self.star3_orbit_x) / 10_000.0
     }
 
-    /// Sets Star3OX, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Star3OX, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_star3_orbit_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star3_orbit_x = STAR3_ORBIT_X.raw(value)?;
         Ok(())
@@ -114,7 +114,7 @@ impl Star3OrbitVector {
         i32::from(self.star3_orbit_x) * 100
     }
 
-    /// Sets Star3OX in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Star3OX in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_star3_orbit_x_micro(&mut self, value: i32) -> Result<(), Error> {
         self.star3_orbit_x = STAR3_ORBIT_X.whole(value.into(), 100, 0)?;
@@ -127,8 +127,8 @@ impl Star3OrbitVector {
         f64::from(self.star3_orbit_y) / 10_000.0
     }
 
-    /// Sets Star3OY, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Star3OY, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_star3_orbit_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star3_orbit_y = STAR3_ORBIT_Y.raw(value)?;
         Ok(())
@@ -146,7 +146,7 @@ impl Star3OrbitVector {
         i32::from(self.star3_orbit_y) * 100
     }
 
-    /// Sets Star3OY in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Star3OY in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_star3_orbit_y_micro(&mut self, value: i32) -> Result<(), Error> {
         self.star3_orbit_y = STAR3_ORBIT_Y.whole(value.into(), 100, 0)?;
@@ -159,8 +159,8 @@ impl Star3OrbitVector {
         f64::from(self.star3_orbit_z) / 10_000.0
     }
 
-    /// Sets Star3OZ, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
-    /// if it does not fit or is not finite.
+    /// Set Star3OZ, as a physical value to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_star3_orbit_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star3_orbit_z = STAR3_ORBIT_Z.raw(value)?;
         Ok(())
@@ -178,7 +178,7 @@ impl Star3OrbitVector {
         i32::from(self.star3_orbit_z) * 100
     }
 
-    /// Sets Star3OZ in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// Set Star3OZ in millionths to the nearest raw value, ties to even. [`Error::Range`] if it
     /// does not fit.
     pub fn set_star3_orbit_z_micro(&mut self, value: i32) -> Result<(), Error> {
         self.star3_orbit_z = STAR3_ORBIT_Z.whole(value.into(), 100, 0)?;

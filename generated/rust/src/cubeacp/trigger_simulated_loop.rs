@@ -363,11 +363,11 @@ impl TriggerSimulatedLoop {
     /// Id of the telecommand.
     pub const ID: u8 = 19;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -376,7 +376,7 @@ impl TriggerSimulatedLoop {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 127]) -> Self {
@@ -445,11 +445,11 @@ impl TriggerSimulatedLoop {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 127], Error> {
         let mut bytes = [0; 127];
@@ -523,7 +523,7 @@ impl TriggerSimulatedLoop {
         f64::from(self.x_pos_standard_deviation) / 10.0
     }
 
-    /// Sets X-pos Standard Deviation in m, to the nearest raw value, ties to even. [`Error::Range`]
+    /// Set X-pos Standard Deviation in m to the nearest raw value, ties to even. [`Error::Range`]
     /// if it does not fit or is not finite.
     pub fn set_x_pos_standard_deviation_m(&mut self, value: f64) -> Result<(), Error> {
         self.x_pos_standard_deviation = X_POS_STANDARD_DEVIATION.raw(value)?;
@@ -542,8 +542,8 @@ impl TriggerSimulatedLoop {
         i32::from(self.x_pos_standard_deviation) * 100
     }
 
-    /// Sets X-pos Standard Deviation in mm, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit.
+    /// Set X-pos Standard Deviation in mm to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit.
     pub fn set_x_pos_standard_deviation_mm(&mut self, value: i32) -> Result<(), Error> {
         self.x_pos_standard_deviation = X_POS_STANDARD_DEVIATION.whole(value.into(), 100, 0)?;
         Ok(())
@@ -555,7 +555,7 @@ impl TriggerSimulatedLoop {
         f64::from(self.y_pos_standard_deviation) / 10.0
     }
 
-    /// Sets Y-pos Standard Deviation in m, to the nearest raw value, ties to even. [`Error::Range`]
+    /// Set Y-pos Standard Deviation in m to the nearest raw value, ties to even. [`Error::Range`]
     /// if it does not fit or is not finite.
     pub fn set_y_pos_standard_deviation_m(&mut self, value: f64) -> Result<(), Error> {
         self.y_pos_standard_deviation = Y_POS_STANDARD_DEVIATION.raw(value)?;
@@ -574,8 +574,8 @@ impl TriggerSimulatedLoop {
         i32::from(self.y_pos_standard_deviation) * 100
     }
 
-    /// Sets Y-pos Standard Deviation in mm, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit.
+    /// Set Y-pos Standard Deviation in mm to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit.
     pub fn set_y_pos_standard_deviation_mm(&mut self, value: i32) -> Result<(), Error> {
         self.y_pos_standard_deviation = Y_POS_STANDARD_DEVIATION.whole(value.into(), 100, 0)?;
         Ok(())
@@ -587,7 +587,7 @@ impl TriggerSimulatedLoop {
         f64::from(self.z_pos_standard_deviation) / 10.0
     }
 
-    /// Sets Z-pos Standard Deviation in m, to the nearest raw value, ties to even. [`Error::Range`]
+    /// Set Z-pos Standard Deviation in m to the nearest raw value, ties to even. [`Error::Range`]
     /// if it does not fit or is not finite.
     pub fn set_z_pos_standard_deviation_m(&mut self, value: f64) -> Result<(), Error> {
         self.z_pos_standard_deviation = Z_POS_STANDARD_DEVIATION.raw(value)?;
@@ -606,8 +606,8 @@ impl TriggerSimulatedLoop {
         i32::from(self.z_pos_standard_deviation) * 100
     }
 
-    /// Sets Z-pos Standard Deviation in mm, to the nearest raw value, ties to even.
-    /// [`Error::Range`] if it does not fit.
+    /// Set Z-pos Standard Deviation in mm to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit.
     pub fn set_z_pos_standard_deviation_mm(&mut self, value: i32) -> Result<(), Error> {
         self.z_pos_standard_deviation = Z_POS_STANDARD_DEVIATION.whole(value.into(), 100, 0)?;
         Ok(())

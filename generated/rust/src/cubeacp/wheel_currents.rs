@@ -56,11 +56,11 @@ impl WheelCurrents {
     /// Id of the telemetry.
     pub const ID: u8 = 173;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     #[inline]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         match bytes.try_into() {
@@ -69,7 +69,7 @@ impl WheelCurrents {
         }
     }
 
-    /// Decodes as many bytes as the message has.
+    /// Decode a frame of the correct length.
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
@@ -80,11 +80,11 @@ impl WheelCurrents {
         }
     }
 
-    /// Encodes the message.
+    /// Encode the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field. It is a `Result` as that of every message is.
+    /// Never fails: every value fits into its field. It is a `Result` because all messages have the same interface.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -100,8 +100,8 @@ impl WheelCurrents {
         f64::from(self.wheel1_current) / 100.0
     }
 
-    /// Sets Wheel1Current in mA, to the nearest raw value, ties to even. [`Error::Range`] if it
-    /// does not fit or is not finite.
+    /// Set Wheel1Current in mA to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit or is not finite.
     pub fn set_wheel1_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.wheel1_current = WHEEL1_CURRENT.raw(value)?;
         Ok(())
@@ -119,8 +119,8 @@ impl WheelCurrents {
         i32::from(self.wheel1_current) * 10
     }
 
-    /// Sets Wheel1Current in uA, to the nearest raw value, ties to even. [`Error::Range`] if it
-    /// does not fit.
+    /// Set Wheel1Current in uA to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
     pub fn set_wheel1_current_ua(&mut self, value: i32) -> Result<(), Error> {
         self.wheel1_current = WHEEL1_CURRENT.whole(value.into(), 10, 0)?;
         Ok(())
@@ -132,8 +132,8 @@ impl WheelCurrents {
         f64::from(self.wheel2_current) / 100.0
     }
 
-    /// Sets Wheel2Current in mA, to the nearest raw value, ties to even. [`Error::Range`] if it
-    /// does not fit or is not finite.
+    /// Set Wheel2Current in mA to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit or is not finite.
     pub fn set_wheel2_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.wheel2_current = WHEEL2_CURRENT.raw(value)?;
         Ok(())
@@ -151,8 +151,8 @@ impl WheelCurrents {
         i32::from(self.wheel2_current) * 10
     }
 
-    /// Sets Wheel2Current in uA, to the nearest raw value, ties to even. [`Error::Range`] if it
-    /// does not fit.
+    /// Set Wheel2Current in uA to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
     pub fn set_wheel2_current_ua(&mut self, value: i32) -> Result<(), Error> {
         self.wheel2_current = WHEEL2_CURRENT.whole(value.into(), 10, 0)?;
         Ok(())
@@ -164,8 +164,8 @@ impl WheelCurrents {
         f64::from(self.wheel3_current) / 100.0
     }
 
-    /// Sets Wheel3Current in mA, to the nearest raw value, ties to even. [`Error::Range`] if it
-    /// does not fit or is not finite.
+    /// Set Wheel3Current in mA to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit or is not finite.
     pub fn set_wheel3_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.wheel3_current = WHEEL3_CURRENT.raw(value)?;
         Ok(())
@@ -183,8 +183,8 @@ impl WheelCurrents {
         i32::from(self.wheel3_current) * 10
     }
 
-    /// Sets Wheel3Current in uA, to the nearest raw value, ties to even. [`Error::Range`] if it
-    /// does not fit.
+    /// Set Wheel3Current in uA to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
     pub fn set_wheel3_current_ua(&mut self, value: i32) -> Result<(), Error> {
         self.wheel3_current = WHEEL3_CURRENT.whole(value.into(), 10, 0)?;
         Ok(())

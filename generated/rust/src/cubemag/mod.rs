@@ -20,7 +20,7 @@ pub use self::redundant_magnetometer_measurement::RedundantMagnetometerMeasureme
 mod primary_magnetometer_measurement;
 pub use self::primary_magnetometer_measurement::PrimaryMagnetometerMeasurement;
 
-/// Every telemetry of the node.
+/// Any telemetry message of the node.
 ///
 /// ```
 /// use icd::cubemag::Telemetry;
@@ -44,11 +44,11 @@ pub enum Telemetry {
 }
 
 impl Telemetry {
-    /// Decodes the telemetry of that id.
+    /// Decode the telemetry frame with this id.
     ///
     /// # Errors
     ///
-    /// [`Error::UnknownId`] if there is none, [`Error::Length`] if it has another length.
+    /// [`Error::UnknownId`] if there is no such message, [`Error::Length`] if the frame has the wrong length.
     pub fn from_bytes(id: u8, bytes: &[u8]) -> Result<Self, Error> {
         Ok(match id {
             State::ID => match bytes.try_into() {
@@ -71,11 +71,11 @@ impl Telemetry {
         })
     }
 
-    /// Encodes it to the beginning of `buffer` and says how many bytes it has.
+    /// Encode the message to the beginning of `buffer` and return the number of bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if the buffer is too short, [`Error::Range`] if a value does not fit.
+    /// [`Error::Length`] if the buffer is too small, [`Error::Range`] if a value does not fit into its field.
     pub fn write_to(&self, buffer: &mut [u8]) -> Result<usize, Error> {
         match self {
             Self::State(message) => write_to(buffer, &message.to_bytes()?),
@@ -87,7 +87,7 @@ impl Telemetry {
         }
     }
 
-    /// The id.
+    /// Return the id.
     #[must_use]
     pub const fn id(&self) -> u8 {
         match self {
@@ -98,7 +98,7 @@ impl Telemetry {
         }
     }
 
-    /// Length in bytes, without the id.
+    /// Return the length in bytes, without the id.
     #[must_use]
     pub const fn length(&self) -> usize {
         match self {
@@ -109,7 +109,7 @@ impl Telemetry {
         }
     }
 
-    /// Name in the ICD.
+    /// Return the name in the ICD.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -121,7 +121,7 @@ impl Telemetry {
     }
 }
 
-/// Its name and the values of its fields: physical ones, with their units.
+/// Show the name and the values of the fields, physical values with their units.
 impl ::core::fmt::Display for Telemetry {
     fn fmt(&self, out: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
         match self {

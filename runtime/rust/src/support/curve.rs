@@ -1,4 +1,5 @@
-//! Curves, which are computed in doubles: Horner's rule, every difference, product and sum rounded.
+//! Calibration curves, computed in doubles by Horner's rule. Every difference, product and sum is
+//! rounded.
 
 use super::Error;
 

@@ -1,6 +1,6 @@
-//! Values that are derived from several fields, in doubles: every step is rounded.
+//! Values derived from several fields, computed in doubles. Every step is rounded.
 
-/// A value that is no number has always the same bits.
+/// Replace any NaN by the NaN with fixed bits, so that results are the same on all targets.
 pub(crate) fn quiet(value: f64) -> f64 {
     if value.is_nan() {
         f64::NAN

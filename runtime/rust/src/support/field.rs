@@ -1,14 +1,14 @@
-//! Fields as data: place, unit, scale and limits.
+//! Fields as data: position, unit, scale and limits.
 
 use super::{Curve, Error, Message, Scale, Wide};
 use core::fmt::{Formatter, Result as Shown};
 
-/// What the ICD says of a field.
+/// Description of a field.
 ///
 /// ```
 /// use icdgen_runtime::{Field, Message};
 ///
-/// /// The heads of a table's columns.
+/// /// Returns the column headers of a table.
 /// fn heads<M: Message>() -> Vec<String> {
 ///     let head = |field: &Field| format!("{} ({})", field.name, field.unit);
 ///     M::FIELDS.iter().map(head).collect()
@@ -17,19 +17,20 @@ use core::fmt::{Formatter, Result as Shown};
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Field {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     pub name: &'static str,
-    /// Its first bit in the frame; behind the longest one, if only the length of the frame tells its value.
+    /// First bit in the frame; beyond the frame if the frame length gives the value.
     pub at: usize,
-    /// How many bits it has; of an array, each element.
+    /// Size in bits; for an array, of each element.
     pub bits: usize,
-    /// How many elements an array has, or can have; 1 if it is none.
+    /// Number of elements of an array, at most; 1 for other fields.
     pub count: usize,
-    /// The unit of the physical value; empty without one.
+    /// Unit of the physical value; empty if there is none.
     pub unit: &'static str,
-    /// Limits of the physical value (of the raw value where there is no scale): `min`, `above`, `max`, `below`.
+    /// Limits of the physical value, or of the raw value if the field has no scale: `min`, `above`,
+    /// `max`, `below`.
     pub limits: &'static [(&'static str, f64)],
-    /// What a struct is made of, with places in it; empty of what is none.
+    /// Fields of a struct, with positions in the struct; empty for other fields.
     pub fields: &'static [Field],
     is_text: bool,
     scale: Option<Formula>,
@@ -42,7 +43,8 @@ enum Formula {
     Curve(&'static Curve),
 }
 
-/// Whether a float is a special value, which no comparison says of NaN: all NaNs are the same here, and both zeros.
+/// Return whether a float equals a special value. Unlike with `==`, any NaN equals any other NaN.
+/// Both zeros are equal.
 #[must_use]
 #[allow(clippy::float_cmp)] // special values are exact
 pub fn is_special<T: Into<f64>>(value: T, special: T) -> bool {
@@ -105,7 +107,8 @@ impl Field {
         self
     }
 
-    /// Whether a physical value (a raw one where there is no scale) keeps the limits; NaN keeps none.
+    /// Return whether a value is within the limits. `value` is physical, or raw if the field has no
+    /// scale. NaN is never within a limit.
     #[must_use]
     pub fn allows(&self, value: f64) -> bool {
         self.limits.iter().all(|&(kind, limit)| match kind {
@@ -116,7 +119,8 @@ impl Field {
         })
     }
 
-    /// The physical value of a raw one, the double nearest to it but of a curve; None without a formula.
+    /// Return the physical value of a raw value, correctly rounded unless the field has a
+    /// calibration curve; None if the field has no scale.
     #[must_use]
     pub fn physical(&self, raw: i64) -> Option<f64> {
         self.converted(raw.into())
@@ -137,11 +141,12 @@ impl Field {
         }
     }
 
-    /// The raw value nearest to a physical one, ties to even; None without a formula, or where the field is a float.
+    /// Return the raw value nearest to a physical value, ties to even; None if the field has no
+    /// scale or is a float.
     ///
     /// # Errors
     ///
-    /// [`Error::Range`] if it does not fit or is not finite.
+    /// [`Error::Range`] if the value is out of range or not finite.
     #[must_use]
     pub fn raw(&self, physical: f64) -> Option<Result<i128, Error>> {
         Some(match self.scale? {

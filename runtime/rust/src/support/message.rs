@@ -1,4 +1,4 @@
-//! What all messages have in common, for code that is generic over them.
+//! Common traits of all messages, for generic code.
 
 use super::{Error, Field};
 use core::fmt::{Debug, Display};
@@ -8,33 +8,34 @@ use core::fmt::{Debug, Display};
 /// ```
 /// use icdgen_runtime::{Error, Message};
 ///
-/// /// Frames of one kind that lie one behind the other.
+/// /// Decodes consecutive frames of one message.
 /// fn all<M: Message>(bytes: &[u8]) -> Result<Vec<M>, Error> {
 ///     bytes.chunks(M::LENGTH).map(M::from_bytes).collect()
 /// }
 /// ```
 pub trait Message: Copy + Debug + Display + Sized {
-    /// What the ICD calls it.
+    /// Name in the ICD.
     const NAME: &'static str;
-    /// Length in bytes, without the id; of the longest frame, where they differ.
+    /// Length of a frame in bytes, without the id; of the longest frame, if frames differ in
+    /// length.
     const LENGTH: usize;
-    /// Its fields, in the order of the ICD.
+    /// Fields in the order of the ICD.
     const FIELDS: &'static [Field];
-    /// As many bytes as it has.
+    /// Type of an encoded frame.
     type Bytes: AsRef<[u8]> + Copy;
 
-    /// Decodes a frame: exactly [`Self::LENGTH`] bytes, unless frames differ in length.
+    /// Decode a frame of exactly [`Self::LENGTH`] bytes, unless frames differ in length.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if there are more or fewer.
+    /// [`Error::Length`] if the frame has the wrong length.
     fn from_bytes(bytes: &[u8]) -> Result<Self, Error>;
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encode the message; reserved bits are 0.
     ///
     /// # Errors
     ///
-    /// [`Error::Range`] if a value does not fit its field; never where every value does.
+    /// [`Error::Range`] if a value does not fit into its field.
     fn to_bytes(&self) -> Result<Self::Bytes, Error>;
 }
 
@@ -48,7 +49,8 @@ pub trait Message: Copy + Debug + Display + Sized {
 /// }
 /// ```
 pub trait Telemetry: Message {
-    /// The id that requests it, in 32 bits whatever the node's ids have: the constants of the type have as many as these.
+    /// Id of the telemetry. It always has 32 bits here; the constants of the type have the size of
+    /// the ids of the node.
     const TELEMETRY_ID: u32;
 }
 
@@ -63,7 +65,8 @@ pub trait Telemetry: Message {
 /// }
 /// ```
 pub trait Telecommand: Message {
-    /// The id that sends it, in 32 bits whatever the node's ids have: the constants of the type have as many as these.
+    /// Id of the telecommand. It always has 32 bits here; the constants of the type have the size
+    /// of the ids of the node.
     const TELECOMMAND_ID: u32;
 }
 
@@ -104,7 +107,7 @@ macro_rules! message {
             }
         }
 
-        /// Its name and the values of its fields: physical ones, with their units.
+        /// Show the name and the values of the fields, physical values with their units.
         impl ::core::fmt::Display for $type {
             fn fmt(&self, out: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
                 #[allow(unused_mut, unused_variables)]
@@ -140,7 +143,7 @@ macro_rules! structure {
             }
         }
 
-        /// Its name and the values of its fields: physical ones, with their units.
+        /// Show the name and the values of the fields, physical values with their units.
         impl ::core::fmt::Display for $type {
             fn fmt(&self, out: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
                 out.write_str(Self::NAME)?;
@@ -191,7 +194,7 @@ macro_rules! enumeration {
             }
         }
 
-        /// What the ICD calls the value; its number if it has no name.
+        /// Show the name of the value in the ICD; its number if it has no name.
         impl ::core::fmt::Display for $type {
             fn fmt(&self, out: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
                 match Self::name(*self) {

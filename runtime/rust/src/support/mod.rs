@@ -1,4 +1,4 @@
-//! What all messages share: the error, enumerations, access to bytes, scale formulas.
+//! Common part of all messages: errors, enumerations, access to bytes, scales.
 
 #![allow(dead_code, unused_imports, unused_macros)] // not every interface needs all of it
 
@@ -37,7 +37,7 @@ pub(crate) use self::tail::{
 pub(crate) use self::text::{text, text_array};
 pub(crate) use self::wide::{Big, Wide};
 
-/// Why bytes are not a message, or a message or value cannot be encoded.
+/// Error of decoding a frame, or of encoding a message or value.
 ///
 /// ```
 /// use icdgen_runtime::Error;
@@ -52,21 +52,21 @@ pub(crate) use self::wide::{Big, Wide};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Error {
-    /// There are more or fewer bytes than the message has, or the buffer has fewer.
+    /// Length mismatch: a frame of the wrong length, or a buffer that is too small.
     Length {
         /// Length of the message in bytes.
         expected: usize,
-        /// Number of bytes that were given.
+        /// Actual number of bytes.
         actual: usize,
     },
-    /// A value does not fit its field, or is not a finite number.
+    /// Value out of range of its field, or not finite.
     Range {
-        /// The field, as the ICD calls it.
+        /// Name of the field in the ICD.
         field: &'static str,
-        /// What it takes, in words.
+        /// Allowed values in words.
         allowed: &'static str,
     },
-    /// The node has no message of that id in that direction.
+    /// The ICD has no message with this id in this direction.
     UnknownId {
         /// The id.
         id: u32,
@@ -78,7 +78,7 @@ impl Error {
         Self::Range { field, allowed }
     }
 
-    /// Out of line, so that it costs a decoder nothing.
+    /// Not inlined, so that decoders stay small.
     #[cold]
     #[inline(never)]
     pub(crate) fn length<T>(expected: usize, actual: usize) -> Result<T, Self> {
@@ -104,12 +104,12 @@ impl core::error::Error for Error {}
 #[cfg(all(feature = "std", not(feature = "core_error")))]
 impl std::error::Error for Error {}
 
-/// An enumeration whose values can be made from every number and back.
+/// An enumeration that can be converted from any number and back.
 ///
 /// ```
 /// use icdgen_runtime::Enumeration;
 ///
-/// /// Whether the ICD has a name for a number.
+/// /// Returns whether the ICD has a name for a number.
 /// fn is_known<E: Enumeration>(raw: E::Raw) -> bool {
 ///     E::from(raw).name().is_some()
 /// }
@@ -117,14 +117,14 @@ impl std::error::Error for Error {}
 pub trait Enumeration:
     Copy + fmt::Debug + fmt::Display + From<Self::Raw> + Into<Self::Raw>
 {
-    /// The integer that holds its values.
+    /// Integer type of the raw values.
     type Raw: Copy + Default + Eq + Hash + fmt::Display;
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Return the name of the value in the ICD; None if it has no name.
     fn name(self) -> Option<&'static str>;
 }
 
-/// A value of an enumeration as it is on the wire, so that every number is kept.
+/// Raw value of an enumeration. Numbers without a name are kept unchanged.
 ///
 /// ```
 /// use icdgen_runtime::{Coded, Enumeration};
@@ -140,32 +140,32 @@ pub trait Enumeration:
 pub struct Coded<E: Enumeration>(E::Raw);
 
 impl<E: Enumeration> Coded<E> {
-    /// From the number on the wire.
+    /// Create from the raw value.
     #[inline]
     pub const fn from_raw(raw: E::Raw) -> Self {
         Self(raw)
     }
 
-    /// The number on the wire.
+    /// Return the raw value.
     #[inline]
     pub const fn raw(self) -> E::Raw {
         self.0
     }
 
-    /// The enumeration's value, to be matched.
+    /// Return the value as enumeration, for `match`.
     #[inline]
     #[must_use]
     pub fn get(self) -> E {
         E::from(self.0)
     }
 
-    /// What the ICD calls the value; None if it has no name.
+    /// Return the name of the value in the ICD; None if it has no name.
     #[must_use]
     pub fn name(self) -> Option<&'static str> {
         self.get().name()
     }
 
-    /// The enumeration's value if it has a name; None for the others.
+    /// Return the value as enumeration; None if it has no name.
     #[must_use]
     pub fn known(self) -> Option<E> {
         self.name().map(|_| self.get())

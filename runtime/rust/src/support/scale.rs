@@ -1,4 +1,4 @@
-//! Scale formulas, in integers of 128 bits.
+//! Scales, computed with 128-bit integers.
 
 use super::Error;
 

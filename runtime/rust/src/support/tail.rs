@@ -1,8 +1,8 @@
-//! Messages whose frames differ in length: each is the beginning of the longest one.
+//! Messages whose frames differ in length. Each frame is a prefix of the longest one.
 
 use super::Error;
 
-/// The bytes of a message, up to `N`.
+/// Encoded frame of up to `N` bytes.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<const N: usize> {
     longest: [u8; N],

@@ -1,4 +1,4 @@
-//! Scale formulas whose numbers have many digits, in integers of 256 bits.
+//! Scales with many digits, computed with 256-bit integers.
 
 use core::cmp::Ordering;
 

@@ -1,4 +1,4 @@
-//! Numbers and bytes, without a way to panic.
+//! Numbers and bytes, without panics.
 
 /// The number that the bytes are.
 pub(crate) fn number(bytes: &[u8], little: bool) -> u64 {

@@ -3,7 +3,7 @@
 use super::link::{CrcForm, Link};
 use super::Error;
 
-/// A CRC that is fed piece by piece.
+/// State of a CRC that is computed piece by piece.
 ///
 /// ```
 /// use icdgen_runtime::wire::link::CrcForm;
@@ -31,7 +31,7 @@ pub struct Crc<'a> {
     fed: bool,
 }
 
-/// What makes a CRC fast: 1 KiB, which may be a `static`.
+/// Lookup table for a fast CRC: 1 KiB, which may be a `static`.
 ///
 /// ```
 /// use icdgen_runtime::wire::link::CrcForm;
@@ -56,7 +56,7 @@ pub struct Crc<'a> {
 pub struct Table([u32; 256]);
 
 impl Table {
-    /// The table of a CRC.
+    /// Compute the table of a CRC.
     #[must_use]
     pub const fn new(form: &CrcForm) -> Self {
         let mut rows = [0; 256];
@@ -83,13 +83,13 @@ const fn shifted(register: u32, polynomial: u32) -> u32 {
 }
 
 impl<'a> Crc<'a> {
-    /// A CRC that is computed bit by bit.
+    /// Create a CRC that is computed bit by bit.
     #[must_use]
     pub const fn new(form: &'a CrcForm) -> Self {
         Self::with(form, None)
     }
 
-    /// A CRC that is computed with the [`Table`] of the same form.
+    /// Create a CRC that is computed with the [`Table`] of the same form.
     #[must_use]
     pub const fn with_table(form: &'a CrcForm, table: &'a Table) -> Self {
         Self::with(form, Some(table))
@@ -130,7 +130,7 @@ impl<'a> Crc<'a> {
         };
     }
 
-    /// The CRC of everything fed so far.
+    /// Return the CRC of all bytes fed so far.
     #[must_use]
     pub const fn result(&self) -> u32 {
         if let (false, Some(value)) = (self.fed, self.form.empty) {
@@ -152,7 +152,7 @@ pub(crate) fn whole(form: &CrcForm, bytes: &[u8]) -> u32 {
     crc.result()
 }
 
-/// The checksum of messages.
+/// Compute the checksum of a message.
 ///
 /// # Errors
 ///
@@ -162,7 +162,7 @@ pub fn crc8(link: &Link, bytes: &[u8]) -> Result<u32, Error> {
     Ok(whole(&form.crc, bytes))
 }
 
-/// The checksum of file blocks.
+/// Compute the checksum of a file or block.
 ///
 /// # Errors
 ///

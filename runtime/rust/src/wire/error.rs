@@ -1,53 +1,53 @@
-//! Why something of the wire layer cannot be done.
+//! Errors of the wire layer.
 
 use core::fmt;
 
-/// Why something cannot be sent, read or begun.
+/// Error of a function of the wire layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Error {
     /// The ICD does not describe this part of the protocol.
     Unsupported,
-    /// The node has no message of that id.
+    /// The node has no message with this id.
     UnknownId {
         /// The id.
         id: u32,
     },
-    /// Another request is going on, or its output has not been taken.
+    /// Another request is in progress, or its output has not been taken completely.
     Busy,
-    /// There are more or fewer bytes than there must be, or a buffer is too small.
+    /// Length mismatch: data of the wrong length, or a buffer that is too small.
     Length {
-        /// Bytes that there must be.
+        /// Expected number of bytes.
         expected: usize,
-        /// Bytes that there are.
+        /// Actual number of bytes.
         actual: usize,
     },
-    /// The data do not fit the packets of a message.
+    /// The data do not fit into the packets of a message.
     TooLong {
-        /// Bytes that fit.
+        /// Largest number of bytes.
         most: usize,
-        /// Bytes that were given.
+        /// Actual number of bytes.
         actual: usize,
     },
-    /// The checksum is wrong.
+    /// Wrong checksum.
     Checksum {
-        /// That of the data.
+        /// Checksum computed from the data.
         expected: u32,
-        /// The one that came.
+        /// Received checksum.
         actual: u32,
     },
-    /// A value does not fit its place, or does not exist.
+    /// Value out of range of its field, or invalid.
     Range {
-        /// What it is a value of.
+        /// Name of the field.
         field: &'static str,
-        /// What it takes, in words; empty where the field of a message does not say it.
+        /// Allowed values in words; may be empty.
         allowed: &'static str,
     },
 }
 
 impl Error {
-    /// A value does not fit its place, which is none of a message.
+    /// Value out of range of a field that does not belong to a message.
     pub(crate) const fn range(field: &'static str) -> Self {
         let allowed = "";
         Self::Range { field, allowed }

@@ -1,4 +1,4 @@
-//! What a client tells.
+//! Events of a client.
 
 use super::link::Reason;
 use super::message::octet;
@@ -7,7 +7,8 @@ use core::fmt;
 use core::marker::PhantomData;
 use core::ops::Deref;
 
-/// What came, or what became of the request. Each request ends in exactly one of the first three.
+/// An event of a client. Each request ends with exactly one of `Done`, `Refused` and `Timeout`,
+/// unless it is cancelled.
 ///
 /// ```
 /// use icdgen_runtime::wire::Event;
@@ -19,100 +20,100 @@ use core::ops::Deref;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Event<'a> {
-    /// The request is done.
+    /// The request succeeded.
     Done {
         /// The id.
         id: u8,
-        /// How often it was sent.
+        /// Number of times the request was sent.
         attempts: u16,
-        /// The frame.
+        /// The telemetry frame; empty for a telecommand.
         data: &'a [u8],
     },
-    /// The node refused the request.
+    /// The node rejected the request (negative acknowledge).
     Refused {
         /// The id.
         id: u8,
-        /// How often it was sent.
+        /// Number of times the request was sent.
         attempts: u16,
         /// The error code; CAN has none.
         code: Option<u32>,
-        /// What the ICD says of the code.
+        /// Meaning of the code in the ICD.
         reason: Option<Reason>,
-        /// The parameter that is wrong; only I2C tells.
+        /// Index of the invalid parameter; only I2C reports it.
         parameter: Option<u32>,
     },
-    /// The node did not answer.
+    /// The node did not reply in time.
     Timeout {
         /// The id.
         id: u8,
-        /// How often it was sent.
+        /// Number of times the request was sent.
         attempts: u16,
     },
-    /// A reply or a packet that cannot be right.
+    /// A reply or a packet is invalid, for example of the wrong length.
     Malformed {
         /// The id.
         id: u32,
     },
-    /// The checksum of a frame is wrong; it is waited on.
+    /// A frame with a wrong checksum; the request continues.
     Checksum {
         /// The id.
         id: u32,
     },
-    /// A frame has no checksum, though it must; it is waited on.
+    /// A frame without the required checksum; the request continues.
     Unchecked {
         /// The id.
         id: u32,
     },
     /// A packet of a file.
     Packet {
-        /// Its number.
+        /// Number of the packet.
         number: u32,
-        /// What it holds.
+        /// Content of the packet.
         data: &'a [u8],
     },
-    /// An unsolicited log, with its id.
+    /// An unsolicited log message.
     Log {
-        /// The message.
+        /// The message; starts with its id.
         message: &'a [u8],
     },
-    /// What nobody waits for, such as a late acknowledge.
+    /// An unexpected message, such as a late acknowledge.
     Stray {
-        /// Its id, where the bus tells it.
+        /// Id of the message, if the bus contains it.
         id: Option<u32>,
         /// Its data.
         data: &'a [u8],
     },
-    /// UART: a message began within another one, which is dropped.
+    /// UART: a message started before the previous one ended, which is dropped.
     UnexpectedStart,
-    /// UART: the escape byte before a byte that has no meaning there.
+    /// UART: invalid byte after the escape byte.
     ProtocolError,
-    /// UART: a message longer than the buffer.
+    /// UART: a message is longer than the buffer.
     Overrun,
-    /// UART: a message without an id.
+    /// UART: an empty message, without an id.
     Empty,
-    /// CAN: a packet that was there already.
+    /// CAN: a packet was received twice.
     Duplicate {
         /// The id.
         id: u32,
     },
-    /// CAN: a message that was given up for want of packets.
+    /// CAN: a message is discarded because packets are missing.
     Incomplete {
         /// The id.
         id: u32,
     },
-    /// CAN: more messages at once than there is room for.
+    /// CAN: no free slot for another message; the packet is dropped.
     Busy {
         /// The id.
         id: u32,
     },
-    /// CAN: a message type that the ICD does not have.
+    /// CAN: the ICD has no such message type.
     UnknownType {
         /// The id.
         id: u32,
     },
 }
 
-/// An event of a client of node `T`; it is used as an [`Event`].
+/// An event of a client of node `T`. It dereferences to [`Event`].
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct NodeEvent<'a, T> {
     event: Event<'a>,
@@ -125,7 +126,7 @@ impl<'a, T> NodeEvent<'a, T> {
         Self { event, node }
     }
 
-    /// The frame as the message that was requested; None if the event is not that it came.
+    /// Return the requested message; None if the event is not the reply to a request for `M`.
     #[must_use]
     pub fn message<M: TelemetryOf<T>>(&self) -> Option<M> {
         match self.event {

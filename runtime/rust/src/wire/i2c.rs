@@ -5,8 +5,8 @@ use super::crc::Crc;
 use super::link::{Checksum, Link};
 use super::Error;
 
-/// Writes a telecommand: id, data and, if asked for, the checksum. It is the same on the UART. Says how
-/// many bytes it has.
+/// Encode a telecommand (id, data and, if `checked`, the checksum) and return the number of bytes.
+/// I2C writes these bytes; the UART frames them.
 ///
 /// # Errors
 ///
@@ -48,7 +48,7 @@ pub fn write(
     Ok(expected)
 }
 
-/// How many bytes to read for a frame.
+/// Return the number of bytes to read for a frame.
 ///
 /// # Errors
 ///
@@ -60,7 +60,7 @@ pub fn read_length(link: &Link, id: u8, checked: bool) -> Result<usize, Error> {
     Ok(message.length + form(link, checked)?.map_or(0, |form| form.bytes))
 }
 
-/// The frame in what was read.
+/// Check the bytes that were read and return the frame at their beginning.
 ///
 /// # Errors
 ///

@@ -1,21 +1,22 @@
-//! Whether the node is the one that this code was generated for.
+//! Identification of the node.
 
 use super::link::{Link, Role};
 use super::Error;
 
-/// What a node says it is.
+/// Identity of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Identity {
-    /// The type of the node.
+    /// Type of the node.
     pub node_type: u32,
-    /// The version of its interface.
+    /// Version of its interface.
     pub interface_version: u32,
-    /// Whether both are those of the ICD, as far as it has them.
+    /// Whether both equal the values of the ICD, if it has them.
     pub matches: bool,
 }
 
-/// What the identification frame says.
+/// Decode an identification frame. Call this first and check `matches` before you use other
+/// messages of the node.
 ///
 /// # Errors
 ///
@@ -24,7 +25,7 @@ pub struct Identity {
 /// ```
 /// use icdgen_runtime::wire::{identify, Error, Link};
 ///
-/// /// Whether the node that sent the frame is the one of this link.
+/// /// Returns whether the node that sent the frame is the node of this link.
 /// fn is_ours(link: &Link, frame: &[u8]) -> Result<bool, Error> {
 ///     Ok(identify(link, frame)?.matches)
 /// }

@@ -6,7 +6,7 @@ use super::message::octet;
 use super::Error;
 use crate::Telemetry;
 
-/// A bit of a mask that is set.
+/// A selected bit of a log mask.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slot {
     /// The bit.
@@ -104,7 +104,7 @@ impl Frame<'_> {
     }
 }
 
-/// The frames in the slots, which fill `data`.
+/// Return the frames in the slots, which fill `data`.
 fn frames<'a>(
     layout: &'a LogMask,
     mask: &'a [u8],
@@ -139,7 +139,8 @@ impl<'a> Entry<'a> {
     }
 }
 
-/// Reads a log file in pieces of any size. `N` bytes must be enough for the header and for an entry.
+/// Reader of a log file in pieces of any size. `N` bytes must be enough for the header and for an
+/// entry.
 ///
 /// ```
 /// use icdgen_runtime::wire::{log, Error, Link};
@@ -163,7 +164,7 @@ pub struct Reader<const N: usize> {
 }
 
 impl<const N: usize> Reader<N> {
-    /// A reader at the beginning of a file.
+    /// Create a reader at the beginning of a file.
     ///
     /// # Errors
     ///

@@ -1,28 +1,28 @@
-//! What messages a client takes: those of its node, which is a type for it.
+//! Types that restrict a client to the messages of its node.
 
 use super::link::Link;
 use crate::{Error, Telecommand, Telemetry};
 use core::marker::PhantomData;
 use core::ops::Deref;
 
-/// Telemetry of node `T`, its own or that of a node that it includes. The generated code says what is.
+/// Telemetry of node `T` or of a node that it includes. Implemented by the generated code.
 pub trait TelemetryOf<T>: Telemetry {
-    /// Reads a frame of its id, which may be that of several messages.
+    /// Decode a frame with the id of this message. Several messages may have the same id.
     ///
     /// # Errors
     ///
-    /// Those of [`Message::from_bytes`](crate::Message::from_bytes); [`Error::UnknownId`] if it is another
-    /// message.
+    /// See [`Message::from_bytes`](crate::Message::from_bytes); also [`Error::UnknownId`] if it is
+    /// another message.
     fn read(bytes: &[u8]) -> Result<Self, Error> {
         Self::from_bytes(bytes)
     }
 }
 
-/// A telecommand of node `T`, its own or that of a node that it includes. The generated code says what is.
+/// Telecommand of node `T` or of a node that it includes. Implemented by the generated code.
 pub trait TelecommandOf<T>: Telecommand {}
 
-/// The link of node `T`: the `LINK` of its module. It is used as a [`Link`], and tells a client whose
-/// messages it takes.
+/// The link of node `T`: the `LINK` of its module. It dereferences to [`Link`]; its type restricts
+/// a client to the messages of the node.
 #[derive(Clone, Copy, Debug)]
 pub struct NodeLink<T> {
     link: Link,
@@ -36,7 +36,8 @@ impl<T> NodeLink<T> {
         Self { link, node }
     }
 
-    /// The same node with other facts of its protocol, such as times.
+    /// Create a link for the same node with a different description of its protocol, for example
+    /// other timeouts.
     #[must_use]
     pub fn changed(&self, change: impl FnOnce(&mut Link)) -> Self {
         let mut link = self.link;
@@ -54,13 +55,13 @@ impl<T> Deref for NodeLink<T> {
     }
 }
 
-/// What a client can be made for: the `LINK` of a node, or any [`Link`], whose client takes requests by
-/// their ids alone.
+/// Links for which a client can be created: the `LINK` of a node, or any [`Link`], whose client
+/// only accepts requests by id.
 pub trait Linked: 'static {
-    /// The node; `()` if it is not known at compile time.
+    /// Type of the node; `()` if it is not known at compile time.
     type Node;
 
-    /// The facts of its protocol.
+    /// Description of the protocol.
     fn link(&'static self) -> &'static Link;
 }
 
@@ -82,7 +83,7 @@ impl<T: 'static> Linked for NodeLink<T> {
     }
 }
 
-/// The id as it is sent; ids of a client's messages have no more than a byte.
+/// Convert an id to the byte that is sent.
 #[inline]
 pub(super) const fn octet(id: u32) -> u8 {
     let [first, ..] = id.to_le_bytes();

@@ -1,13 +1,16 @@
-//! How messages travel: UART, I2C, CAN, checksums, a client, file transfer and logs.
+//! Wire layer: transport of messages over UART, I2C and CAN, checksums, clients, file transfer and
+//! logs.
 //!
-//! Nothing here opens a port, sleeps or looks at a clock: bytes go in, bytes and events come out, the
-//! time is passed in, in milliseconds that may wrap. Nothing allocates or panics. What differs from node
-//! to node is in its [`Link`], the `LINK` of the node's module, which also tells a client whose messages
-//! it takes: those of another node do not compile.
+//! The functions perform no input or output: the application passes received bytes in, and takes
+//! bytes to send and events out. They do not open ports, sleep, read a clock, allocate memory or
+//! panic. The application provides the current time `now` in milliseconds, which may wrap around.
 //!
-//! With the feature `std` there is also a `Session`, for programs that may wait: a client over any port
-//! that reads and writes, and a `stream::Session` over envelopes. With `embedded-io` and `embedded-hal`
-//! clients have a `poll` and a `poll_i2c` over the ports of embedded programs.
+//! The [`Link`] of a node describes its protocol. It is the `LINK` of the module of the node. A
+//! client that is created with it accepts only messages of this node at compile time.
+//!
+//! Feature `std` adds `Session` (and `stream::Session` for messages with header and trailer): a
+//! blocking client over any port that implements `Read` and `Write`. Features `embedded-io` and
+//! `embedded-hal` add the methods `poll` and `poll_i2c` of clients.
 
 mod bits;
 pub mod can;

@@ -1,7 +1,7 @@
 //! Clients over the ports of embedded programs, by the traits of `embedded-io`. Feature `embedded-io`.
 //!
-//! A client's `poll` sends what is to be sent, takes what has come, and comes back. It is called again
-//! and again, with the time in milliseconds, which may wrap, and tells of what happened.
+//! The method `poll` of a client sends pending output, processes received bytes, and returns
+//! without waiting. Call it regularly with the current time in milliseconds, which may wrap around.
 
 use super::{bits, stream, Client, Error, NodeEvent};
 use core::fmt;
@@ -9,13 +9,13 @@ use embedded_io::{Read, ReadReady, Write};
 
 const PIECE: usize = 64; // bytes that are read at once
 
-/// Why a client could not go on.
+/// Error of `poll`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PortError<E> {
     /// The port failed.
     Port(E),
-    /// The client's output does not fit the buffer.
+    /// The output of the client does not fit into the buffer.
     Wire(Error),
 }
 
@@ -29,11 +29,11 @@ impl<E: fmt::Debug> fmt::Display for PortError<E> {
 }
 
 impl<T, const N: usize> Client<T, N> {
-    /// UART: lets time pass, sends what is to be sent, and takes what has come, without waiting for it.
+    /// UART: process timeouts, send pending output and process received bytes, without waiting.
     ///
     /// # Errors
     ///
-    /// [`PortError::Port`]; the request goes on, unless it is cancelled.
+    /// [`PortError::Port`]; the request continues unless it is cancelled.
     pub fn poll<P: Read + ReadReady + Write>(
         &mut self,
         now: u32,
@@ -58,13 +58,13 @@ impl<T, const N: usize> Client<T, N> {
 }
 
 impl<T, const N: usize, const S: usize, const R: usize> stream::Client<T, N, S, R> {
-    /// Lets time pass, sends what is to be sent, and takes what has come, without waiting for it. The
-    /// `line` holds one message as it is sent, with what delimits it.
+    /// Process timeouts, send pending output and process received bytes, without waiting. `line` is
+    /// a buffer for one encoded message.
     ///
     /// # Errors
     ///
-    /// [`PortError::Port`], [`PortError::Wire`] if a message does not fit the `line`; requests go on,
-    /// unless they are cancelled.
+    /// [`PortError::Port`], [`PortError::Wire`] if a message does not fit into `line`; requests
+    /// continue unless they are cancelled.
     pub fn poll<P: Read + ReadReady + Write>(
         &mut self,
         now: u32,
@@ -89,7 +89,7 @@ impl<T, const N: usize, const S: usize, const R: usize> stream::Client<T, N, S, 
     }
 }
 
-/// What has come; None if there is nothing now.
+/// Return the received bytes; None if there are none.
 fn came<'a, P: Read + ReadReady>(
     port: &mut P,
     input: &'a mut [u8; PIECE],

@@ -1,15 +1,15 @@
-//! What can be asked of a node.
+//! Requests to a node.
 
-/// What kind of request it is.
+/// Kind of the request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Direction {
-    /// Something is sent and acknowledged.
+    /// A telecommand is sent.
     Telecommand,
-    /// A frame is asked for.
+    /// Telemetry is requested.
     Telemetry,
 }
 
-/// A request. Times and lengths are looked up by its id.
+/// A request to a node.
 ///
 /// ```
 /// use icdgen_runtime::wire::{Direction, Request};
@@ -19,19 +19,19 @@ pub enum Direction {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Request<'a> {
-    /// What kind of request it is.
+    /// Kind of the request.
     pub direction: Direction,
     /// The id of the message.
     pub id: u8,
     /// The data of a telecommand.
     pub data: &'a [u8],
-    /// Whether it may be sent again although it may have arrived; telemetry and configuration always
-    /// may.
+    /// Whether the client may send it again if the node may already have received it. Telemetry and
+    /// configuration requests are always repeated.
     pub repeat: bool,
 }
 
 impl<'a> Request<'a> {
-    /// A frame is asked for.
+    /// Telemetry is requested.
     #[must_use]
     pub const fn telemetry(id: u8) -> Self {
         Self {
@@ -42,7 +42,7 @@ impl<'a> Request<'a> {
         }
     }
 
-    /// A telecommand, which is sent again only if it did not arrive for certain.
+    /// Create a telecommand. It is sent again only if the node certainly did not receive it.
     #[must_use]
     pub const fn telecommand(id: u8, data: &'a [u8]) -> Self {
         Self {
@@ -54,11 +54,11 @@ impl<'a> Request<'a> {
     }
 }
 
-/// How a request began.
+/// Result of starting a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Started {
-    /// An event will tell how it ended.
+    /// The outcome is reported by an event.
     Waiting,
-    /// It is over: nothing will answer. It counts as done, in one attempt.
+    /// The request is done at once, because it has no acknowledge.
     Done,
 }

@@ -1,4 +1,4 @@
-//! A client over a port that reads and writes, for programs that may wait. Feature `std`.
+//! Blocking client over a port that implements `Read` and `Write`. Feature `std`.
 
 use super::files::{End, Procedure};
 use super::link::{Reason, Settings};
@@ -11,31 +11,31 @@ use std::io::{self, ErrorKind, Read, Write};
 use std::time::Instant;
 use std::vec::Vec;
 
-/// Why a request or a procedure failed.
+/// Failure of a request or procedure.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Failure {
-    /// The port did.
+    /// The port failed.
     Port(io::Error),
-    /// It cannot be asked, or what came is no such message.
+    /// The request is invalid, or the reply cannot be decoded.
     Wire(Error),
-    /// The node refused the request.
+    /// The node rejected the request (negative acknowledge).
     Refused {
         /// The id.
         id: u32,
         /// The error code.
         code: Option<u32>,
-        /// What the ICD says of the code.
+        /// Meaning of the code in the ICD.
         reason: Option<Reason>,
     },
-    /// The node did not answer.
+    /// The node did not reply in time.
     Timeout {
         /// The id.
         id: u32,
-        /// How often it was asked.
+        /// Number of times the request was sent.
         attempts: u16,
     },
-    /// How a procedure ended that was not done.
+    /// The procedure failed in this way.
     Procedure(End),
 }
 
@@ -127,11 +127,12 @@ impl<P: Read + Write> Waiting<P> {
 
 type OnEvent<T> = Box<dyn FnMut(&NodeEvent<'_, T>)>;
 
-/// Asks, and waits for the outcome, over a UART or whatever carries its bytes; `N` is the node's
-/// `LONGEST`, `T` its `Node`.
+/// Blocking client over a UART, or any other port for its bytes. `N` is the constant `LONGEST` and
+/// `T` the type `Node` of the module of the node.
 ///
-/// The port is yours. Its `read` must come back after a while, be it with nothing (`WouldBlock` or
-/// `TimedOut`), for the clock is looked at in between: set a time-out of some milliseconds.
+/// The application opens the port. Set a read timeout of some milliseconds: `read` must return
+/// regularly, even without data (`WouldBlock` or `TimedOut`), because the session checks its clock
+/// between reads.
 ///
 /// ```
 /// use icdgen_runtime::wire::{session::Failure, Session, TelemetryOf};
@@ -151,11 +152,11 @@ pub struct Session<T, P, const N: usize> {
 }
 
 impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
-    /// A session with the node.
+    /// Create a session with the node.
     ///
     /// # Errors
     ///
-    /// As [`Client::uart`].
+    /// See [`Client::uart`].
     pub fn new<L: Linked<Node = T>>(link: &'static L, port: P) -> Result<Self, Error> {
         Ok(Self {
             client: Client::uart(link)?,
@@ -164,28 +165,28 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
         })
     }
 
-    /// The same with checksums, where the ICD has them for the bus.
+    /// Enable optional checksums. Checksums that the ICD requires are always used.
     #[must_use]
     pub fn with_checksums(mut self) -> Self {
         self.client = self.client.with_checksums();
         self
     }
 
-    /// The same with other times than those of the ICD.
+    /// Replace the timeouts and retries of the ICD.
     #[must_use]
     pub fn with_settings(mut self, settings: Settings) -> Self {
         self.client = self.client.with_settings(settings);
         self
     }
 
-    /// The same with someone to tell all that comes, such as logs.
+    /// Set a callback for all events, such as unsolicited logs.
     #[must_use]
     pub fn with_events(mut self, on_event: impl FnMut(&NodeEvent<'_, T>) + 'static) -> Self {
         self.on_event = Box::new(on_event);
         self
     }
 
-    /// Requests telemetry, or reads a setting.
+    /// Request telemetry or read a configuration, and wait for the reply.
     ///
     /// # Errors
     ///
@@ -195,7 +196,7 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
         Ok(M::read(&self.outcome(Started::Waiting)?)?)
     }
 
-    /// Sends a telecommand or a setting, and waits until it is acknowledged, if it is at all.
+    /// Send a telecommand or set a configuration, and wait for the acknowledge if it has one.
     ///
     /// # Errors
     ///
@@ -205,7 +206,7 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
         self.outcome(started).map(|_| ())
     }
 
-    /// Makes any request; the frame that came.
+    /// Send any request, wait for its outcome, and return the received frame.
     ///
     /// # Errors
     ///
@@ -215,7 +216,7 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
         self.outcome(started)
     }
 
-    /// Runs a procedure to its end.
+    /// Run a procedure to its end.
     ///
     /// # Errors
     ///
@@ -238,7 +239,7 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
         }
     }
 
-    /// Takes what has come unasked, after as long as the port's `read` waits.
+    /// Process unsolicited messages. Returns after one `read` of the port.
     ///
     /// # Errors
     ///

@@ -3,7 +3,7 @@
 use super::link::{Link, TimeForm, TimePart};
 use super::Error;
 
-/// A date and time, which may be none that the calendar has.
+/// A date and time. It may be invalid: see [`DosTime::is_valid`].
 ///
 /// ```
 /// use icdgen_runtime::wire::DosTime;
@@ -30,11 +30,11 @@ pub struct DosTime {
 }
 
 impl DosTime {
-    /// The parts of a packed time, whatever they are.
+    /// Unpack a time without checking it.
     ///
     /// # Errors
     ///
-    /// [`Error::Unsupported`] if the ICD does not describe it.
+    /// [`Error::Unsupported`] if the ICD does not describe this part of the protocol.
     pub fn unpack(link: &Link, value: u32) -> Result<Self, Error> {
         let form = form(link)?;
         Ok(Self {
@@ -47,12 +47,12 @@ impl DosTime {
         })
     }
 
-    /// The packed time; what is finer than its resolution is cut off.
+    /// Pack the time, rounded down to the resolution of the format.
     ///
     /// # Errors
     ///
-    /// [`Error::Range`] with the first part that does not exist or does not fit, [`Error::Unsupported`]
-    /// if the ICD does not describe it.
+    /// [`Error::Range`] with the first part that is invalid or does not fit, [`Error::Unsupported`]
+    /// if the ICD does not describe packed time.
     pub fn pack(&self, link: &Link) -> Result<u32, Error> {
         let form = form(link)?;
         if let Some(field) = self.wrong() {
@@ -73,13 +73,13 @@ impl DosTime {
         Ok(packed)
     }
 
-    /// Whether the calendar has it.
+    /// Return whether date and time are valid.
     #[must_use]
     pub fn is_valid(&self) -> bool {
         self.wrong().is_none()
     }
 
-    /// The first part that does not exist.
+    /// Return the first invalid part.
     fn wrong(&self) -> Option<&'static str> {
         if !(1..=12).contains(&self.month) {
             Some("month")

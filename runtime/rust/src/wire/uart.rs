@@ -1,10 +1,10 @@
-//! UART: messages, id first, and a stream of bytes.
+//! UART: framing of messages in a stream of bytes. Messages start with their id.
 
 use super::bits::part;
 use super::link::{Framing, Link};
 use super::Error;
 
-/// Bytes of the message on the line.
+/// Return the size of the framed message in bytes.
 ///
 /// ```
 /// use icdgen_runtime::wire::link::Framing;
@@ -28,12 +28,12 @@ pub fn encoded_length(framing: &Framing, message: &[u8]) -> usize {
     message.len() + escapes.count() + 4
 }
 
-/// Writes the message as it is on the line, and says how many bytes it has.
+/// Frame a message and return the number of bytes written to `out`.
 ///
 /// # Errors
 ///
-/// [`Error::Length`] if there is no message or `out` is too small, [`Error::Unsupported`] if the ICD
-/// describes no framing.
+/// [`Error::Length`] if the message is empty or `out` is too small, [`Error::Unsupported`] if the
+/// ICD describes no framing.
 ///
 /// ```
 /// use icdgen_runtime::wire::{uart, Error, Link};
@@ -122,22 +122,22 @@ impl<'a> Encoder<'a> {
     }
 }
 
-/// What a decoder found.
+/// An event of the decoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event<'a> {
     /// A message, id first.
     Message(&'a [u8]),
-    /// A message began within another one, which is dropped.
+    /// A message started before the previous one ended, which is dropped.
     UnexpectedStart,
-    /// The escape byte before a byte that has no meaning there.
+    /// Invalid byte after the escape byte.
     ProtocolError,
-    /// A message longer than the buffer.
+    /// A message is longer than the buffer.
     Overrun,
-    /// A message without an id.
+    /// An empty message, without an id.
     Empty,
 }
 
-/// Finds the messages in a stream; `N` is the size of its buffer.
+/// Decoder that finds the messages in a stream. `N` is the size of its buffer in bytes.
 ///
 /// ```
 /// use icdgen_runtime::wire::{uart, Error, Link};
@@ -167,7 +167,7 @@ pub struct Decoder<const N: usize> {
 }
 
 impl<const N: usize> Decoder<N> {
-    /// A decoder for messages of at most `N` bytes.
+    /// Create a decoder for messages of at most `N` bytes.
     ///
     /// # Errors
     ///
@@ -176,7 +176,7 @@ impl<const N: usize> Decoder<N> {
         Self::with_limit(link, N)
     }
 
-    /// A decoder for messages of at most `limit` bytes, and of `N`.
+    /// Create a decoder for messages of at most `limit` bytes, which must not exceed `N`.
     ///
     /// # Errors
     ///
@@ -194,19 +194,19 @@ impl<const N: usize> Decoder<N> {
         })
     }
 
-    /// Bytes of the stream that became part of no message.
+    /// Return the number of received bytes that are not part of a message.
     #[must_use]
     pub const fn discarded(&self) -> u64 {
         self.discarded
     }
 
-    /// Bytes of the stream about which nothing is decided yet.
+    /// Return the number of received bytes that may still become part of a message.
     #[must_use]
     pub const fn pending(&self) -> u64 {
         self.run
     }
 
-    /// Takes the next bytes of the stream.
+    /// Pass received bytes to the decoder, in pieces of any size.
     pub fn feed(&mut self, bytes: &[u8], mut on_event: impl FnMut(Event<'_>)) {
         for &byte in bytes {
             self.byte(byte, &mut on_event);
@@ -287,7 +287,7 @@ impl<const N: usize> Decoder<N> {
     }
 }
 
-/// What a message from the node is.
+/// Kind of a message from the node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
     /// A telemetry frame.
@@ -302,7 +302,7 @@ pub enum Kind {
     Other,
 }
 
-/// What a message from the node is, as far as its id and its length tell.
+/// Return the kind of a message from the node, determined from its id and length.
 #[must_use]
 pub fn kind(link: &Link, message: &[u8]) -> Kind {
     let id = match message.first() {

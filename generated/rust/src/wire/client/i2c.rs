@@ -6,13 +6,13 @@ use super::{head, Client, NodeEvent};
 use embedded_hal::i2c::I2c;
 
 impl<T, const N: usize> Client<T, N> {
-    /// I2C: lets time pass, and makes the transactions that are due: a read after its write by a repeated
-    /// start, or after a stop if the ICD says so. One that fails is told to the client, which asks again; so
-    /// does this.
+    /// I2C: process timeouts and perform the pending transactions. A read follows its write with a
+    /// repeated start, or after a stop if the ICD requires it. A failed transaction is passed to
+    /// the client, which tries again.
     ///
     /// # Errors
     ///
-    /// That of the bus, of the last transaction that failed.
+    /// Bus error of the last failed transaction.
     pub fn poll_i2c<B: I2c>(
         &mut self,
         now: u32,

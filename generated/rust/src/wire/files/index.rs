@@ -23,7 +23,7 @@ pub struct IndexEntry<'a> {
     pub meta: &'a [u8],
 }
 
-/// The entries of an index file, one after the other.
+/// Iterator over the entries of an index file.
 ///
 /// ```
 /// use icd::wire::files::IndexEntries;
@@ -41,11 +41,11 @@ pub struct IndexEntries<'a> {
 }
 
 impl<'a> IndexEntries<'a> {
-    /// Reads the content of an index file.
+    /// Create the iterator for the content of an index file.
     ///
     /// # Errors
     ///
-    /// [`Error::Unsupported`] if the ICD does not describe it.
+    /// [`Error::Unsupported`] if the ICD does not describe this part of the protocol.
     pub fn new(link: &'static Link, bytes: &'a [u8]) -> Result<Self, Error> {
         Ok(Self {
             form: link.index.as_ref().ok_or(Error::Unsupported)?,
@@ -54,7 +54,7 @@ impl<'a> IndexEntries<'a> {
         })
     }
 
-    /// Bytes of a truncated last entry.
+    /// Return the number of bytes of a truncated last entry.
     #[must_use]
     pub fn truncated(&self) -> usize {
         let truncated = self.rest.len().checked_rem(self.form.entry_bytes);
@@ -85,7 +85,7 @@ impl<'a> Iterator for IndexEntries<'a> {
 }
 
 impl IndexEntry<'_> {
-    /// Writes the entry to the beginning of `out`, and says how many bytes it has.
+    /// Encode the entry to the beginning of `out` and return the number of bytes.
     ///
     /// # Errors
     ///

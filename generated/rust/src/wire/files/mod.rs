@@ -2,10 +2,10 @@
 
 //! File transfer: procedures over a client, hole maps, and the entries of the index file.
 //!
-//! A [`Procedure`] says which request comes next and is told what became of it.
+//! A [`Procedure`] returns the next request and processes its outcome.
 //!
-//! A refusal with a code that the ICD does not have is taken for a damaged acknowledge, which tells
-//! nothing: what may be repeated is asked again, as often as the client would.
+//! A negative acknowledge with a code that the ICD does not have is treated as damaged: a request
+//! that may be repeated is sent again, as often as the client would.
 
 mod download;
 mod erase;

@@ -87,44 +87,45 @@ impl Operation {
     }
 }
 
-/// Copies a stored program to where it can run.
+/// Copying of a stored program to the memory from which it runs.
 #[derive(Clone, Debug)]
 pub struct ProgramCopy(Operation);
 
 impl ProgramCopy {
-    /// Copies that program.
+    /// Create the procedure for this program.
     ///
     /// # Errors
     ///
-    /// [`Error::Unsupported`] if the node has no such operation, [`Error::Range`] if it may not be asked
-    /// for this program.
+    /// [`Error::Unsupported`] if the node has no such operation, [`Error::Range`] if the program is
+    /// not supported.
     pub fn new(link: &'static Link, program: u8) -> Result<Self, Error> {
         Operation::new(link, link.program_copy.as_ref(), program).map(Self)
     }
 }
 
-/// Reads size and checksum of a stored program.
+/// Reading of size and checksum of a stored program.
 #[derive(Clone, Debug)]
 pub struct ProgramInformation(Operation);
 
 impl ProgramInformation {
-    /// Reads those of that program.
+    /// Create the procedure for this program.
     ///
     /// # Errors
     ///
-    /// [`Error::Unsupported`] if the node has no such operation, [`Error::Range`] if it may not be asked
-    /// for this program.
+    /// [`Error::Unsupported`] if the node has no such operation, [`Error::Range`] if the program is
+    /// not supported.
     pub fn new(link: &'static Link, program: u8) -> Result<Self, Error> {
         Operation::new(link, link.program_information.as_ref(), program).map(Self)
     }
 
-    /// Bytes of the program; None until it is done, or if the ICD has no such field.
+    /// Return the size of the program in bytes; None before the end, or if the ICD has no such
+    /// field.
     #[must_use]
     pub const fn size(&self) -> Option<u32> {
         self.0.size
     }
 
-    /// Its checksum; None until it is done, or if the ICD has no such field.
+    /// Return the checksum of the program; None before the end, or if the ICD has no such field.
     #[must_use]
     pub const fn checksum(&self) -> Option<u32> {
         self.0.checksum

@@ -25,15 +25,15 @@ pub(crate) use self::steps::get;
 /// Everything that differs between the nodes. Each node's is the constant `LINK` of its module.
 #[derive(Clone, Copy, Debug)]
 pub struct Link {
-    /// The node, as the ICD calls it.
+    /// Name of the node in the ICD.
     pub node: &'static str,
-    /// What the node answers when asked for its type.
+    /// Type that the node reports.
     pub node_type: Option<u32>,
-    /// Version of the interface that this code was generated from.
+    /// Version of the interface in the ICD.
     pub interface_version: Option<u32>,
-    /// Bytes of the longest message of either direction, with its id and checksum.
+    /// Size in bytes of the longest message in either direction, with id and checksum.
     pub longest: usize,
-    /// Bytes of the longest message of either direction, without id and checksum.
+    /// Size in bytes of the longest message in either direction, without id and checksum.
     pub longest_data: usize,
     /// Whether the least significant byte of a number comes first.
     pub little: bool,
@@ -43,7 +43,7 @@ pub struct Link {
     pub telecommands: &'static [Form],
     /// The telemetry.
     pub telemetry: &'static [Form],
-    /// How a client waits and tries again, unless it is told otherwise.
+    /// Default timeouts and retries of a client.
     pub client: Settings,
     /// The error codes.
     pub errors: &'static [(u32, Reason)],
@@ -55,13 +55,13 @@ pub struct Link {
     pub i2c_address: Option<u8>,
     /// Whether a read may follow its write on the I2C bus without a stop.
     pub i2c_repeated_start: bool,
-    /// The frame that tells what became of a telecommand, for I2C.
+    /// Frame that reports the result of a telecommand on I2C.
     pub polled: Option<Polled>,
     /// CAN.
     pub can: Option<Can>,
     /// The optional checksum of messages.
     pub checksum: Option<Checksum>,
-    /// The checksum of file blocks.
+    /// Compute the checksum of a file or block.
     pub crc16: Option<CrcForm>,
     /// The mask of a telemetry log.
     pub mask: Option<LogMask>,
@@ -75,39 +75,39 @@ pub struct Link {
     pub index: Option<IndexForm>,
     /// File transfer.
     pub files: Option<Files>,
-    /// How a stored program is copied to where it can run.
+    /// Copying of a stored program to the memory from which it runs.
     pub program_copy: Option<OperationForm>,
-    /// How size and checksum of a stored program are read.
+    /// Reading of size and checksum of a stored program.
     pub program_information: Option<OperationForm>,
     /// The frame that identifies the node.
     pub identification: Option<Step>,
-    /// How long the bootloader waits before it starts the program.
+    /// Time in milliseconds that the bootloader waits before it starts the program.
     pub boot_ms: Option<u32>,
-    /// The envelope of messages: ids then have up to 32 bits, and nothing else of the link is described.
+    /// Framing. If present, ids have up to 32 bits and the other parts are empty.
     pub stream: Option<Stream>,
 }
 
 impl Link {
-    /// The telecommand of that id.
+    /// Return the telecommand with this id.
     #[must_use]
     pub fn telecommand(&self, id: u8) -> Option<&'static Form> {
         self.telecommands.iter().find(|form| form.id == id)
     }
 
-    /// The telemetry of that id.
+    /// Return the telemetry with this id.
     #[must_use]
     pub fn telemetry(&self, id: u8) -> Option<&'static Form> {
         self.telemetry.iter().find(|form| form.id == id)
     }
 
-    /// What the ICD says of an error code.
+    /// Return the meaning of an error code.
     #[must_use]
     pub fn reason(&self, code: u32) -> Option<Reason> {
         let found = self.errors.iter().find(|(known, _)| *known == code);
         found.map(|(_, reason)| *reason)
     }
 
-    /// Whether the code is that of success.
+    /// Return whether the code means success.
     pub(crate) fn is_success(&self, code: u32) -> bool {
         let mut rows = self.errors.iter();
         let none = rows.find(|(_, reason)| *reason == Reason::NoError);
@@ -126,7 +126,7 @@ pub enum Bus {
     Can,
 }
 
-/// Something for each bus.
+/// A value for each bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PerBus<T> {
     /// On the UART.
@@ -138,7 +138,7 @@ pub struct PerBus<T> {
 }
 
 impl<T: Copy> PerBus<T> {
-    /// That of the bus.
+    /// Return the value for a bus.
     pub const fn of(&self, bus: Bus) -> T {
         match bus {
             Bus::Uart => self.uart,
@@ -165,7 +165,7 @@ impl Ids {
     }
 }
 
-/// A message as the wire sees it.
+/// A message with its id and length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Form {
     /// Its id.
@@ -174,11 +174,11 @@ pub struct Form {
     pub length: usize,
     /// Whether a telecommand is acknowledged.
     pub acknowledged: bool,
-    /// Whether it may be sent again although it may have arrived.
+    /// Whether it may be sent again if the node may already have received it.
     pub repeatable: bool,
 }
 
-/// How a client waits and tries again.
+/// Timeouts (in milliseconds) and retries of a client.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
     /// Time-out of a reply.
@@ -203,7 +203,7 @@ pub enum Reason {
     Length,
     /// A parameter is wrong.
     Parameter,
-    /// The checksum is wrong.
+    /// Wrong checksum.
     Checksum,
 }
 
@@ -235,7 +235,7 @@ pub struct Acknowledge {
     pub error_at: usize,
 }
 
-/// The frame that tells what became of a telecommand.
+/// Frame that reports the result of a telecommand.
 #[derive(Clone, Copy, Debug)]
 pub struct Polled {
     /// The telemetry id of the frame.
@@ -246,7 +246,7 @@ pub struct Polled {
     pub processed: Place,
     /// Its error code.
     pub error: Place,
-    /// The parameter that is wrong.
+    /// Index of the invalid parameter.
     pub parameter: Place,
 }
 

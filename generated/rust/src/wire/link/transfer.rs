@@ -19,11 +19,11 @@ pub struct Files {
     pub block_packets: usize,
     /// Most bytes of a block.
     pub block_bytes: usize,
-    /// What heads a download packet on each bus.
+    /// Id of a download packet on each bus.
     pub packet_ids: PerBus<Option<u8>>,
-    /// A bit for each packet of a block.
+    /// Hole map: one bit for each packet of a block.
     pub hole_map: Option<HoleMapForm>,
-    /// The list of files.
+    /// Listing of files.
     pub list: Option<ListForm>,
     /// Download.
     pub download: Option<DownloadForm>,
@@ -35,7 +35,7 @@ pub struct Files {
     pub format: Option<ErasureForm>,
 }
 
-/// A bit for each packet of a block.
+/// Hole map: one bit for each packet of a block.
 #[derive(Clone, Copy, Debug)]
 pub struct HoleMapForm {
     /// Length of the map.
@@ -65,7 +65,7 @@ pub struct MapMessage {
     pub piece: Span,
 }
 
-/// The list of files.
+/// Listing of files.
 #[derive(Clone, Copy, Debug)]
 pub struct ListForm {
     /// Returns to the first file.
@@ -140,7 +140,7 @@ pub struct UploadForm {
     pub destinations: &'static [u8],
 }
 
-/// What a telecommand starts for a stored program, and a frame tells the end of.
+/// An operation on a stored program: a telecommand starts it, and a frame reports its end.
 #[derive(Clone, Copy, Debug)]
 pub struct OperationForm {
     /// Starts it.

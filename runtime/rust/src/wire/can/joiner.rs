@@ -1,4 +1,4 @@
-//! Packets into messages, in any order and from several senders at once.
+//! Assembly of messages from CAN packets, in any order and from several senders at once.
 
 use super::super::bits::{part, pieces, reached};
 use super::super::link::{Can, Extended, Link};
@@ -6,42 +6,42 @@ use super::super::Error;
 use super::transaction::{Key, Transaction};
 use super::{Kind, Message, Packet};
 
-/// What the joiner found.
+/// An event of the joiner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event<'a> {
     /// A message.
     Message(Message<'a>),
-    /// A packet that was there already, dropped.
+    /// A packet was received twice and is dropped.
     Duplicate {
         /// The id of the message.
         id: u32,
         /// The sender's address.
         source: u32,
     },
-    /// A message that was given up for want of packets.
+    /// A message is discarded because packets are missing.
     Incomplete {
         /// The id of the message.
         id: u32,
         /// The sender's address.
         source: u32,
-        /// How many packets were missing.
+        /// Number of missing packets.
         missing: usize,
     },
-    /// A packet that cannot be part of such a message.
+    /// An invalid packet of this message.
     Malformed {
         /// The id of the message.
         id: u32,
         /// The sender's address.
         source: u32,
     },
-    /// More messages at once than there is room for; the packet is dropped.
+    /// No free slot for another message; the packet is dropped.
     Busy {
         /// The id of the message.
         id: u32,
         /// The sender's address.
         source: u32,
     },
-    /// A message type that the ICD does not have.
+    /// The ICD has no such message type.
     UnknownType {
         /// The id of the message.
         id: u32,
@@ -50,12 +50,13 @@ pub enum Event<'a> {
     },
 }
 
-/// Puts messages of at most `N` bytes together, `SENDERS` at once.
+/// Assembles messages of at most `N` bytes from CAN packets, up to `SENDERS` messages at the same
+/// time.
 ///
 /// ```
 /// use icdgen_runtime::wire::can::{Event, Joiner, Packet};
 ///
-/// /// Bytes of data in all messages that these packets make up.
+/// /// Returns the number of data bytes in all messages of these packets.
 /// fn bytes<const N: usize, const SENDERS: usize>(
 ///     joiner: &mut Joiner<N, SENDERS>,
 ///     now: u32,
@@ -86,7 +87,7 @@ pub struct Joiner<const N: usize, const SENDERS: usize> {
 impl<const N: usize, const SENDERS: usize> Joiner<N, SENDERS> {
     const FREE: Option<Transaction<N>> = None;
 
-    /// A joiner of the messages for an address, or of everybody's.
+    /// Create a joiner for messages with this destination address; None: any destination.
     ///
     /// # Errors
     ///
@@ -95,7 +96,7 @@ impl<const N: usize, const SENDERS: usize> Joiner<N, SENDERS> {
         Self::with_senders(link, address, SENDERS)
     }
 
-    /// A joiner with less room than it has.
+    /// Create a joiner that uses only part of its memory.
     ///
     /// # Errors
     ///
@@ -118,12 +119,13 @@ impl<const N: usize, const SENDERS: usize> Joiner<N, SENDERS> {
         })
     }
 
-    /// Gives up what has waited too long for its next packet, in the order in which the messages began.
+    /// Discard messages whose next packet is overdue, oldest first, and report each as
+    /// [`Event::Incomplete`]. `now` is in milliseconds.
     pub fn expire(&mut self, now: u32, mut on_event: impl FnMut(Event<'_>)) {
         self.late(now, &mut on_event);
     }
 
-    /// Takes one packet.
+    /// Pass one received packet to the joiner. `now` is in milliseconds.
     pub fn feed(&mut self, now: u32, packet: &Packet, mut on_event: impl FnMut(Event<'_>)) {
         self.late(now, &mut on_event);
         self.take(now, packet, &mut on_event);

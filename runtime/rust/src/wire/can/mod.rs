@@ -23,7 +23,7 @@ pub enum Kind {
     Refusal,
     /// A request of telemetry.
     Request,
-    /// The frame.
+    /// The telemetry frame; empty for a telecommand.
     Reply,
     /// The request is refused.
     RequestRefusal,
@@ -47,7 +47,7 @@ impl Kind {
 /// A message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Message<'a> {
-    /// What it is.
+    /// Role of the field.
     pub kind: Kind,
     /// The id of the telecommand or telemetry.
     pub id: u32,
@@ -59,7 +59,7 @@ pub struct Message<'a> {
     pub data: &'a [u8],
 }
 
-/// A CAN frame: 29-bit identifier and data.
+/// A CAN frame with a 29-bit identifier.
 ///
 /// ```
 /// use icdgen_runtime::wire::can::Packet;

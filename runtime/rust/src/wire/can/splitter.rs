@@ -1,11 +1,11 @@
-//! A message into its packets.
+//! Splitting of messages into CAN packets.
 
 use super::super::bits::{copy, index, low, part, part_mut, pieces};
 use super::super::link::{Extended, Link};
 use super::super::Error;
 use super::{Message, Packet, PACKET_BYTES};
 
-/// The packets of a message, in the order in which they are sent.
+/// Iterator over the packets of a message, in the order of sending.
 ///
 /// ```
 /// use icdgen_runtime::wire::can::{Message, Packet, Splitter};
@@ -25,7 +25,7 @@ pub struct Splitter<'a> {
 }
 
 impl<'a> Splitter<'a> {
-    /// Splits a message.
+    /// Create the iterator for a message.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! The client: one request at a time, from sending to its outcome, over any bus.
+//! Client that sends one request at a time and reports its outcome, for UART, I2C and CAN.
 
 #[cfg(feature = "embedded-hal")]
 mod i2c;
@@ -16,29 +16,29 @@ use super::uart::{self, Decoder, Encoder};
 use super::{Error, TelecommandOf, TelemetryOf};
 use core::marker::PhantomData;
 
-/// An I2C transaction: a write, then a read of so many bytes.
+/// An I2C transaction: a write, followed by a read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Transaction<'a> {
-    /// What is written.
+    /// Bytes to write.
     pub write: &'a [u8],
-    /// How many bytes are read.
+    /// Number of bytes to read; 0: write only.
     pub read: usize,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
     Idle,
-    /// The reply to the request before may still come.
+    /// A late reply to the previous request may still arrive.
     Hold,
     /// Sent.
     Wait,
-    /// I2C: before the next poll, or before it is sent again.
+    /// I2C: waits before the next poll or the next attempt.
     Pause,
-    /// I2C: the acknowledge frame is requested.
+    /// I2C: waits for the acknowledge frame.
     Poll,
 }
 
-/// What is to be sent.
+/// Output to be sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Output {
     Request,
@@ -52,16 +52,17 @@ enum Port<const N: usize> {
     Can(Joiner<N, 1>),
 }
 
-/// A client of node `T` on a bus; `N` is the node's `LONGEST`. It is made for the `LINK` of the node,
-/// `T` is the type `Node` of the same module: `Client::<Node, LONGEST>::uart(&LINK)`.
+/// A client of node `T` on a bus. `T` is the type `Node` and `N` the constant `LONGEST` of the
+/// module of the node: `Client::<Node, LONGEST>::uart(&LINK)`.
 ///
-/// Bytes, packets or transactions that came are handed over, output is taken, and [`Client::tick`] is
-/// called at the [`Client::deadline`].
+/// The application passes received bytes, packets or results of transactions to the client, takes
+/// its output, and calls [`Client::tick`] at the [`Client::deadline`]. All times `now` are in
+/// milliseconds and may wrap around.
 ///
 /// ```
 /// use icdgen_runtime::wire::{Client, Error, TelemetryOf};
 ///
-/// /// Asks for a frame and hands over what `port` answers to the bytes that it is given.
+/// /// Requests a frame. `port` sends bytes and returns the bytes that were received.
 /// fn asked<T, M: TelemetryOf<T>, const N: usize>(
 ///     client: &mut Client<T, N>,
 ///     mut port: impl FnMut(&[u8]) -> Vec<u8>,
@@ -83,11 +84,12 @@ pub struct Client<T, const N: usize> {
 }
 
 impl<T, const N: usize> Client<T, N> {
-    /// A client on the UART.
+    /// Create a client on the UART with the timeouts of the ICD.
     ///
     /// # Errors
     ///
-    /// [`Error::Unsupported`] if the ICD does not describe it, [`Error::Length`] if `N` is too small.
+    /// [`Error::Unsupported`] if the node is not on this bus, [`Error::Length`] if `N` is too
+    /// small.
     pub fn uart<L: Linked<Node = T>>(link: &'static L) -> Result<Self, Error> {
         let link = link.link();
         Self::new(
@@ -98,11 +100,12 @@ impl<T, const N: usize> Client<T, N> {
         )
     }
 
-    /// A client on I2C, as the master.
+    /// Create a client on I2C, which is the master.
     ///
     /// # Errors
     ///
-    /// [`Error::Unsupported`] if the ICD does not describe it, [`Error::Length`] if `N` is too small.
+    /// [`Error::Unsupported`] if the node is not on this bus, [`Error::Length`] if `N` is too
+    /// small.
     pub fn i2c<L: Linked<Node = T>>(link: &'static L) -> Result<Self, Error> {
         let link = link.link();
         link.i2c_address.ok_or(Error::Unsupported)?;
@@ -110,11 +113,13 @@ impl<T, const N: usize> Client<T, N> {
         Self::new(link, Bus::I2c, Port::I2c, 0)
     }
 
-    /// A client on CAN, with its own address.
+    /// Create a client on CAN. `address` is the CAN address of the client, to which the node
+    /// replies.
     ///
     /// # Errors
     ///
-    /// [`Error::Unsupported`] if the ICD does not describe it, [`Error::Length`] if `N` is too small.
+    /// [`Error::Unsupported`] if the node is not on this bus, [`Error::Length`] if `N` is too
+    /// small.
     pub fn can<L: Linked<Node = T>>(link: &'static L, address: u8) -> Result<Self, Error> {
         let link = link.link();
         let address = address.into();
@@ -140,8 +145,7 @@ impl<T, const N: usize> Client<T, N> {
         })
     }
 
-    /// The same with checksums where the ICD leaves the choice for the bus. Where it demands them, they are
-    /// used in any case.
+    /// Enable optional checksums. Checksums that the ICD requires on the bus are always used.
     #[must_use]
     pub fn with_checksums(mut self) -> Self {
         if let Some(form) = &self.machine.link.checksum {
@@ -151,56 +155,58 @@ impl<T, const N: usize> Client<T, N> {
         self
     }
 
-    /// The same with other times than those of the ICD.
+    /// Replace the timeouts and retries of the ICD.
     #[must_use]
     pub const fn with_settings(mut self, settings: Settings) -> Self {
         self.machine.settings = settings;
         self
     }
 
-    /// When [`Client::tick`] wants to be called at the latest; None: not at all.
+    /// Return the time in milliseconds at which [`Client::tick`] must be called at the latest.
+    /// None: no request is in progress.
     #[must_use]
     pub fn deadline(&self) -> Option<u32> {
         (self.machine.state != State::Idle).then_some(self.machine.until)
     }
 
-    /// Requests telemetry, or configuration, of the node.
+    /// Request telemetry, or read a configuration.
     ///
     /// # Errors
     ///
-    /// As [`Client::start`].
+    /// See [`Client::start`].
     pub fn request<M: TelemetryOf<T>>(&mut self, now: u32) -> Result<(), Error> {
         self.start(now, &Request::telemetry(octet(M::TELEMETRY_ID)))?;
         Ok(())
     }
 
-    /// Sends a telecommand, or configuration, of the node.
+    /// Send a telecommand, or set a configuration.
     ///
     /// # Errors
     ///
-    /// As [`Client::start`]; [`Error::Range`] if a value does not fit.
+    /// See [`Client::start`]; also [`Error::Range`] if a value does not fit into its field.
     pub fn send<M: TelecommandOf<T>>(&mut self, now: u32, message: &M) -> Result<Started, Error> {
         let data = message.to_bytes()?;
         let id = octet(M::TELECOMMAND_ID);
         self.start(now, &Request::telecommand(id, data.as_ref()))
     }
 
-    /// Begins a request.
+    /// Start a request. The data are copied. `now` is in milliseconds.
     ///
     /// # Errors
     ///
-    /// [`Error::UnknownId`] if the node has no such message, [`Error::Busy`] while another request is going
-    /// on or its output has not been taken, [`Error::Length`] if the data have another length.
+    /// [`Error::UnknownId`] if the node has no such message, [`Error::Busy`] if another request is
+    /// in progress or its output has not been taken completely, [`Error::Length`] if the data have
+    /// the wrong length.
     pub fn start(&mut self, now: u32, request: &Request<'_>) -> Result<Started, Error> {
         self.machine.start(now, request)
     }
 
-    /// Begins the next request of a procedure, if it has one and no other is going on; says whether it
-    /// did. What nothing will answer, the procedure is told at once.
+    /// Start the next request of a procedure if there is one and the client is idle. Return whether
+    /// a request was started. A request without acknowledge is reported to the procedure at once.
     ///
     /// # Errors
     ///
-    /// As [`Client::start`].
+    /// See [`Client::start`].
     pub fn advance(
         &mut self,
         now: u32,
@@ -221,7 +227,8 @@ impl<T, const N: usize> Client<T, N> {
         Ok(true)
     }
 
-    /// UART: the next bytes to send, until there are none. No piece holds bytes of two messages.
+    /// UART: return the next bytes to send; None if there is nothing to send. A piece never
+    /// contains bytes of two messages.
     pub fn output(&mut self) -> Option<&[u8]> {
         let machine = &mut self.machine;
         if machine.bus != Bus::Uart {
@@ -241,7 +248,7 @@ impl<T, const N: usize> Client<T, N> {
         }
     }
 
-    /// CAN: the next packet to send, until there is none.
+    /// CAN: return the next packet to send; None if there is nothing to send.
     pub fn output_packet(&mut self) -> Option<Packet> {
         let machine = &mut self.machine;
         if machine.bus != Bus::Can {
@@ -260,8 +267,8 @@ impl<T, const N: usize> Client<T, N> {
         }
     }
 
-    /// I2C: the next transaction, if there is one; [`Client::transferred`] is told what came of each, once
-    /// and in this order.
+    /// I2C: return the next transaction; None if there is none. Call [`Client::transferred`]
+    /// exactly once for each transaction, in the same order.
     pub fn output_transaction(&mut self) -> Option<Transaction<'_>> {
         let machine = &mut self.machine;
         if machine.bus != Bus::I2c {
@@ -273,18 +280,19 @@ impl<T, const N: usize> Client<T, N> {
         Some(machine.transaction(output))
     }
 
-    /// Gives up the request, without an event, and what of it has not been taken: the next one may begin. A
-    /// late reply to this one is [`Event::Stray`].
+    /// Cancel the request without an event, and drop its remaining output. The next request may
+    /// then be started. A late reply to the cancelled request is reported as [`Event::Stray`].
     pub fn cancel(&mut self) {
         self.machine.cancel();
     }
 
-    /// Lets time pass.
+    /// Process timeouts: send again or end the request whose time is up. Call at the deadline at
+    /// the latest; calling more often is harmless. `now` is in milliseconds.
     pub fn tick(&mut self, now: u32, mut on_event: impl FnMut(NodeEvent<'_, T>)) {
         self.pass(now, &mut |event| on_event(NodeEvent::new(event)));
     }
 
-    /// UART: takes the next bytes of the stream.
+    /// UART: pass received bytes to the client, in pieces of any size.
     pub fn received(&mut self, now: u32, bytes: &[u8], mut on_event: impl FnMut(NodeEvent<'_, T>)) {
         let mut on_event = |event: Event<'_>| on_event(NodeEvent::new(event));
         self.pass(now, &mut on_event);
@@ -300,7 +308,7 @@ impl<T, const N: usize> Client<T, N> {
         }
     }
 
-    /// CAN: takes a packet.
+    /// CAN: pass a received packet to the client.
     pub fn packet(
         &mut self,
         now: u32,
@@ -318,8 +326,9 @@ impl<T, const N: usize> Client<T, N> {
         }
     }
 
-    /// I2C: takes what was read in the oldest transaction that was taken and not told of; None: it failed.
-    /// What a request owed that is over is [`Event::Stray`].
+    /// I2C: pass the result of the oldest unfinished transaction to the client: the bytes that were
+    /// read, or None if the transaction failed. If the request has already ended, the result is
+    /// reported as [`Event::Stray`].
     pub fn transferred(
         &mut self,
         now: u32,
@@ -329,7 +338,7 @@ impl<T, const N: usize> Client<T, N> {
         let mut on_event = |event: Event<'_>| on_event(NodeEvent::new(event));
         let awaited = self.machine.owed == 1 && self.machine.awaits_transfer();
         self.machine.owed = self.machine.owed.saturating_sub(1);
-        self.pass(now, &mut on_event); // may end that request
+        self.pass(now, &mut on_event); // may end this request
         let awaited = awaited && self.machine.awaits_transfer();
         self.machine.transferred(now, bytes, awaited, &mut on_event);
     }
@@ -342,7 +351,7 @@ impl<T, const N: usize> Client<T, N> {
     }
 }
 
-/// An event of the joiner that tells of an error.
+/// Convert an error event of the joiner.
 fn trouble(found: &can::Event<'_>) -> Event<'static> {
     match *found {
         can::Event::Message(can::Message { id, .. }) | can::Event::Malformed { id, .. } => {

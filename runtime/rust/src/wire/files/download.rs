@@ -1,4 +1,4 @@
-//! A file from the node.
+//! File download.
 
 use super::super::bits::{copy, count, head, index, number, part, part_mut, pieces, reached};
 use super::super::crc;
@@ -20,7 +20,7 @@ enum State {
     Silence,
 }
 
-/// A file from the node, block by block.
+/// Download of a file block by block.
 #[derive(Debug)]
 pub struct Download<'a, F> {
     core: Core,
@@ -49,14 +49,15 @@ pub struct Download<'a, F> {
 }
 
 impl<'a, F: FnMut(u32, &[u8])> Download<'a, F> {
-    /// Downloads a file of that type and counter, and calls `on_block` with the offset and the bytes of
-    /// each block. Without a size it downloads as much as there is, which the index file needs. A block
-    /// has as many bytes as the buffer, at most those of the ICD.
+    /// Create a download of the file with this type and counter. Calls `on_block` with the offset
+    /// and the bytes of each block. Without a size, it downloads up to the end of the file; use
+    /// this for the index file. The block size is the size of the buffer, at most the block size of
+    /// the ICD.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if the buffer holds no packet, [`Error::Unsupported`] if the ICD does not describe
-    /// it.
+    /// [`Error::Length`] if the buffer is smaller than a packet, [`Error::Unsupported`] if the node
+    /// has no downloads on this bus.
     pub fn new(
         link: &'static Link,
         bus: Bus,
@@ -104,14 +105,14 @@ impl<'a, F: FnMut(u32, &[u8])> Download<'a, F> {
         })
     }
 
-    /// The same with smaller blocks.
+    /// Use smaller blocks, of this number of bytes.
     #[must_use]
     pub fn with_block(mut self, bytes: u32) -> Self {
         self.block = bytes.min(self.block).max(1);
         self
     }
 
-    /// Bytes that were delivered, and in all, if that is known.
+    /// Return the number of bytes delivered, and the file size if it is known.
     #[must_use]
     pub const fn progress(&self) -> (u32, Option<u32>) {
         (self.offset, self.size)

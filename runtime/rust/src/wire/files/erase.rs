@@ -1,4 +1,4 @@
-//! Erasing and formatting.
+//! Deletion of files and formatting of the medium.
 
 use super::super::link::{ErasureForm, Link, Role};
 use super::super::Error;
@@ -63,34 +63,35 @@ impl Erasure {
     }
 }
 
-/// Deletes a file, or all of them.
+/// Deletion of one file or all files.
 #[derive(Clone, Debug)]
 pub struct Erase(Erasure);
 
 impl Erase {
-    /// Deletes one file.
+    /// Create the deletion of one file.
     ///
     /// # Errors
     ///
-    /// [`Error::Unsupported`] if the ICD does not describe it.
+    /// [`Error::Unsupported`] if the ICD does not describe this part of the protocol.
     pub fn file(link: &'static Link, kind: u8, counter: u8) -> Result<Self, Error> {
         Self::new(link, kind, counter, false)
     }
 
-    /// Deletes all files.
+    /// Create the deletion of all files. It ends when the node is no longer busy.
     ///
     /// # Errors
     ///
-    /// [`Error::Unsupported`] if the ICD does not describe it.
+    /// [`Error::Unsupported`] if the ICD does not describe this part of the protocol.
     pub fn all(link: &'static Link) -> Result<Self, Error> {
         Self::new(link, 0, 0, true)
     }
 
-    /// Deletes one file, or all: then it is done when the node is no longer busy.
+    /// Create the deletion of one file, or of all files if `all` is true. Deleting all files ends
+    /// when the node is no longer busy.
     ///
     /// # Errors
     ///
-    /// [`Error::Unsupported`] if the ICD does not describe it.
+    /// [`Error::Unsupported`] if the ICD does not describe this part of the protocol.
     pub fn new(link: &'static Link, kind: u8, counter: u8, all: bool) -> Result<Self, Error> {
         let files = link.files.as_ref().ok_or(Error::Unsupported)?;
         let form = files.erase.as_ref().ok_or(Error::Unsupported)?;
@@ -112,7 +113,7 @@ impl Format {
     ///
     /// # Errors
     ///
-    /// [`Error::Unsupported`] if the ICD does not describe it.
+    /// [`Error::Unsupported`] if the ICD does not describe this part of the protocol.
     pub fn new(link: &'static Link) -> Result<Self, Error> {
         let files = link.files.as_ref().ok_or(Error::Unsupported)?;
         let form = files.format.as_ref().ok_or(Error::Unsupported)?;

@@ -1,17 +1,17 @@
-//! A bit for each packet of a block.
+//! Hole map: one bit for each packet of a block.
 
 use super::super::bits::{copy, head, index, part};
 use super::super::link::{Files, HoleMapForm, Link};
 use super::super::links::MAP_BYTES;
 use super::super::Error;
 
-/// Which packets of a block are there, in the form in which the node wants it.
+/// Map of the received packets of a block, in the format of the node.
 ///
 /// ```
 /// use icdgen_runtime::wire::files::HoleMap;
 /// use icdgen_runtime::wire::{Error, Link};
 ///
-/// /// The packets of a block of eight that are still to come.
+/// /// Returns the missing packets of a block of eight.
 /// fn missing(link: &Link, seen: &[u32]) -> Result<Vec<u32>, Error> {
 ///     let mut map = HoleMap::new(link, 8)?;
 ///     for number in seen {
@@ -32,12 +32,12 @@ pub struct HoleMap {
 }
 
 impl HoleMap {
-    /// The map of a block of so many packets, none of which was received.
+    /// Create the map of a block with all packets missing.
     ///
     /// # Errors
     ///
-    /// [`Error::Range`] if a block has not so many packets, [`Error::Unsupported`] if the ICD does not
-    /// describe hole maps.
+    /// [`Error::Range`] if a block cannot have so many packets, [`Error::Unsupported`] if the ICD
+    /// does not describe hole maps.
     pub fn new(link: &Link, packets: usize) -> Result<Self, Error> {
         let files = link.files.as_ref().ok_or(Error::Unsupported)?;
         let form = files.hole_map.as_ref().ok_or(Error::Unsupported)?;
@@ -53,12 +53,12 @@ impl HoleMap {
         Ok(map)
     }
 
-    /// The map of a block of so many packets as the node gave it.
+    /// Create the map of a block from the bytes that the node sent.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if it has another length, [`Error::Range`] if a block has not so many packets,
-    /// [`Error::Unsupported`] if the ICD does not describe hole maps.
+    /// [`Error::Length`] if the map has the wrong length, [`Error::Range`] if a block cannot have
+    /// so many packets, [`Error::Unsupported`] if the ICD does not describe hole maps.
     pub fn from_bytes(link: &Link, packets: usize, bytes: &[u8]) -> Result<Self, Error> {
         let files = link.files.as_ref().ok_or(Error::Unsupported)?;
         let form = files.hole_map.as_ref().ok_or(Error::Unsupported)?;
@@ -86,11 +86,11 @@ impl HoleMap {
         })
     }
 
-    /// Notes that a packet was received.
+    /// Mark a packet as received.
     ///
     /// # Errors
     ///
-    /// [`Error::Range`] if the block does not have this packet.
+    /// [`Error::Range`] if the block has no such packet.
     pub fn set(&mut self, number: u32) -> Result<(), Error> {
         let error = Error::range("number");
         let bit = index(number.checked_sub(self.first).ok_or(error)?);
@@ -101,13 +101,13 @@ impl HoleMap {
         Ok(())
     }
 
-    /// The whole map.
+    /// Return the map as bytes.
     #[must_use]
     pub fn as_bytes(&self) -> &[u8] {
         head(&self.bytes, self.size)
     }
 
-    /// The map in the pieces that the messages carry.
+    /// Return the pieces of the map, one for each message.
     pub fn messages(&self) -> impl Iterator<Item = &[u8]> {
         self.as_bytes().chunks(self.message_bytes.max(1))
     }
@@ -121,7 +121,7 @@ impl HoleMap {
         )
     }
 
-    /// Numbers of the packets that were not received, rising.
+    /// Return the numbers of the missing packets, in ascending order.
     pub fn missing(&self) -> impl Iterator<Item = u32> + '_ {
         let numbers = (0..self.packets).zip(self.first..);
         let missing = numbers.filter(move |(bit, _)| self.read(*bit) != self.received);

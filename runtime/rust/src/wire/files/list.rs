@@ -1,4 +1,4 @@
-//! The list of files.
+//! Listing of files.
 
 use super::super::bits::{copy, head};
 use super::super::link::{Link, ListForm, Role};
@@ -31,7 +31,7 @@ enum State {
     Advance,
 }
 
-/// Lists the files of the node, one after the other.
+/// Listing of the files of the node.
 ///
 /// ```
 /// use icdgen_runtime::wire::files::{Entry, List};
@@ -53,11 +53,11 @@ pub struct List<F> {
 }
 
 impl<F: FnMut(Entry)> List<F> {
-    /// Calls `on_entry` for each file.
+    /// Create a listing that calls `on_entry` for each file.
     ///
     /// # Errors
     ///
-    /// [`Error::Unsupported`] if the ICD does not describe it.
+    /// [`Error::Unsupported`] if the ICD does not describe this part of the protocol.
     pub fn new(link: &'static Link, on_entry: F) -> Result<Self, Error> {
         let files = link.files.as_ref().ok_or(Error::Unsupported)?;
         Ok(Self {

@@ -1,4 +1,4 @@
-//! What all procedures share.
+//! Common part of all procedures.
 
 use super::super::bits::{head, part_mut, reached};
 use super::super::event::Event;
@@ -7,35 +7,35 @@ use super::super::links::STEP_BYTES;
 use super::super::request::{Direction, Request};
 use super::super::Error;
 
-/// How a procedure ended.
+/// Result of a procedure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum End {
-    /// It is done.
+    /// The procedure succeeded.
     Done,
-    /// A request was refused.
+    /// The node rejected a necessary request.
     Refused,
-    /// A request was not answered, or a flag never became what was waited for.
+    /// No reply to a necessary request, or a flag did not change in time.
     Timeout,
-    /// The node cannot load this block.
+    /// The node cannot load the block.
     Parameter,
-    /// The block has another length than was asked for.
+    /// A block has a different length than requested.
     Length,
-    /// Packets were still missing after so many rounds.
+    /// Packets are still missing after the maximum number of rounds.
     Rounds,
-    /// After so many rounds the checksum was still wrong.
+    /// The checksum is still wrong after the maximum number of rounds.
     Checksum,
-    /// The node tells that what it was asked for failed.
+    /// The node reports that the operation failed.
     Error,
 }
 
-/// A procedure, which says which request comes next and is told what became of it.
+/// A procedure: returns the next request and processes its outcome.
 ///
 /// ```
 /// use icdgen_runtime::wire::files::{End, Procedure};
 /// use icdgen_runtime::wire::{Client, Error};
 ///
-/// /// Runs a procedure; `exchange` writes bytes to the port and reads what has come, `now` is a clock.
+/// /// Runs a procedure. `exchange` writes bytes to the port and returns received bytes; `now` is a clock.
 /// fn run<T, const N: usize>(
 ///     client: &mut Client<T, N>,
 ///     procedure: &mut dyn Procedure,
@@ -53,16 +53,18 @@ pub enum End {
 /// }
 /// ```
 pub trait Procedure {
-    /// The next request, once; None while there is nothing to send.
+    /// Return the next request, each once; None if there is nothing to send. `now` is in
+    /// milliseconds.
     fn next(&mut self, now: u32) -> Option<Request<'_>>;
 
-    /// Takes an event of the client.
+    /// Pass an event of the client to the procedure. Unrelated events are ignored.
     fn event(&mut self, now: u32, event: &Event<'_>);
 
-    /// When `next` wants to be called again at the latest; None while an outcome is awaited.
+    /// Return the time in milliseconds at which `next` must be called at the latest; None while a
+    /// request is in progress.
     fn deadline(&self) -> Option<u32>;
 
-    /// How it ended; None while it runs.
+    /// Return the result; None while the procedure is running.
     fn result(&self) -> Option<End>;
 }
 

@@ -1,4 +1,4 @@
-//! A file to the node.
+//! File upload.
 
 use super::super::bits::{copy, count, head, index, part, part_mut, pieces};
 use super::super::crc::Crc;
@@ -22,7 +22,7 @@ enum State {
     Committing(Poll),
 }
 
-/// A file to the node, block by block.
+/// Upload of a file block by block.
 #[derive(Clone, Debug)]
 pub struct Upload<'a> {
     core: Core,
@@ -42,12 +42,12 @@ pub struct Upload<'a> {
 }
 
 impl<'a> Upload<'a> {
-    /// Uploads data to a destination.
+    /// Create an upload of data to a destination.
     ///
     /// # Errors
     ///
-    /// [`Error::Unsupported`] if the node takes no uploads, [`Error::Range`] if the destination is not
-    /// supported, [`Error::TooLong`] if it holds less.
+    /// [`Error::Unsupported`] if the node has no uploads, [`Error::Range`] if the destination is
+    /// not supported, [`Error::TooLong`] if the data are larger than the destination.
     pub fn new(link: &'static Link, destination: u8, data: &'a [u8]) -> Result<Self, Error> {
         let files = link.files.as_ref().ok_or(Error::Unsupported)?;
         let form = files.upload.as_ref().ok_or(Error::Unsupported)?;
@@ -79,14 +79,14 @@ impl<'a> Upload<'a> {
         })
     }
 
-    /// The same with smaller blocks.
+    /// Use smaller blocks, of this number of bytes.
     #[must_use]
     pub fn with_block(mut self, bytes: u32) -> Self {
         self.block = index(bytes).min(self.block).max(1);
         self
     }
 
-    /// Bytes that were committed, and in all.
+    /// Return the number of bytes committed, and the total number of bytes.
     #[must_use]
     pub const fn progress(&self) -> (usize, usize) {
         (self.sent, self.data.len())

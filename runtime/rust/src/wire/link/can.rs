@@ -41,7 +41,7 @@ pub struct CanTypes {
     pub refusal: Option<u32>,
     /// A request of telemetry.
     pub request: Option<u32>,
-    /// The frame.
+    /// The telemetry frame; empty for a telecommand.
     pub reply: Option<u32>,
     /// The request is refused.
     pub request_refusal: Option<u32>,

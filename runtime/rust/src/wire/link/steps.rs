@@ -1,4 +1,4 @@
-//! Messages that play a part in a procedure.
+//! Messages used in procedures.
 
 use super::Span;
 
@@ -18,7 +18,7 @@ pub struct Piece {
     pub at: u8,
 }
 
-/// What a field of a message is for.
+/// Role of a field in a procedure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// Everything, and not one file.
@@ -59,12 +59,12 @@ pub enum Role {
     Type,
 }
 
-/// A message that plays a part in a procedure.
+/// A message used in a procedure.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
     /// Its id.
     pub id: u8,
-    /// A fresh one.
+    /// Initial content of the frame.
     pub fresh: &'static [u8],
     /// Its numbers.
     pub places: &'static [(Role, Place)],

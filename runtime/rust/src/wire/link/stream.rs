@@ -1,9 +1,9 @@
-//! The envelope of a link that the ICD describes as fields with roles around the data.
+//! Framing of a link: header and trailer fields with roles.
 
 use super::CrcForm;
 use crate::wire::Table;
 
-/// What tells where a message ends.
+/// How messages are delimited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Delimiter {
     /// A field of the header.
@@ -14,11 +14,11 @@ pub enum Delimiter {
     Cobs,
     /// Flags and escapes as on asynchronous lines, RFC 1662.
     Hdlc,
-    /// The packet that carries it.
+    /// The packets of the transport.
     Packet,
 }
 
-/// What a field of the envelope is.
+/// Role of a header or trailer field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EnvelopeRole {
     /// Counts messages.
@@ -43,10 +43,11 @@ pub enum EnvelopeRole {
     Checksum,
 }
 
-/// A field: `size` bytes from byte `at` of the header or trailer on are a number, shifted and cut to `bits`.
+/// A header or trailer field. The number in the `size` bytes from byte `at` on is shifted right by
+/// `shift` and masked to `bits` bits.
 #[derive(Clone, Copy, Debug)]
 pub struct EnvelopeField {
-    /// What it is.
+    /// Role of the field.
     pub role: EnvelopeRole,
     /// Whether it stands in the trailer.
     pub in_trailer: bool,
@@ -60,7 +61,7 @@ pub struct EnvelopeField {
     pub bits: u32,
     /// Whether the least significant byte comes first.
     pub little: bool,
-    /// Of a constant, or unless another is chosen: in telecommands, in telemetry.
+    /// Constant or default value in telecommands and in telemetry.
     pub values: [u32; 2],
 }
 
@@ -79,20 +80,20 @@ pub enum CheckKind {
     Xor,
 }
 
-/// The checksum; kinds other than a CRC use init, `xor_out` and width of the form.
+/// The checksum. Kinds other than a CRC use `init`, `xor_out` and `width` of the form.
 #[derive(Clone, Copy, Debug)]
 pub struct CheckForm {
     /// How it is computed.
     pub kind: CheckKind,
     /// Its parameters.
     pub crc: CrcForm,
-    /// What makes a CRC fast.
+    /// Lookup table of a CRC.
     pub table: Option<&'static Table>,
-    /// The byte of the header from which on it is computed.
+    /// First byte of the header that it covers.
     pub covered_from: usize,
-    /// Bytes of the trailer that it covers.
+    /// Number of bytes of the trailer that it covers.
     pub covered_trailer: usize,
-    /// Whether the seed of the message is covered, as a byte after all others.
+    /// Whether the seed of the message is appended as the last byte that it covers.
     pub is_seeded: bool,
 }
 
@@ -105,33 +106,33 @@ pub struct StreamRow {
     pub least: usize,
     /// Most bytes of its data.
     pub most: usize,
-    /// Whether zeros at the end of the data are not sent, but for one byte.
+    /// Whether trailing zeros of the data are not sent, except for the first byte.
     pub cuts_zeros: bool,
-    /// What its checksum covers after all others.
+    /// Seed: byte that the checksum covers last.
     pub seed: u8,
-    /// Of a telecommand: the id of the telemetry that it is answered with.
+    /// Telecommand: id of the telemetry that is its reply.
     pub reply: Option<u32>,
 }
 
-/// How messages are put into a stream of bytes, or into packets.
+/// Framing of messages in a stream of bytes or in packets.
 #[derive(Clone, Copy, Debug)]
 pub struct Stream {
-    /// What tells where a message ends.
+    /// How messages are delimited.
     pub delimited_by: Delimiter,
-    /// Bytes before the data.
+    /// Size of the header in bytes.
     pub header_bytes: usize,
-    /// Bytes behind the data.
+    /// Size of the trailer in bytes.
     pub trailer_bytes: usize,
-    /// What the field of the length has more than the data have bytes.
+    /// Value of the length field minus the number of data bytes.
     pub length_plus: i32,
-    /// Whether each id counts its own sequence.
+    /// Whether each id has its own sequence counter.
     pub per_id: bool,
     /// The fields.
     pub fields: &'static [EnvelopeField],
     /// The checksum.
     pub check: Option<CheckForm>,
-    /// The telecommands, by rising id.
+    /// The telecommands, in ascending order of the ids.
     pub telecommands: &'static [StreamRow],
-    /// The telemetry, by rising id.
+    /// The telemetry, in ascending order of the ids.
     pub telemetry: &'static [StreamRow],
 }

@@ -1,4 +1,4 @@
-//! The checksum of an envelope.
+//! Checksum of messages with header and trailer.
 
 use crate::wire::link::{CheckForm, CheckKind, Stream, StreamRow};
 use crate::wire::Crc;

@@ -1,4 +1,5 @@
-//! The client over envelopes: requests that different telemetry answers, and what comes unasked.
+//! Client for messages with header and trailer. Several requests may be in progress if their
+//! replies differ.
 
 use super::decoder::Decoder;
 use super::encoder::Values;
@@ -13,17 +14,19 @@ use core::fmt;
 use core::marker::PhantomData;
 use core::ops::Deref;
 
-/// A client of node `T` whose messages travel in envelopes; `N` is the node's `LONGEST`, `S` its `SEQUENCES`.
-/// `R` requests may be under way together, if they wait for telemetry of different ids: that tells them apart.
+/// A client of node `T` for messages with header and trailer. `N` is the constant `LONGEST` and `S`
+/// the constant `SEQUENCES` of the module of the node. Up to `R` requests may be in progress at the
+/// same time if they wait for telemetry with different ids.
 ///
-/// Bytes that came are handed over, output is taken, and [`Client::tick`] is called at the
-/// [`Client::deadline`]. Telemetry that nobody waits for is [`Event::Message`].
+/// The application passes received bytes to the client, takes its output, and calls
+/// [`Client::tick`] at the [`Client::deadline`]. Unsolicited telemetry is reported as
+/// [`Event::Message`]. All times `now` are in milliseconds and may wrap around.
 ///
 /// ```
 /// use icdgen_runtime::wire::stream::Client;
 /// use icdgen_runtime::wire::{Error, TelemetryOf};
 ///
-/// /// Asks for telemetry and hands over what `port` answers to the bytes that it is given.
+/// /// Requests telemetry. `port` sends bytes and returns the bytes that were received.
 /// fn asked<T, M: TelemetryOf<T>, const N: usize>(
 ///     client: &mut Client<T, N, 1, 2>,
 ///     mut port: impl FnMut(&[u8]) -> Vec<u8>,
@@ -46,11 +49,12 @@ pub struct Client<T, const N: usize, const S: usize, const R: usize> {
 }
 
 impl<T, const N: usize, const S: usize, const R: usize> Client<T, N, S, R> {
-    /// A client with the times and the values of the ICD.
+    /// Create a client with the timeouts and values of the ICD.
     ///
     /// # Errors
     ///
-    /// [`Error::Unsupported`] if the ICD describes no envelope, [`Error::Length`] if `N` is too small.
+    /// [`Error::Unsupported`] if the ICD describes no framing, [`Error::Length`] if `N` is too
+    /// small.
     pub fn new(link: &'static impl Linked<Node = T>) -> Result<Self, Error> {
         let sender = Sender::new(link)?;
         let link = link.link();
@@ -66,61 +70,64 @@ impl<T, const N: usize, const S: usize, const R: usize> Client<T, N, S, R> {
         })
     }
 
-    /// The same with other times than those of the ICD.
+    /// Replace the timeouts and retries of the ICD.
     #[must_use]
     pub fn with_settings(mut self, settings: Settings) -> Self {
         self.slots.settings = settings;
         self
     }
 
-    /// Chooses the values of the envelope of what is sent from now on; `sequence` is that of the first message.
+    /// Set the header and trailer values of the following messages. `sequence` is the number of the
+    /// first message.
     ///
     /// # Errors
     ///
-    /// [`Error::Range`] if one does not fit its field.
+    /// [`Error::Range`] if a value does not fit into its field.
     pub fn set_values(&mut self, values: Values) -> Result<(), Error> {
         values.check(self.form)?;
         self.sender.values = values;
         Ok(())
     }
 
-    /// When [`Client::tick`] wants to be called at the latest; None: not at all.
+    /// Return the time in milliseconds at which [`Client::tick`] must be called at the latest.
+    /// None: no request is in progress.
     #[must_use]
     pub fn deadline(&self) -> Option<u32> {
         self.slots.deadline()
     }
 
-    /// Bytes of the stream that became part of no message.
+    /// Return the number of received bytes that are not part of a message.
     #[must_use]
     pub const fn discarded(&self) -> u64 {
         self.decoder.discarded()
     }
 
-    /// Asks for telemetry of the node, by the telecommand that it answers.
+    /// Request telemetry by sending the telecommand that it replies to. `now` is in milliseconds.
     ///
     /// # Errors
     ///
-    /// As [`Client::start`].
+    /// See [`Client::start`].
     pub fn request<M: TelemetryOf<T>>(&mut self, now: u32) -> Result<(), Error> {
         self.start(now, &Request::telemetry(M::TELEMETRY_ID))?;
         Ok(())
     }
 
-    /// Sends a telecommand of the node, which is answered as the ICD says.
+    /// Send a telecommand. The ICD decides which reply it has. `now` is in milliseconds.
     ///
     /// # Errors
     ///
-    /// As [`Client::start`]; [`Error::Range`] if a value does not fit.
+    /// See [`Client::start`]; also [`Error::Range`] if a value does not fit into its field.
     pub fn send<M: TelecommandOf<T>>(&mut self, now: u32, message: &M) -> Result<Started, Error> {
         let data = message.to_bytes()?;
         self.start(now, &Request::telecommand(M::TELECOMMAND_ID, data.as_ref()))
     }
 
-    /// Sends a telecommand of the node that telemetry `A` answers, whatever the ICD says.
+    /// Send a telecommand and wait for telemetry `A`, regardless of the ICD. `now` is in
+    /// milliseconds.
     ///
     /// # Errors
     ///
-    /// As [`Client::start`]; [`Error::Range`] if a value does not fit.
+    /// See [`Client::start`]; also [`Error::Range`] if a value does not fit into its field.
     pub fn ask<A: TelemetryOf<T>, M: TelecommandOf<T>>(
         &mut self,
         now: u32,
@@ -133,22 +140,23 @@ impl<T, const N: usize, const S: usize, const R: usize> Client<T, N, S, R> {
         Ok(())
     }
 
-    /// Begins a request.
+    /// Start a request. The data are copied. `now` is in milliseconds.
     ///
     /// # Errors
     ///
-    /// [`Error::UnknownId`] if the node has no such message, [`Error::Busy`] while another request waits for
-    /// the same reply or `R` are under way, [`Error::Length`] if the data have another length,
-    /// [`Error::Unsupported`] for telemetry that no telecommand without parameters is answered with.
+    /// [`Error::UnknownId`] if the node has no such message, [`Error::Busy`] if another request
+    /// waits for the same reply or `R` requests are in progress, [`Error::Length`] if the data have
+    /// the wrong length, [`Error::Unsupported`] if no telecommand without parameters requests this
+    /// telemetry.
     pub fn start(&mut self, now: u32, request: &Request<'_>) -> Result<Started, Error> {
         self.slots.start(self.form, now, request)
     }
 
-    /// Writes the next message to be sent, until there is none.
+    /// Encode the next message to send into `line`. Return None if there is none.
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if it does not fit the `line`; it is still to be sent.
+    /// [`Error::Length`] if `line` is too small; call again with a larger one.
     pub fn output<'a>(&mut self, line: &'a mut [u8]) -> Result<Option<&'a [u8]>, Error> {
         let sender = &mut self.sender;
         let put = |id, data: &[u8]| sender.put(id, data, line);
@@ -156,7 +164,7 @@ impl<T, const N: usize, const S: usize, const R: usize> Client<T, N, S, R> {
         Ok(size.and_then(move |size| line.get(..size)))
     }
 
-    /// Takes the next bytes of the stream, or a packet.
+    /// Pass received bytes: a piece of the stream of any size, or one packet.
     pub fn received(&mut self, now: u32, bytes: &[u8], mut on_event: impl FnMut(NodeEvent<'_, T>)) {
         self.tick(now, &mut on_event);
         let slots = &mut self.slots;
@@ -165,25 +173,26 @@ impl<T, const N: usize, const S: usize, const R: usize> Client<T, N, S, R> {
         });
     }
 
-    /// Lets time pass.
+    /// Process timeouts: send again or end the request whose time is up. Call at the deadline at
+    /// the latest; calling more often is harmless. `now` is in milliseconds.
     pub fn tick(&mut self, now: u32, mut on_event: impl FnMut(NodeEvent<'_, T>)) {
         let told = &mut |event: Event<'_>| on_event(NodeEvent::new(event));
         self.slots.tick(now, told);
     }
 
-    /// Gives up all requests, without events, and what of them has not been taken. A late reply is
-    /// [`Event::Message`].
+    /// Cancel all requests without events, and drop their remaining output. A late reply is
+    /// reported as [`Event::Message`].
     pub fn cancel(&mut self) {
         self.slots.cancel(None);
     }
 
-    /// Gives up the requests of that message only.
+    /// Cancel only the requests of this message.
     pub fn cancel_request(&mut self, direction: Direction, id: u32) {
         self.slots.cancel(Some((direction, id)));
     }
 }
 
-/// An event of a client of node `T`; it is used as an [`Event`].
+/// An event of a client of node `T`. It dereferences to [`Event`].
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct NodeEvent<'a, T> {
     event: Event<'a>,
@@ -196,7 +205,8 @@ impl<'a, T> NodeEvent<'a, T> {
         Self { event, node }
     }
 
-    /// The telemetry that came, as a reply or unasked; None if it is another one, or none.
+    /// Return the telemetry `M`, unsolicited or a reply; None if the event contains no such
+    /// message.
     #[must_use]
     pub fn message<M: TelemetryOf<T>>(&self) -> Option<M> {
         match self.event {

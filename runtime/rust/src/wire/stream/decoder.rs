@@ -1,4 +1,4 @@
-//! Finds messages in a stream.
+//! Decoder of messages with header and trailer.
 
 use super::encoder::{
     COBS_WHOLE, HDLC_ESCAPE, HDLC_FLAG, HDLC_FLIP, SLIP_END, SLIP_ESCAPE, SLIP_ESCAPED_END,
@@ -8,8 +8,9 @@ use super::judge::{Event, Judge, Sequences, Verdict};
 use crate::wire::link::{Delimiter, EnvelopeRole, Link, Stream};
 use crate::wire::{Direction, Error};
 
-/// Finds the messages of a direction in a stream. `N` is the size of its buffer: the node's `LONGEST` holds
-/// every message. `S` sequence numbers are remembered, by which gaps are noticed: the node's `SEQUENCES`.
+/// Decoder that finds the messages of one direction in a stream. `N` is the size of its buffer in
+/// bytes; `LONGEST` of the module of the node is enough for all messages. `S` is the number of
+/// sequence counters for the detection of gaps; use `SEQUENCES` of this module.
 ///
 /// ```
 /// use icdgen_runtime::wire::stream::{Decoder, Event};
@@ -46,22 +47,22 @@ pub struct Decoder<const N: usize, const S: usize> {
 }
 
 impl<const N: usize, const S: usize> Decoder<N, S> {
-    /// A decoder for messages of at most `N` bytes.
+    /// Create a decoder for messages of at most `N` bytes.
     ///
     /// # Errors
     ///
-    /// [`Error::Unsupported`] if the ICD describes no envelope, [`Error::Length`] if header and trailer do
-    /// not fit.
+    /// [`Error::Unsupported`] if the ICD describes no framing, [`Error::Length`] if header and
+    /// trailer do not fit into the buffer.
     pub fn new(link: &'static Link, direction: Direction) -> Result<Self, Error> {
         Self::with_limit(link, direction, N)
     }
 
-    /// A decoder for messages of at most `limit` bytes, and of `N`.
+    /// Create a decoder for messages of at most `limit` bytes, which must not exceed `N`.
     ///
     /// # Errors
     ///
-    /// [`Error::Unsupported`] if the ICD describes no envelope, [`Error::Length`] if header and trailer do
-    /// not fit.
+    /// [`Error::Unsupported`] if the ICD describes no framing, [`Error::Length`] if header and
+    /// trailer do not fit into the buffer.
     pub fn with_limit(
         link: &'static Link,
         direction: Direction,
@@ -90,19 +91,19 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
         })
     }
 
-    /// Bytes of the stream that became part of no message.
+    /// Return the number of received bytes that are not part of a message.
     #[must_use]
     pub const fn discarded(&self) -> u64 {
         self.discarded
     }
 
-    /// Bytes of the stream about which nothing is decided yet.
+    /// Return the number of received bytes that may still become part of a message.
     #[must_use]
     pub const fn pending(&self) -> u64 {
         self.pending
     }
 
-    /// Takes the next bytes of the stream, or a packet.
+    /// Pass received bytes: a piece of the stream of any size, or one packet.
     pub fn feed(&mut self, bytes: &[u8], mut on_event: impl FnMut(Event<'_>)) {
         let end = match self.form.delimited_by {
             Delimiter::Packet => return self.packet(bytes, &mut on_event),

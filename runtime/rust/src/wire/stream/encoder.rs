@@ -1,4 +1,4 @@
-//! Messages as they are sent.
+//! Encoder of messages with header and trailer.
 
 use super::check;
 use crate::wire::link::{Delimiter, EnvelopeRole, Link, Stream};
@@ -16,7 +16,7 @@ pub(super) const COBS_WHOLE: u8 = 0xff;
 /// Bytes of a header or trailer, at most.
 const ENVELOPE_BYTES: usize = 64;
 
-/// Values of the fields that the sender chooses.
+/// Values of the header and trailer fields that the sender chooses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Values {
     /// Counts messages.
@@ -34,7 +34,7 @@ pub struct Values {
 }
 
 impl Values {
-    /// Those of the ICD, and 0.
+    /// Return the values of the ICD for this direction. Fields without a value in the ICD are 0.
     #[must_use]
     pub fn new(link: &Link, direction: Direction) -> Self {
         let mut values = Self::default();
@@ -71,13 +71,14 @@ impl Values {
     }
 }
 
-/// Writes a message as it is sent, and says how many bytes it has.
+/// Encode a message with header, trailer and delimiters, and return the number of bytes written to
+/// `out`.
 ///
 /// # Errors
 ///
-/// [`Error::Unsupported`] if the ICD describes no envelope, [`Error::UnknownId`] if there is no such
-/// message, [`Error::Length`] if its data have another length or `out` is too small, [`Error::Range`]
-/// if a value does not fit its field.
+/// [`Error::Unsupported`] if the ICD describes no framing, [`Error::UnknownId`] if there is no such
+/// message, [`Error::Length`] if the data have the wrong length or `out` is too small,
+/// [`Error::Range`] if a value does not fit into its field.
 ///
 /// ```
 /// use icdgen_runtime::wire::stream::{encode, Values};

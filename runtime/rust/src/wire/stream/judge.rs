@@ -1,11 +1,11 @@
-//! What a frame is, and what is told of it.
+//! Check of received frames, and their events.
 
 use super::check;
 use super::encoder::Values;
 use crate::wire::link::{EnvelopeField, EnvelopeRole, Stream, StreamRow};
 use crate::wire::Direction;
 
-/// A message, or what was dropped and why; and how a request of a client ended.
+/// A message, a dropped message, or the outcome of a request of a client.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Event<'a> {
@@ -15,24 +15,24 @@ pub enum Event<'a> {
         id: u32,
         /// Its data.
         data: &'a [u8],
-        /// The fields that the sender chose.
+        /// Values of the header and trailer fields that the sender chose.
         values: Values,
     },
-    /// Messages before this one did not come; none: it came again.
+    /// Messages were lost before this one; 0: this message is a repetition.
     Gap {
-        /// The id of the message that came.
+        /// Id of the received message.
         id: u32,
-        /// How many are missing.
+        /// Number of missing messages.
         missing: u32,
     },
-    /// The checksum is wrong.
+    /// Wrong checksum.
     Checksum {
-        /// The id that was read.
+        /// Id in the message.
         id: u32,
     },
-    /// No message, or not this one, has such a length.
+    /// Dropped: wrong length of the message.
     Length {
-        /// The id, if so much of it could be read.
+        /// Id, if it could be read.
         id: Option<u32>,
     },
     /// The node has no such message.
@@ -40,32 +40,32 @@ pub enum Event<'a> {
         /// The id.
         id: u32,
     },
-    /// Longer than the buffer.
+    /// Dropped: the message is longer than the buffer.
     Overrun,
-    /// A constant or a delimiter is not what it must be.
+    /// Dropped: wrong constant or delimiter.
     Framing,
-    /// Client: the reply came.
+    /// Client: the request succeeded.
     Done {
-        /// What was asked.
+        /// Direction of the request.
         direction: Direction,
-        /// The id of that.
+        /// Id of the request.
         id: u32,
-        /// How often it was sent.
+        /// Number of times the request was sent.
         attempts: u16,
-        /// The id of the telemetry that answered.
+        /// Id of the reply, if it has one.
         reply: u32,
         /// Its data.
         data: &'a [u8],
-        /// The fields that its sender chose.
+        /// Values of the header and trailer fields of the reply.
         values: Values,
     },
-    /// Client: no reply came.
+    /// Client: no reply in time.
     Timeout {
-        /// What was asked.
+        /// Direction of the request.
         direction: Direction,
-        /// The id of that.
+        /// Id of the request.
         id: u32,
-        /// How often it was sent.
+        /// Number of times the request was sent.
         attempts: u16,
     },
 }

@@ -1,4 +1,4 @@
-//! Messages in the envelope that the ICD describes, in a stream of bytes or in packets.
+//! Messages with header and trailer, in a stream of bytes or in packets.
 
 mod check;
 mod client;

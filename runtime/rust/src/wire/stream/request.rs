@@ -1,8 +1,9 @@
-//! What can be asked over an envelope.
+//! Requests for messages with header and trailer.
 
 use crate::wire::Direction;
 
-/// A request over an envelope: as [`crate::wire::Request`], with ids of up to 32 bits.
+/// A request for messages with header and trailer. As [`crate::wire::Request`], with ids of up to
+/// 32 bits.
 ///
 /// ```
 /// use icdgen_runtime::wire::stream::Request;
@@ -12,20 +13,21 @@ use crate::wire::Direction;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Request<'a> {
-    /// What kind of request it is.
+    /// Kind of the request.
     pub direction: Direction,
     /// The id of the message.
     pub id: u32,
     /// The data of a telecommand.
     pub data: &'a [u8],
-    /// Whether it may be sent again although it may have arrived; telemetry always may.
+    /// Whether the client may send it again if the node may already have received it. Telemetry
+    /// requests are always repeated.
     pub repeat: bool,
-    /// The id of the telemetry that answers a telecommand; None: what the ICD says.
+    /// Id of the telemetry that replies to a telecommand; None: the reply of the ICD.
     pub reply: Option<u32>,
 }
 
 impl<'a> Request<'a> {
-    /// Telemetry is asked for, by the telecommand that it answers.
+    /// Request telemetry by the telecommand that it replies to.
     #[must_use]
     pub const fn telemetry(id: u32) -> Self {
         Self {
@@ -37,7 +39,7 @@ impl<'a> Request<'a> {
         }
     }
 
-    /// A telecommand, which is sent once and answered as the ICD says.
+    /// Create a telecommand that is sent once and has the reply of the ICD.
     #[must_use]
     pub const fn telecommand(id: u32, data: &'a [u8]) -> Self {
         Self {

@@ -1,12 +1,12 @@
-//! Sends telecommands one after the other.
+//! Sender that does not wait for replies.
 
 use super::encoder::{encode, Values};
 use crate::wire::link::{EnvelopeField, EnvelopeRole, Link};
 use crate::wire::{Direction, Error, Linked, TelecommandOf};
 use core::marker::PhantomData;
 
-/// Puts the telecommands of node `T` into their envelopes, and counts them where the link has sequence
-/// numbers: `S` of them are remembered, the node's `SEQUENCES`.
+/// Encodes telecommands of node `T` with header and trailer. `S` is the number of sequence
+/// counters: `SEQUENCES` of the module of the node.
 ///
 /// ```
 /// use icdgen_runtime::wire::stream::Sender;
@@ -21,8 +21,8 @@ use core::marker::PhantomData;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Sender<T, const S: usize> {
-    /// Values of the fields that the sender chooses: those of the ICD, until others are set; `sequence` is
-    /// the first one.
+    /// Values of the header and trailer fields that the sender chooses. Initially those of the ICD;
+    /// `sequence` is the first number.
     pub values: Values,
     link: &'static Link,
     next: [Option<u32>; S],
@@ -30,11 +30,11 @@ pub struct Sender<T, const S: usize> {
 }
 
 impl<T, const S: usize> Sender<T, S> {
-    /// A sender that has counted nothing yet.
+    /// Create a sender with the values of the ICD.
     ///
     /// # Errors
     ///
-    /// [`Error::Unsupported`] if the ICD describes no envelope.
+    /// [`Error::Unsupported`] if the ICD describes no framing.
     pub fn new(link: &'static impl Linked<Node = T>) -> Result<Self, Error> {
         let link = link.link();
         if link.stream.is_none() {
@@ -48,11 +48,11 @@ impl<T, const S: usize> Sender<T, S> {
         })
     }
 
-    /// Writes a telecommand as it is sent, and says how many bytes it has.
+    /// Encode a telecommand and return the number of bytes written to `out`.
     ///
     /// # Errors
     ///
-    /// [`Error::Range`] if a value of the message or of the envelope does not fit, and those of [`Sender::put`].
+    /// See [`Sender::put`]; also [`Error::Range`] if a value does not fit into its field.
     pub fn send<M: TelecommandOf<T>>(
         &mut self,
         message: &M,
@@ -62,12 +62,13 @@ impl<T, const S: usize> Sender<T, S> {
         self.put(M::TELECOMMAND_ID, data.as_ref(), out)
     }
 
-    /// Writes the data of a telecommand as they are sent, and says how many bytes that are.
+    /// Encode a telecommand with these data and return the number of bytes written to `out`.
     ///
     /// # Errors
     ///
-    /// [`Error::UnknownId`] if there is no such telecommand, [`Error::Length`] if its data have another
-    /// length or `out` is too small, [`Error::Range`] if a value of the envelope does not fit.
+    /// [`Error::UnknownId`] if there is no such telecommand, [`Error::Length`] if the data have the
+    /// wrong length or `out` is too small, [`Error::Range`] if a header or trailer value does not
+    /// fit into its field.
     pub fn put(&mut self, id: u32, data: &[u8], out: &mut [u8]) -> Result<usize, Error> {
         let form = self.link.stream.as_ref().ok_or(Error::Unsupported)?;
         let row = form.row(Direction::Telecommand, id);

@@ -1,4 +1,5 @@
-//! A client over envelopes and a port that reads and writes, for programs that may wait. Feature `std`.
+//! Blocking client for messages with header and trailer, over a port that implements `Read` and
+//! `Write`. Feature `std`.
 
 use super::{Client, Event, NodeEvent, Request, Values};
 use crate::wire::link::Settings;
@@ -11,10 +12,12 @@ use std::vec::Vec;
 
 type OnEvent<T> = Box<dyn FnMut(&NodeEvent<'_, T>)>;
 
-/// Asks, and waits for the outcome; `N` is the node's `LONGEST`, `S` its `SEQUENCES`, `T` its `Node`.
+/// Blocking client. `N` is the constant `LONGEST`, `S` the constant `SEQUENCES` and `T` the type
+/// `Node` of the module of the node.
 ///
-/// The port is yours. Its `read` must come back after a while, be it with nothing (`WouldBlock` or
-/// `TimedOut`), for the clock is looked at in between: set a time-out of some milliseconds.
+/// The application opens the port. Set a read timeout of some milliseconds: `read` must return
+/// regularly, even without data (`WouldBlock` or `TimedOut`), because the session checks its clock
+/// between reads.
 ///
 /// ```
 /// use icdgen_runtime::wire::{stream::Session, Failure, TelemetryOf};
@@ -38,11 +41,11 @@ pub struct Session<T, P, const N: usize, const S: usize> {
 }
 
 impl<T, P: Read + Write, const N: usize, const S: usize> Session<T, P, N, S> {
-    /// A session with the node.
+    /// Create a session with the node.
     ///
     /// # Errors
     ///
-    /// As [`Client::new`].
+    /// See [`Client::new`].
     pub fn new(link: &'static impl Linked<Node = T>, port: P) -> Result<Self, Error> {
         Ok(Self {
             client: Client::new(link)?,
@@ -52,30 +55,30 @@ impl<T, P: Read + Write, const N: usize, const S: usize> Session<T, P, N, S> {
         })
     }
 
-    /// The same with other times than those of the ICD.
+    /// Replace the timeouts and retries of the ICD.
     #[must_use]
     pub fn with_settings(mut self, settings: Settings) -> Self {
         self.client = self.client.with_settings(settings);
         self
     }
 
-    /// The same with someone to tell all that comes, and what was dropped.
+    /// Set a callback for all events, including dropped messages.
     #[must_use]
     pub fn with_events(mut self, on_event: impl FnMut(&NodeEvent<'_, T>) + 'static) -> Self {
         self.on_event = Box::new(on_event);
         self
     }
 
-    /// Chooses the values of the envelope of what is sent from now on.
+    /// Set the header and trailer values of the following messages.
     ///
     /// # Errors
     ///
-    /// As [`Client::set_values`].
+    /// See [`Client::set_values`].
     pub fn set_values(&mut self, values: Values) -> Result<(), Error> {
         self.client.set_values(values)
     }
 
-    /// Asks for telemetry, by the telecommand that it answers.
+    /// Request telemetry by sending the telecommand that it replies to.
     ///
     /// # Errors
     ///
@@ -85,7 +88,7 @@ impl<T, P: Read + Write, const N: usize, const S: usize> Session<T, P, N, S> {
         Ok(M::read(&self.outcome(Started::Waiting)?)?)
     }
 
-    /// Sends a telecommand, and waits for its reply, if the ICD says that it has one.
+    /// Send a telecommand and wait for its reply, if the ICD defines one.
     ///
     /// # Errors
     ///
@@ -95,7 +98,7 @@ impl<T, P: Read + Write, const N: usize, const S: usize> Session<T, P, N, S> {
         self.outcome(started).map(|_| ())
     }
 
-    /// Sends a telecommand that telemetry `A` answers, whatever the ICD says.
+    /// Send a telecommand and wait for telemetry `A`, regardless of the ICD.
     ///
     /// # Errors
     ///
@@ -108,7 +111,7 @@ impl<T, P: Read + Write, const N: usize, const S: usize> Session<T, P, N, S> {
         Ok(A::read(&self.outcome(Started::Waiting)?)?)
     }
 
-    /// Makes any request; the data of the reply, if it has one.
+    /// Send any request, wait for its outcome, and return the data of the reply, if it has one.
     ///
     /// # Errors
     ///
@@ -118,8 +121,8 @@ impl<T, P: Read + Write, const N: usize, const S: usize> Session<T, P, N, S> {
         self.outcome(started)
     }
 
-    /// The next telemetry `M` that comes, for which nobody need have asked; None if there is none for so
-    /// many milliseconds.
+    /// Wait for the next telemetry `M`, unsolicited or not. Return None if none arrives within this
+    /// number of milliseconds.
     ///
     /// # Errors
     ///
@@ -132,7 +135,7 @@ impl<T, P: Read + Write, const N: usize, const S: usize> Session<T, P, N, S> {
         Ok(found)
     }
 
-    /// Takes what has come unasked, after as long as the port's `read` waits.
+    /// Process unsolicited messages. Returns after one `read` of the port.
     ///
     /// # Errors
     ///
