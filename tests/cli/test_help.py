@@ -31,8 +31,9 @@ def test_commands_are_grouped_and_each_is_in_one_group(icdgen):
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_a_command_has_an_example_that_its_options_accept(name):
-    command = group.get_command(click.Context(group), name)
+    parent = click.Context(group, **group.context_settings)
+    command = group.get_command(parent, name)
     assert command is not None and command.epilog.startswith("Example: icdgen ")
     words = shlex.split(command.epilog.removeprefix("Example: icdgen "))
     arguments = words[1:] if words[0] == name else words
-    command.make_context(name, arguments, resilient_parsing=True)
+    command.make_context(name, arguments, parent=parent, resilient_parsing=True)
