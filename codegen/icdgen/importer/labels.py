@@ -61,13 +61,6 @@ def begins(text: str, profile: Profile) -> bool:
 
 def leads(text: str, profile: Profile) -> str:
     """Return the meaning of the label at the begin of a line ("description", "fields" ...), or ""."""
-    return split(plain(text), profile)[0]
-
-
-def split(text: str, profile: Profile) -> tuple[str, str]:
-    """Return the meaning of the label at the begin of a line and the text behind it; "" and the line if it has no label."""
-    words = text.split()
-    for length in range(min(5, len(words)), 0, -1):
-        if what := meaning(" ".join(words[:length]), profile):
-            return what, " ".join(words[length:])
-    return "", text
+    words = plain(text).split()
+    meanings = (meaning(" ".join(words[:length]), profile) for length in range(min(5, len(words)), 0, -1))
+    return next(filter(None, meanings), "")

@@ -47,28 +47,13 @@ _GROWING = re.compile(
 )
 
 
-BY_HAND = "write it by hand, with `count:` and `up_to:`, and a struct for what is repeated"
-"""Help for a variable part of a message: see 'Variable length' in ``docs/guides/variable-length.md``."""
-
-
 def grows(text: str) -> bool:
     """Whether a figure depends on a count: ``8 + 6*N``, ``N + 1``."""
     return _GROWING.fullmatch(plain(text).strip("() ")) is not None
 
 
-_LENGTH = re.compile(
-    r"\b(?:length|size)\b\W{0,3}(?:(?:is|of|in|bytes)\b\W{0,3})*" + f"(?P<figure>{_GROWING.pattern})", re.I
-)
-
-
-def growing_length(text: str) -> str:
-    """The figure of a length that depends on a count, ``Length: 8 + 6*N``; "" if the text has none."""
-    match = _LENGTH.search(plain(text))
-    return match["figure"] if match else ""
-
-
 def growing_squeezed(text: str) -> str:
-    """The text with the blanks taken out of such figures."""
+    """The text without the blanks in figures that depend on a count."""
     return _GROWING.sub(lambda m: "".join(m.group().split()), text)
 
 

@@ -86,9 +86,7 @@ def test_explain_says_which_rule_read_a_table_and_why_others_did_not(folder):
 def test_explore_gives_a_rule_for_each_kind_of_table(folder):
     (folder / "empty.yaml").write_text("profile: 1\nrules: []\n", encoding="utf-8")
     result = icdgen("import", "state.txt", "--profile", "empty.yaml", "--explore", cwd=folder)
-    assert (
-        '  - tables: {head: "Num | Parameter | Position | Length | Range | Factor | Offset | Unit"}\n' in result.stdout
-    )
+    assert "  - tables: {head: Num | Parameter | Position | Length | Range | Factor | Offset | Unit}\n" in result.stdout
     assert "      Offset:   # 0 | -400\n" in result.stdout
     result = icdgen("import", "state.txt", "--profile", "empty.yaml", "--explore", "--format", "json", cwd=folder)
     assert json.loads(result.stdout)["kinds"][0]["tables"] == [1]

@@ -10,6 +10,7 @@ import json
 import re
 from typing import Any
 
+from icdgen.icd.fmt.scalars import quoted_if_needed
 from icdgen.icd.rules.wording import count
 from icdgen.importer.document import SourceTable
 from icdgen.importer.source_tables import kinds, name_of
@@ -47,13 +48,13 @@ def _block(group: list[SourceTable]) -> list[str]:
         lines += [f"  #   {key}: {plain(text)[:100]}" for text in texts if text]
     titles = first.titles
     head = next((index for index, row in enumerate(first.rows) if [plain(c.text) for c in row.cells] == titles), 0)
-    lines.append(f"  - tables: {{head: {_quoted(' | '.join(map(_title, titles)))}}}")
+    lines.append(f"  - tables: {{head: {quoted_if_needed(' | '.join(map(_title, titles)), in_flow=True)}}}")
     lines += ["    what: message", "    message: {heading: '^{message} {id}$', kind: telemetry}", "    columns:"]
     rows = first.grid()[head + 1 :]
     for column, title in enumerate(titles):
         cells = (plain(row[column].text) for row in rows if column < len(row))
         samples = " | ".join(list(dict.fromkeys(filter(None, cells)))[:SAMPLES])
-        key = _quoted(title) if title else str(column + 1)
+        key = quoted_if_needed(title, in_flow=False) if title else str(column + 1)
         lines.append(f"      {key}:   # {samples[:90]}")
     return lines
 
@@ -61,15 +62,6 @@ def _block(group: list[SourceTable]) -> list[str]:
 def _title(title: str) -> str:
     """A heading within `head`: an empty cell is any cell, and one that begins like a pattern is quoted."""
     return "*" if not title else f"~^{re.escape(title)}$" if title.startswith("~") or " | " in title else title
-
-
-def _quoted(text: str) -> str:
-    if re.fullmatch(r"[A-Za-z][\w ()./-]*[\w)]|[A-Za-z]", text) and text.casefold() not in _WORDS:
-        return text
-    return json.dumps(text, ensure_ascii=False)
-
-
-_WORDS = {"y", "n", "yes", "no", "on", "off", "true", "false", "null"}
 
 
 def as_json(tables: list[SourceTable], document: str) -> str:

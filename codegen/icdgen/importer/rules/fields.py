@@ -41,7 +41,6 @@ class Draft:
     spot: Spot
     roles: Roles
     count: int = 0
-    bytes_reversed: bool = False
     members: list[tuple[int, str]] = field(default_factory=list)
     facts: dict[str, Any] = field(default_factory=dict)  # further keys of the field in the ICD
     part: tuple[int, int] | None = None  # bit numbers of the whole field that this piece has
