@@ -132,6 +132,7 @@ class SourceTable:
                     del reaching[column]
             column = 0
             for cell in row.cells:
+                # Cells of rows above that span this row occupy their columns.
                 while column in slots:
                     column += 1
                 for offset in range(cell.columns):

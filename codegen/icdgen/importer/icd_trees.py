@@ -55,6 +55,7 @@ def _announced(messages: list[dict[str, Any]]) -> dict[str, str]:
 def head(node: NodeParts, document: Document, profile: Profile) -> dict[str, Any]:
     """The section `node` of the ICD."""
     section = {"name": node.name, "title": node.title or node.name, **profile.data["node"]}
+    # Without a title in its properties, a document is cited by its file name.
     title = document.title or re.split(r"[/\\]", document.file)[-1]
     section["source"] = {"document": title}
     if node.words is not None:

@@ -85,6 +85,7 @@ def _meant(
     described = field.described
     where = f"{message.table.title}, field `{field.name}`"
     of_number = [enum for enum in everything if enum.table.label == described.enum_table is not None]
+    # Parts of a manual that number their tables from 1 have several tables with this number.
     of_number.sort(key=lambda enum: enum.table.run != message.table.run)  # where numbers start anew, several have it
     numbered = next(iter(of_number), None)
     titled = _by_title(described.enum_title, everything, node)

@@ -75,6 +75,7 @@ def apply_rules(
     document: Document, tables: list[SourceTable], words: profile.Profile, prose: bool = False
 ) -> tuple[Result, dict[str, dict[str, Any]]]:
     """Read the tables of a document by the rules of a profile. The tables themselves are not changed."""
+    # The workbench applies further rules to the same tables, and repairs change their cells.
     tables = copy.deepcopy(tables)
     notes = repairs.mend_tables(tables, words)
     interpretation = interpret.interpret(tables, words, [*document.troubles, *notes])

@@ -59,6 +59,7 @@ def _hosts(name: str, part: Part, parts: list[Part], messages: list[Part]) -> li
         and squeezed(p.given.get("of", "")) == squeezed(name)
         and squeezed(p.name) == squeezed(part.name)
     ]
+    # Manuals print the table of values below the message that it belongs to.
     if len(rivals) > 1:
         return [(m, d) for m, d in fields if m.table.number <= part.table.number][-1:]
     return fields

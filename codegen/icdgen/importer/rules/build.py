@@ -89,6 +89,7 @@ class Builder:
                     part.rule.place,
                 )
             setattr(message, role, value)
+        # One id for setting and reading, as in protocols with a direction bit.
         if kind == "configuration" and message.id is not None:
             message.set_id = message.get_id = message.id
             message.id = None

@@ -105,6 +105,7 @@ class FieldReader:
         printed = self.type_of(roles, where, spot)
         if numbers is None or printed is None:
             return None
+        # In a group, `count` is the number of elements of the group. The field itself is no array.
         if roles.get("group") and not roles.get("counter") and not roles.get("rest"):
             numbers.pop("count", None)  # says how often the group is repeated, not the field
         sized = self.size(numbers, printed, roles, where, spot)
@@ -146,6 +147,7 @@ class FieldReader:
         if frame_bits is None:
             return None
         kind = printed.kind
+        # Manuals print an array of bytes as one range, too; integers of these sizes are rare.
         if kind in ("uint", "int") and bits in (40, 48, 56) and range_size and not printed.bits and not count:
             self.warn(
                 "IMP105",
@@ -232,6 +234,7 @@ class FieldReader:
         total = 8 * numbers.get("bytes", 0)
         if printed.kind in ("text", "bytes") and count and total in (0, 8 * count):
             return 8 * count, 0  # so many characters
+        # A column of counts has 1 for fields that are no arrays.
         count = 0 if count == 1 else count
         element = numbers.get("bits") or (total // count if count and total % count == 0 else total)
         if printed.bits and printed.kind != "bool":
@@ -376,6 +379,7 @@ class FieldReader:
 
     def check_range(self, draft: Draft, where: str, spot: Spot) -> None:
         """Report a range that the raw values of an unsigned number do not reach: an offset taken for a bias shows there."""
+        # Limits are printed as decimals, and a double holds integers of at most 53 bits exactly.
         if draft.kind != "uint" or draft.bits > 53 or not {"min", "max"} & set(draft.facts):
             return
         scale, offset, bias = (

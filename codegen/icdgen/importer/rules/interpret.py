@@ -104,6 +104,7 @@ class _Interpreter:
         if rule.what in ("message", "registers"):
             of_message.remove("enumeration")  # the name of the enumeration of a field
         for roles in role_reader.read(rows):
+            # Tables of messages have rows that name a message only: it has no fields.
             is_field = not set(roles.given) <= of_message | set(rule.each)
             roles.given = {**shared, **roles.given}
             own = {role: roles.given.pop(role) for role in list(roles.given) if role in of_message}
@@ -189,6 +190,7 @@ class _Interpreter:
 
     def doubt(self, rule: Rule, table: SourceTable, roles: dict[str, str], left: str) -> None:
         """Report an id that is a plain number where the same text has a hexadecimal one."""
+        # `6.1 Motor state (0x21)`: a pattern that is not anchored takes the number of the chapter for the id.
         other = _HEX.search(left)
         if "id" in roles and other and not _HEX.fullmatch(roles["id"]):
             self.notes.warn(

@@ -198,6 +198,8 @@ def _listed(match: re.Match[str], text: str) -> str:
 @lru_cache(maxsize=1 << 16)
 def normalised(text: str) -> str:
     """The text in one line, full-width characters and odd blanks made ordinary."""
+    # Documents from East Asia print brackets, colons and digits as full-width characters. NFKC of the whole text
+    # would change superscripts of units, too.
     wide = "".join(unicodedata.normalize("NFKC", c) if "！" <= c <= "～" or c == "　" else c for c in text)
     return plain(wide)
 

@@ -68,6 +68,7 @@ class Notes:
         if not example:
             self.single.append(trouble)
             return
+        # The help names the change to make: findings with the same help and rule are mended together.
         key = (trouble.code, trouble.severity, trouble.help, trouble.place)
         self.groups.setdefault(key, Group(trouble)).add(trouble.spot, example)
 

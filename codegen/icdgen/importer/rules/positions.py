@@ -47,6 +47,7 @@ def bits_between(first: Bit, last: Bit, size: int, order: Order) -> list[Bit] | 
     between = [(byte, number) for byte in range(low + 1, high) for number in range(8)]
     ascending = [(low, n) for n in range(first_number, 8)] + between + [(high, n) for n in range(last_number + 1)]
     by_weight = [(low, n) for n in range(first_number + 1)] + between + [(high, n) for n in range(last_number, 8)]
+    # If both readings have the size, as for `0.3-1.3`, the text does not tell which bits are meant.
     readings = [numbered for numbered in (ascending, by_weight) if len(numbered) == size]
     if len(readings) != 1:
         return None

@@ -124,6 +124,7 @@ def _operated(rule: Rule, rows: list[DataRow], notes: Notes) -> list[DataRow]:
             continue
         if rule.stop is not None and rule.stop.search(row.text):
             break
+        # `skip` precedes `join`: a total row without a name would be joined to the last field and dropped with it.
         if rule.skip is not None and rule.skip.search(row.text):
             notes.drop(rule, "skip", row.text)
             continue
@@ -166,6 +167,7 @@ def _append(above: DataRow, row: DataRow) -> None:
     """
     for title, text in row.values.items():
         if text.strip() and row.cells.get(title) is not above.cells.get(title):
+            # Some writers repeat the last lines of a cell on the next page. Shorter texts, such as units, repeat by themselves.
             if len(text) > 12 and normalised(above.values.get(title, "")).endswith(normalised(text)):
                 continue
             above.values[title] = f"{above.values.get(title, '')}\n{text}".strip("\n")

@@ -53,6 +53,7 @@ def joined_parts(
                 rule.place,
             )
             continue
+        # The order of an array's elements is that of the frame, whatever the order of their bits.
         if draft.count or draft.size == 0:
             placed.append(draft)  # elements stand one after the other: their first bit is as printed
             continue

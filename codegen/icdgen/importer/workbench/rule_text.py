@@ -72,6 +72,7 @@ def with_rule(text: str, index: int | None, rule: dict[str, Any] | None) -> str:
         ]
         lines[first : first + 1] = ["rules:\n" if any(others) else "rules: []\n", *others]
         return "".join(lines)
+    # Lines are replaced within the text, because a YAML writer would drop comments and the order of keys.
     starts = [rules.item_at(i).line - 1 for i in range(len(rules))]
     behind = [place.line - 1 for key in tree if (place := tree.key_at(key)).line - 1 > starts[-1]]
     ends = [*starts[1:], min(behind, default=len(lines))]

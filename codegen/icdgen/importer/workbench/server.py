@@ -39,6 +39,7 @@ def handler(session: Session) -> type[BaseHTTPRequestHandler]:
 
         def do_GET(self) -> None:
             path = urlsplit(self.path).path
+            # A page of another site can give its own name the address 127.0.0.1 (DNS rebinding).
             if (self.headers.get("Host") or "").rsplit(":", 1)[0] not in _NAMES:
                 self.send_text(HTTPStatus.FORBIDDEN, "This server answers only to localhost.\n")
             elif path in _FILES:
