@@ -7,14 +7,18 @@ from __future__ import annotations
 
 import copy
 import json
+import struct
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from icdgen import codec
 from icdgen.definitions import kinds, run, sunspec
 from icdgen.definitions.model import Definitions
 from icdgen.diagnostics import Findings
+from icdgen.icd.fmt import emit
+from icdgen.icd.load import load
 from tests.definitions.test_can import FILES, field, message
 
 MODELS = json.loads((FILES / "charger.json").read_text())
@@ -85,6 +89,36 @@ def test_a_model_that_cannot_be_held_is_named_with_the_reason_and_the_others_are
         "message `curves` is not imported: `Pt`, which has any number of repetitions, is inside another group"
     )
     assert (charger.held, charger.definitions.total) == (2, 3)
+    assert said.help == (
+        "if your device always has the same number, write it into a copy of the file: "
+        "as `count` of `Pt` and as `value` of the point `NPt`"
+    )
+
+
+def test_a_group_in_a_repeated_group_is_imported_with_the_number_of_a_device(tmp_path):
+    curves = copy.deepcopy(next(one for one in MODELS if one["group"]["name"] == "curves"))
+    points, (curve,) = curves["group"]["points"], curves["group"]["groups"]
+    points.append({"name": "NCrv", "type": "uint16", "size": 1})
+    curve["count"] = "NCrv"
+    curve["groups"][0]["count"] = 4
+    next(point for point in points if point["name"] == "NPt")["value"] = 4
+    (tmp_path / "curves.json").write_text(json.dumps(curves))
+    read = run.read(tmp_path / "curves.json", sunspec.SunSpec())
+    assert not read.failed and field(read, "curves", "NPt")["const"] == 4
+    (tmp_path / "curves.yaml").write_text(emit.text(next(iter(read.trees.values()))))
+    loaded = load([tmp_path / "curves.yaml"])
+    assert loaded.ok
+    (node,) = loaded.icd.nodes
+    (layout,) = node.messages
+
+    head = struct.pack(">4H", 65003, 12, 4, 2)
+    raw = codec.decode(node, layout, head + struct.pack(">10H", 1, *range(10, 14), 0, *range(20, 24)))
+    assert [raw[f"Crv[{number}].On"] for number in (0, 1)] == [1, 0]
+    assert [raw[f"Crv[1].Pt[{number}].X"] for number in range(4)] == [20, 21, 22, 23]
+    for other in (3, 5):  # two curves, each with another number of points
+        frame = struct.pack(">4H", 65003, 2 + 2 * (1 + other), other, 2) + bytes(2 * 2 * (1 + other))
+        with pytest.raises(codec.LengthError):
+            codec.decode(node, layout, frame)
 
 
 @pytest.mark.parametrize(

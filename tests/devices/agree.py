@@ -133,16 +133,24 @@ def _to_encode(one: Definition, raw: dict[str, object], physical: Values) -> dic
 def _values(one: Definition, raw: dict[str, object]) -> Iterator[tuple[str, dict, object]]:
     """Name, field and value of all that an answer has; of an array a list, of what is open at the end as much as there is."""
     for part in one.fields:
-        name, parts = part["name"], one.parts(part)
+        name = part["name"]
         count = _there(part, raw) if "up_to" in part else part.get("count")
         if "size" in part:
             yield name, part, str(raw[name])[: 2 * count]
-        for index in range(count) if parts else ():
-            for inner in parts:
-                whole = f"{name}[{index}].{inner['name']}"
-                yield whole, inner, _value(raw, whole, inner.get("count"))
-        if not parts and "size" not in part:
-            yield name, part, _value(raw, name, count)
+        else:
+            yield from _values_of(one, part, name, count, raw)
+
+
+def _values_of(
+    one: Definition, part: dict, name: str, count: int | None, raw: dict[str, object]
+) -> Iterator[tuple[str, dict, object]]:
+    """A field that stands for itself or is an array; of an array of structs, the fields of each element."""
+    if "struct" not in part:
+        yield name, part, _value(raw, name, count)
+        return
+    for index in range(count or 0):
+        for inner in one.parts(part):
+            yield from _values_of(one, inner, f"{name}[{index}].{inner['name']}", inner.get("count"), raw)
 
 
 def _value(raw: dict[str, object], name: str, count: int | None) -> object:

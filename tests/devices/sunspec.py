@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import importlib.resources
 import json
 import tempfile
@@ -19,11 +20,30 @@ ORDERS = {"byte_order": "big", "bit_order": "msb0"}
 
 def models() -> Iterator[Definitions]:
     """All models of the package, as those of one device."""
+    yield imported(trees())
+
+
+def trees() -> list[dict]:
+    """The JSON of all models of the package."""
     import sunspec2
 
     folder = importlib.resources.files(sunspec2) / "models" / "json"
     assert isinstance(folder, Path)
-    trees = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(folder.glob("model_*.json"))]
+    return [json.loads(path.read_text(encoding="utf-8")) for path in sorted(folder.glob("model_*.json"))]
+
+
+def with_fixed_count(tree: dict, counter: str, count: int) -> dict:
+    """A copy of a model for a device that has always so many of the groups that a point counts."""
+    tree = copy.deepcopy(tree)
+    for group in _groups(tree["group"]):
+        if group.get("count") == counter:
+            group["count"] = count
+    next(point for point in tree["group"]["points"] if point["name"] == counter)["value"] = count
+    return tree
+
+
+def imported(trees: list[dict]) -> Definitions:
+    """Models as `icdgen import` reads them from one file."""
     with tempfile.TemporaryDirectory() as name:
         file = Path(name, "sunspec.json")
         file.write_text(json.dumps(trees), encoding="utf-8")
@@ -31,8 +51,12 @@ def models() -> Iterator[Definitions]:
     (tree,) = read.trees.values()
     structs = [{**one, "fields": [{**ORDERS, **part} for part in one["fields"]]} for one in tree["structs"]]
     held = {one["id"]: one for one in tree["messages"]}
-    why = {one.message.split("`")[1]: one.message.split(": ", 1)[1] for one in read.definitions.troubles}
-    yield Definitions(tree["node"], [_definition(one, held.get(one["id"]), structs, why) for one in trees], tree)
+    why = {
+        one.message.split("`")[1]: one.message.split(": ", 1)[1]
+        for one in read.definitions.troubles
+        if one.severity == "error"
+    }
+    return Definitions(tree["node"], [_definition(one, held.get(one["id"]), structs, why) for one in trees], tree)
 
 
 def _definition(tree: dict, held: dict | None, structs: list[dict], why: dict[str, str]) -> Definition:

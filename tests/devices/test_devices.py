@@ -13,6 +13,7 @@ import pytest
 from tests.conformance.build import build
 from tests.conformance.driver import Testee
 from tests.conformance.languages import all_languages
+from tests.devices import sunspec
 from tests.devices.__main__ import measure
 from tests.devices.agree import Agreement, compare
 from tests.devices.definition import Definitions
@@ -36,6 +37,37 @@ def test_values_of_messages_that_are_held_are_those_of_the_library(name: str, tm
         assert agreement.messages == row.held and agreement.values > row.held
         assert agreement.differences == []
         assert agreement.unread <= UNREAD
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_sunspec_curves_with_a_fixed_number_of_points_have_the_values_of_the_library(
+    language: str, tmp_path: Path
+) -> None:
+    """The library reads the counts from the registers; the import has them from the edited copy of the model."""
+    pytest.importorskip("sunspec2")
+    nested = {705, 706, 707, 708, 709, 710, 712, 64410, 64411}
+    models = [sunspec.with_fixed_count(tree, "NPt", 4) for tree in sunspec.trees() if tree["id"] in nested]
+    definitions = sunspec.imported(models)
+    assert {one.id for one in definitions.messages if not one.cause} == nested
+    agreement = agreed(definitions, tmp_path, language)
+    assert agreement.messages == len(nested) and agreement.values > 12_000
+    assert agreement.differences == []
+    assert not agreement.unread
+
+
+def test_a_wrong_field_of_sunspec_curve_points_is_noticed(tmp_path: Path) -> None:
+    pytest.importorskip("sunspec2")
+    (model,) = (tree for tree in sunspec.trees() if tree["id"] == 707)
+    definitions = sunspec.imported([sunspec.with_fixed_count(model, "NPt", 3)])
+    assert definitions.tree is not None
+    points = next(one for one in definitions.tree["structs"] if one["name"] == "MayTrip Pt")
+    voltage, time = points["fields"]
+    voltage["at"], time["at"] = time["bits"], 0
+    found = agreed(definitions, tmp_path).differences
+    names = {text.split(": ")[1].split(" is ")[0] for text in found}
+    assert {name.split(".", 1)[1] for name in names} == {
+        f"MayTrip Pt[{number}].{name}" for number in range(3) for name in ("V", "Tms")
+    }
 
 
 def test_a_wrong_definition_is_noticed(tmp_path: Path) -> None:
@@ -87,12 +119,12 @@ def test_a_wrong_struct_of_an_open_end_is_noticed(tmp_path: Path) -> None:
     assert {text.split(": ")[1].split(" is ")[0].split("].")[1] for text in found} == {"az", "el"}
 
 
-def agreed(definitions: Definitions, folder: Path) -> Agreement:
+def agreed(definitions: Definitions, folder: Path, language: str = "python") -> Agreement:
     folder.mkdir(exist_ok=True)
     node = held(definitions, folder)
     assert node.icd is not None and len(node.messages) == len(definitions.messages)
     agreement = Agreement()
-    testee = Testee(build(all_languages()["python"], node.icd, folder / "build"))
+    testee = Testee(build(all_languages()[language], node.icd, folder / "build"))
     compare(definitions.name, node.messages, testee, 5, 1, agreement)
     testee.close()
     return agreement

@@ -155,7 +155,8 @@ class _Model:
         count, name = group["count"], _text(group, "name")
         is_open = type(count) is not int or count <= 0
         if is_open and depth:
-            raise NotHeld(f"`{name}`, which has any number of repetitions, is inside another group")
+            text = f"`{name}`, which has any number of repetitions, is inside another group"
+            raise NotHeld(text, _fixed_number_help(name, count))
         parts: list[Item] = []
         length = self.block(group, parts, 0, "", depth + 1) // 8
         if not length:
@@ -211,6 +212,12 @@ class _Model:
         is_power = type(power) is int and -20 <= power <= 20 and kind.type != "float"
         scaled = formula(printed(Decimal(10) ** power)) if is_power and power is not None else {}
         return {**unit(symbol), **scaled, **said}
+
+
+def _fixed_number_help(group: str, counter: object) -> str:
+    """Return what to do about a group whose number of repetitions must be known: most devices have only one."""
+    text = f"if your device always has the same number, write it into a copy of the file: as `count` of `{line(group, 60)}`"
+    return f"{text} and as `value` of the point `{line(counter, 60)}`" if isinstance(counter, str) else text
 
 
 def _symbols(point: dict[str, Any], is_bits: bool) -> dict[int, str]:
