@@ -152,7 +152,7 @@ TITLE = "Bootloader"
 NODE_TYPE = 110
 INTERFACE_VERSION = 3
 DIGEST = "d2e4997b46248f80aabd895eda9fba858257e2f453ebc55ecb5e34fb1160d96c"
-"""SHA-256 of the ICD that this was generated from."""
+"""SHA-256 of the ICD from which this package was generated."""
 
 _HOMES: dict[str, str] = {
     "AdvanceFileListReadPointer": "..common._types.advance_file_list_read_pointer",
@@ -292,12 +292,12 @@ TELEMETRY = _lazy.Messages(globals(), NAME, "telemetry", _TELEMETRY)
 
 
 def decode_telecommand(id: int, data: _lazy.Buffer) -> _lazy.Message:
-    """The telecommand in ``data``. Raises `UnknownIdError` and `LengthError`."""
+    """Decode a telecommand from ``data``. Raises `UnknownIdError` and `LengthError`."""
     return TELECOMMANDS[id].from_bytes(data)
 
 
 def decode_telemetry(id: int, data: _lazy.Buffer) -> _lazy.Message:
-    """The telemetry frame in ``data``. Raises `UnknownIdError` and `LengthError`."""
+    """Decode a telemetry frame from ``data``. Raises `UnknownIdError` and `LengthError`."""
     return TELEMETRY[id].from_bytes(data)
 
 

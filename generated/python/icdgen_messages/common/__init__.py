@@ -127,7 +127,7 @@ if TYPE_CHECKING:
 NAME = "common"
 TITLE = "Common messages"
 DIGEST = "7bb2ab51d9f372bfd0ec3843143b02a9c37228ea5481ba982ca3b623ab0407e4"
-"""SHA-256 of the ICD that this was generated from."""
+"""SHA-256 of the ICD from which this package was generated."""
 
 _HOMES: dict[str, str] = {
     "LINK": "._link",
@@ -254,12 +254,12 @@ TELEMETRY = _lazy.Messages(globals(), NAME, "telemetry", _TELEMETRY)
 
 
 def decode_telecommand(id: int, data: _lazy.Buffer) -> _lazy.Message:
-    """The telecommand in ``data``. Raises `UnknownIdError` and `LengthError`."""
+    """Decode a telecommand from ``data``. Raises `UnknownIdError` and `LengthError`."""
     return TELECOMMANDS[id].from_bytes(data)
 
 
 def decode_telemetry(id: int, data: _lazy.Buffer) -> _lazy.Message:
-    """The telemetry frame in ``data``. Raises `UnknownIdError` and `LengthError`."""
+    """Decode a telemetry frame from ``data``. Raises `UnknownIdError` and `LengthError`."""
     return TELEMETRY[id].from_bytes(data)
 
 

@@ -411,7 +411,7 @@ TITLE = "CubeACP"
 NODE_TYPE = 10
 INTERFACE_VERSION = 7
 DIGEST = "968abd943efa63cb390b8e5f496153fdeeddfc2883362e703f78dbfa58c5e8e7"
-"""SHA-256 of the ICD that this was generated from."""
+"""SHA-256 of the ICD from which this package was generated."""
 
 _HOMES: dict[str, str] = {
     "AdvanceFileListReadPointer": "..common._types.advance_file_list_read_pointer",
@@ -837,12 +837,12 @@ TELEMETRY = _lazy.Messages(globals(), NAME, "telemetry", _TELEMETRY)
 
 
 def decode_telecommand(id: int, data: _lazy.Buffer) -> _lazy.Message:
-    """The telecommand in ``data``. Raises `UnknownIdError` and `LengthError`."""
+    """Decode a telecommand from ``data``. Raises `UnknownIdError` and `LengthError`."""
     return TELECOMMANDS[id].from_bytes(data)
 
 
 def decode_telemetry(id: int, data: _lazy.Buffer) -> _lazy.Message:
-    """The telemetry frame in ``data``. Raises `UnknownIdError` and `LengthError`."""
+    """Decode a telemetry frame from ``data``. Raises `UnknownIdError` and `LengthError`."""
     return TELEMETRY[id].from_bytes(data)
 
 

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 NAME = "cubemag"
 TITLE = "CubeMag"
 DIGEST = "ee8b1fc5a231b184db56d2687dfb4e127f5716322c5797bdbd6e263c201aa496"
-"""SHA-256 of the ICD that this was generated from."""
+"""SHA-256 of the ICD from which this package was generated."""
 
 _HOMES: dict[str, str] = {
     "DeploymentStatus": "._types.deployment_status",
@@ -70,12 +70,12 @@ TELEMETRY = _lazy.Messages(globals(), NAME, "telemetry", _TELEMETRY)
 
 
 def decode_telecommand(id: int, data: _lazy.Buffer) -> _lazy.Message:
-    """The telecommand in ``data``. Raises `UnknownIdError` and `LengthError`."""
+    """Decode a telecommand from ``data``. Raises `UnknownIdError` and `LengthError`."""
     return TELECOMMANDS[id].from_bytes(data)
 
 
 def decode_telemetry(id: int, data: _lazy.Buffer) -> _lazy.Message:
-    """The telemetry frame in ``data``. Raises `UnknownIdError` and `LengthError`."""
+    """Decode a telemetry frame from ``data``. Raises `UnknownIdError` and `LengthError`."""
     return TELEMETRY[id].from_bytes(data)
 
 

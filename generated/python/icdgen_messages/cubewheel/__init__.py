@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 NAME = "cubewheel"
 TITLE = "CubeWheel"
 DIGEST = "849292d8783b44819795e6d37eeb6e267309a3c2b00047c026d2ab277f6c509a"
-"""SHA-256 of the ICD that this was generated from."""
+"""SHA-256 of the ICD from which this package was generated."""
 
 _HOMES: dict[str, str] = {
     "MotorPower": "._types.motor_power",
@@ -65,12 +65,12 @@ TELEMETRY = _lazy.Messages(globals(), NAME, "telemetry", _TELEMETRY)
 
 
 def decode_telecommand(id: int, data: _lazy.Buffer) -> _lazy.Message:
-    """The telecommand in ``data``. Raises `UnknownIdError` and `LengthError`."""
+    """Decode a telecommand from ``data``. Raises `UnknownIdError` and `LengthError`."""
     return TELECOMMANDS[id].from_bytes(data)
 
 
 def decode_telemetry(id: int, data: _lazy.Buffer) -> _lazy.Message:
-    """The telemetry frame in ``data``. Raises `UnknownIdError` and `LengthError`."""
+    """Decode a telemetry frame from ``data``. Raises `UnknownIdError` and `LengthError`."""
     return TELEMETRY[id].from_bytes(data)
 
 

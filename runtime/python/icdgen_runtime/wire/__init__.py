@@ -1,8 +1,8 @@
-"""How messages travel: framing, checksums, CAN packets, a client, files and logs.
+"""Wire layer: framing, checksums, CAN packets, clients, file transfer and logs.
 
-Nothing here opens a port, sleeps or looks at a clock: bytes go in, bytes and events
-come out, and the time is passed in. Only `Session` waits, by the functions that it is
-given, and `AsyncSession`, on streams. What there is to know of a node is in its ``LINK``.
+The application passes received bytes and the time in, and takes bytes to send and
+events out. Nothing opens a port, sleeps or reads a clock, except `Session`, over a
+port of the application, and `AsyncSession`, over streams. The ``LINK`` of a node describes its protocol.
 """
 
 from __future__ import annotations

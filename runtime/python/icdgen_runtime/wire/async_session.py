@@ -1,4 +1,4 @@
-"""A client over streams of asyncio, for programs that do other things while they wait."""
+"""Client over streams of asyncio."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class _Locks(NamedTuple):
 
 
 class AsyncSession(Exchanges[N]):
-    """Asks, and awaits the outcome, over the bytes of a UART: `Session` for asyncio.
+    """Client over the bytes of a UART: `Session` for asyncio.
 
     The streams are yours: those of `asyncio.open_connection`, or of a serial port
     (pyserial-asyncio). What they raise ends the request, as does its cancellation, and
@@ -64,7 +64,7 @@ class AsyncSession(Exchanges[N]):
         self._read_before: Optional[asyncio.Future[bytes]] = None
 
     async def get(self, message: KindOf[N, M]) -> M:
-        """Requests telemetry, or reads a setting.
+        """Request telemetry or read a configuration.
 
         Raises `RefusedError`, `ReplyTimeoutError` and what `Client.request` does.
         """
@@ -74,7 +74,7 @@ class AsyncSession(Exchanges[N]):
         )
 
     async def ask(self, message: KindOf[N, M]) -> OutcomeOf[M]:
-        """Requests telemetry, or reads a setting; its outcome.
+        """Request telemetry or read a configuration; return the outcome.
 
         Raises what `Client.request` does.
         """
@@ -82,14 +82,14 @@ class AsyncSession(Exchanges[N]):
         return outcome_of(outcome, class_of(message))
 
     async def send(self, message: SpokenBy[N], repeat: bool = False) -> None:
-        """Sends a telecommand or a setting; raises like `get` and `Client.send`."""
+        """Send a telecommand or set a configuration; raises as `get`, `Client.send`."""
         outcome = await self._run(self._exchange(self.client.send, message, repeat))
         executed(outcome, message_of(message).NAME)
 
     async def answer(
         self, message: SpokenBy[N], reply: KindOf[N, M], repeat: bool = False
     ) -> M:
-        """Sends a telecommand in an envelope; the telemetry that it is answered with.
+        """Send a telecommand (with header and trailer) and return its reply.
 
         Raises like `get` and `EnvelopeClient.send`.
         """
@@ -114,7 +114,7 @@ class AsyncSession(Exchanges[N]):
     async def messages(
         self, *kinds: KindOf[N, Message], seconds: Optional[float] = None
     ) -> AsyncIterator[Message]:
-        """The messages that come unasked in envelopes, for ever or for so many seconds.
+        """Unsolicited messages, without end or for this number of seconds.
 
         Without ``kinds`` all of them. What else happens is told to ``on_event``.
         """
@@ -125,15 +125,15 @@ class AsyncSession(Exchanges[N]):
                     yield message
 
     async def start(self, request: Request) -> Outcome:
-        """Any request; its outcome. Raises what `Client.start` does."""
+        """Send any request and return its outcome. Raises as `Client.start`."""
         return await self._run(self._exchange(self.client.start, request))
 
     async def run(self, procedure: P, progress: Optional[Progress] = None) -> P:
-        """Runs a procedure to its end, as `Session.run` does. Raises `FailedError`."""
+        """Run a procedure to its end, as `Session.run`. Raises `FailedError`."""
         return await self._run(self._procedure(procedure, progress))
 
     async def wait(self, until: Optional[float] = None) -> list[Event]:
-        """What happens next, by ``until`` at the latest (milliseconds of the clock).
+        """Return the next events, until ``until`` (milliseconds of the clock).
 
         Without ``until`` it waits as long as the client wants to, and a second at most.
         """

@@ -45,7 +45,7 @@ class Carrier(Protocol):
     def receive(
         self, client: Any, now: Callable[[], float], seconds: float
     ) -> list[Event]:
-        """Gives the client what comes, or lets it know after so long that nothing does."""
+        """Pass received data to the client, or process a timeout."""
         ...
 
 

@@ -1,4 +1,4 @@
-"""One request at a time, from sending to its outcome, over any bus."""
+"""Client that sends one request at a time and reports its outcome, on any bus."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from .uart import UartDecoder, uart_encode, uart_kind
 
 
 class Request(NamedTuple):
-    """What is asked of a node.
+    """A request to a node.
 
     ``repeat``: whether it may be sent again although it may have arrived. Telemetry and
     settings always may.
@@ -43,12 +43,12 @@ class Request(NamedTuple):
 class Client(Generic[N]):
     """A client on one bus.
 
-    It is told what happens and when, in milliseconds of any clock that never goes back:
-    `received`, `packet` or `transferred`, and `tick` at the latest at `deadline`. What
-    is to be sent is taken from `output`, `packets` or `transfers`.
+    Pass received data to `received`, `packet` or `transferred`, and call `tick` at
+    `deadline` at the latest. Take the data to send from `output`, `packets` or
+    `transfers`. Times are in milliseconds of any clock that never goes back.
 
-    ``crc``: with checksums, where the ICD leaves the choice for the bus. ``address``: ours, on
-    CAN. Raises `UnsupportedError` for a bus that the ICD does not describe.
+    ``crc``: use optional checksums. ``address``: address of the client on CAN. Raises
+    `UnsupportedError` for a bus that the ICD does not describe.
     """
 
     def __init__(
@@ -92,27 +92,27 @@ class Client(Generic[N]):
 
     @property
     def busy(self) -> bool:
-        """Whether a request is going on."""
+        """Whether a request is in progress."""
         return self._state != "idle"
 
     @property
     def deadline(self) -> Optional[float]:
-        """When `tick` wants to be called at the latest; None: not at all."""
+        """Time in ms at which `tick` must be called at the latest; None if idle."""
         return self._until if self.busy else None
 
     def request(self, now: float, message: KindOf[N, Message]) -> list[Event]:
-        """Requests telemetry, or reads a setting. See `start`."""
+        """Request telemetry or read a configuration. See `start`."""
         return self.start(now, Request("telemetry", requested(self.link, message)))
 
     def send(
         self, now: float, message: SpokenBy[N], repeat: bool = False
     ) -> list[Event]:
-        """Sends a telecommand or a setting. See `start`; also raises `RangeError`."""
+        """Send a telecommand or set a configuration. See `start`; or `RangeError`."""
         id, data = sent(self.link, message), message_of(message).to_bytes()
         return self.start(now, Request("telecommand", id, data, repeat))
 
     def start(self, now: float, request: Request) -> list[Event]:
-        """Begins a request.
+        """Start a request.
 
         Raises `UnknownIdError`, `BusyError` while another one is going on or its output
         has not been taken, and `LengthError`.
@@ -140,17 +140,17 @@ class Client(Generic[N]):
         return self._transmit(now)
 
     def output(self) -> bytes:
-        """UART: what is to be sent, once."""
+        """UART: return the bytes to send, each once."""
         taken, self._stream = self._stream, []
         return b"".join(taken)
 
     def packets(self) -> list[CanPacket]:
-        """CAN: what is to be sent, once."""
+        """CAN: return the packets to send, each once."""
         taken, self._packets = self._packets, []
         return taken
 
     def transfers(self) -> list[I2cTransfer]:
-        """I2C: what is to be written and read, once.
+        """I2C: return the transactions to perform, each once.
 
         `transferred` is told of each, once and in this order.
         """
@@ -159,7 +159,7 @@ class Client(Generic[N]):
         return taken
 
     def cancel(self) -> None:
-        """Gives up the request, without an event, and what of it was not taken.
+        """Cancel the request without an event, and drop its remaining output.
 
         The next one may begin at once; a late reply to this one is `Stray`.
         """
@@ -169,7 +169,7 @@ class Client(Generic[N]):
         self._state = "idle"
 
     def tick(self, now: float) -> list[Event]:
-        """Lets time pass."""
+        """Process timeouts. Call at `deadline` (in ms) at the latest."""
         events: list[Event] = []
         if self._joiner:
             events += map(_line_error, self._joiner.expire(now))
@@ -178,7 +178,7 @@ class Client(Generic[N]):
         return events
 
     def received(self, now: float, data: Buffer) -> list[Event]:
-        """UART: the next bytes of the stream."""
+        """UART: process received bytes, in pieces of any size."""
         events = self.tick(now)
         for found in need(self._decoder, "uart").feed(data):
             if found.event == "message":
@@ -188,7 +188,7 @@ class Client(Generic[N]):
         return events
 
     def packet(self, now: float, packet: CanPacket) -> list[Event]:
-        """CAN: a packet."""
+        """CAN: process a received packet."""
         events = self.tick(now)
         for found in need(self._joiner, "can").feed(now, packet):
             if found.message:
@@ -198,9 +198,9 @@ class Client(Generic[N]):
         return events
 
     def transferred(self, now: float, data: Optional[Buffer]) -> list[Event]:
-        """I2C: what was read (nothing after a write); None: the transaction failed.
+        """I2C: process the bytes that were read; None if the transaction failed.
 
-        What a request owed that is over is `Stray`.
+        The result of a request that has already ended is reported as `Stray`.
         """
         is_awaited = self._owed == 1 and self._awaits_transfer
         self._owed = max(0, self._owed - 1)
@@ -227,11 +227,11 @@ class Client(Generic[N]):
 
     @property
     def _awaits_transfer(self) -> bool:
-        """I2C: whether the last transfer was taken, and is that of the request."""
+        """I2C: whether the last transfer is taken and belongs to the request."""
         return self._state in ("wait", "poll") and not self._transfers
 
     def _transmit(self, now: float) -> list[Event]:
-        """Sends the request, for the first time or again."""
+        """Send the request, for the first time or again."""
         request = self._asked
         is_telecommand = request.kind == "telecommand"
         self._attempts += 1
@@ -263,7 +263,7 @@ class Client(Generic[N]):
         return []
 
     def _expired(self, now: float) -> list[Event]:
-        """The time of the state is over."""
+        """Process the end of the time of a state."""
         if self._state == "wait":
             return self._no_reply(now)
         if self._state == "poll":
@@ -277,7 +277,7 @@ class Client(Generic[N]):
         return self._transmit(now)
 
     def _no_reply(self, now: float) -> list[Event]:
-        """There was no reply that can be used: once more, or the end."""
+        """Process a missing or unusable reply: send again or end the request."""
         if not self._asked.repeat or self._attempts > self.settings.retries:
             return self._timeout(now)
         if self.bus == "i2c":  # the bus said so at once: the node gets some time
@@ -287,7 +287,7 @@ class Client(Generic[N]):
         return self._transmit(now)
 
     def _pause(self, now: float) -> list[Event]:
-        """Polls after a while, unless that has been done for long enough."""
+        """Poll again after the poll interval, until the poll timeout."""
         if now >= self._give_up:
             return self._timeout(now)
         self._state, self._until = "pause", now + self.settings.poll_interval
@@ -300,7 +300,7 @@ class Client(Generic[N]):
         self._transfers.append(I2cTransfer(bytes((id,)), length))
 
     def _polled(self, now: float, data: Optional[bytes]) -> list[Event]:
-        """The acknowledge frame came, or did not."""
+        """Process the acknowledge frame, or its absence."""
         if data is None:
             return self._pause(now)
         form: Polled = need(self.link.polled, "i2c.acknowledge")
@@ -379,7 +379,7 @@ class Client(Generic[N]):
     def _refused(
         self, now: float, code: Optional[int], parameter: Optional[int] = None
     ) -> list[Event]:
-        """The node refused it. After a wrong checksum it is sent again."""
+        """Process a rejected request. After a wrong checksum it is sent again."""
         codes = {number: role for role, number in self.link.errors.items()}
         reason = None if code is None else codes.get(code)
         is_left = self._attempts <= self.settings.retries

@@ -1,4 +1,4 @@
-"""A client over a link whose messages travel in envelopes: it sends, listens, and asks where something answers."""
+"""Client for messages with header and trailer."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _NOTHING = Request("telecommand", 0)
 
 @dataclass(eq=False)
 class _Slot:
-    """Room for a request, and the memory of the one before that may still be answered."""
+    """A request, and the previous request if its reply may still arrive."""
 
     asked: Request = _NOTHING
     state: Literal["idle", "hold", "wait"] = "idle"
@@ -37,7 +37,7 @@ class _Slot:
 
 
 class EnvelopeClient(Generic[N]):
-    """A client over a stream of bytes, or packets, with envelopes.
+    """A client for messages with header and trailer, in a stream or in packets.
 
     It is told what happens and when, in milliseconds of any clock that never goes back:
     `received`, and `tick` at the latest at `deadline`. What is to be sent is taken from
@@ -64,28 +64,28 @@ class EnvelopeClient(Generic[N]):
         self._decoder = StreamDecoder(link)
         self._most = requests
         self.begun: Optional[int] = None
-        """Id of the telemetry that answers the request begun last; None: nothing does."""
+        """Id of the reply to the last request; None if it has none."""
         self._slots: list[_Slot] = []
         self._untaken: list[_Slot] = []
 
     @property
     def busy(self) -> bool:
-        """Whether a request is going on."""
+        """Whether a request is in progress."""
         return any(slot.state != "idle" for slot in self._slots)
 
     @property
     def deadline(self) -> Optional[float]:
-        """When `tick` wants to be called at the latest; None: not at all."""
+        """Time in ms at which `tick` must be called at the latest; None if idle."""
         ends = (slot.until for slot in self._slots if slot.state != "idle")
         return min(ends, default=None)
 
     @property
     def discarded(self) -> int:
-        """Bytes of the stream that became part of no message."""
+        """Number of received bytes that are not part of a message."""
         return self._decoder.discarded
 
     def request(self, now: float, message: KindOf[N, Message]) -> list[Event]:
-        """Asks for telemetry, with the telecommand that the ICD names for it. See `start`."""
+        """Request telemetry by the telecommand that it replies to. See `start`."""
         request = Request("telemetry", requested(self.link, message))
         return self._begin(now, request, kind=class_of(message))
 
@@ -96,7 +96,7 @@ class EnvelopeClient(Generic[N]):
         repeat: bool = False,
         reply: Optional[KindOf[N, Message]] = None,
     ) -> list[Event]:
-        """Sends a telecommand. See `start`; also raises `RangeError`.
+        """Send a telecommand. See `start`; also raises `RangeError`.
 
         ``reply``: the telemetry that answers it, where the ICD does not say so.
         """
@@ -109,7 +109,7 @@ class EnvelopeClient(Generic[N]):
     def start(
         self, now: float, request: Request, reply: Optional[int] = None
     ) -> list[Event]:
-        """Begins a request; ``reply`` is the id of the telemetry that answers a telecommand.
+        """Start a request; ``reply`` is the id of the reply to a telecommand.
 
         Raises `UnknownIdError`, `LengthError`, `BusyError` while another one waits for the
         same reply or no more may be under way, and `UnsupportedError` for telemetry that no
@@ -118,7 +118,7 @@ class EnvelopeClient(Generic[N]):
         return self._begin(now, request, reply)
 
     def output(self) -> bytes:
-        """The next message to be sent, once; nothing if there is none."""
+        """Return the next encoded message to send; empty if there is none."""
         if not self._untaken:
             return b""
         slot = self._untaken.pop(0)
@@ -131,7 +131,7 @@ class EnvelopeClient(Generic[N]):
         id: Optional[int] = None,
         reply: Optional[int] = None,
     ) -> None:
-        """Gives up a request, or all, without an event, and what of it was not taken.
+        """Cancel a request, or all, without an event; drop the remaining output.
 
         ``reply``: only what waits for telemetry of that id.
         """
@@ -144,7 +144,7 @@ class EnvelopeClient(Generic[N]):
                 slot.state = "idle"
 
     def tick(self, now: float) -> list[Event]:
-        """Lets time pass."""
+        """Process timeouts. Call at `deadline` (in ms) at the latest."""
         events: list[Event] = []
         for slot in self._slots:
             if slot.state == "idle" or now < slot.until:
@@ -158,7 +158,7 @@ class EnvelopeClient(Generic[N]):
         return events
 
     def received(self, now: float, data: Buffer) -> list[Event]:
-        """The next bytes of the stream, or a packet."""
+        """Process received bytes: a piece of the stream, or one packet."""
         events = self.tick(now)
         for found in self._decoder.feed(data):
             events.append(self._found(now, found))
@@ -206,7 +206,7 @@ class EnvelopeClient(Generic[N]):
         return self._transmit(now, slot)
 
     def _row(self, request: Request) -> StreamRow:
-        """The telecommand that is sent."""
+        """Return the telecommand that is sent."""
         rows, id = self._form.telecommands, request.id
         if request.kind == "telecommand":
             row = next((row for row in rows if row.id == id), None)
@@ -223,7 +223,7 @@ class EnvelopeClient(Generic[N]):
         return row
 
     def _free(self, reply: Optional[int]) -> _Slot:
-        """Room for a request with that reply, which no other one waits for."""
+        """Return a slot for a request whose reply no other request waits for."""
         waiting = (slot.reply for slot in self._slots if slot.state != "idle")
         if reply is not None and reply in waiting:
             raise BusyError(f"a request waits for telemetry {reply} already")
@@ -236,7 +236,7 @@ class EnvelopeClient(Generic[N]):
         return self._slots[-1]
 
     def _transmit(self, now: float, slot: _Slot) -> list[Event]:
-        """Sends the request, for the first time or again."""
+        """Send the request, for the first time or again."""
         slot.attempts += 1
         if slot not in self._untaken:
             self._untaken.append(slot)
@@ -253,11 +253,11 @@ class EnvelopeClient(Generic[N]):
             self._remember(slot, now)
 
     def _drop(self, slot: _Slot) -> None:
-        """Takes back what was not taken."""
+        """Drop the remaining output."""
         if slot in self._untaken:
             self._untaken.remove(slot)
 
     def _remember(self, slot: _Slot, since: float) -> None:
-        """That the reply may still come, or come again."""
+        """Remember that the reply may still arrive, or arrive again."""
         if slot.was_taken and slot.reply is not None:
             slot.late = slot.reply, since + self.settings.reply_timeout

@@ -1,4 +1,4 @@
-"""A client over any port, for programs that may wait."""
+"""Blocking client over any port."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ from .spoken import M2, M3, KindOf, M, SpokenBy, class_of, message_of
 
 
 class BusSession(Exchanges[N]):
-    """Asks, and waits for the outcome, over whatever ``_flush`` and ``_receive`` reach."""
+    """Blocking client over the transport of ``_flush`` and ``_receive``."""
 
     def get(self, message: KindOf[N, M]) -> M:
-        """Requests telemetry, or reads a setting.
+        """Request telemetry or read a configuration.
 
         Raises `RefusedError`, `ReplyTimeoutError` and what `Client.request` does.
         """
@@ -41,7 +41,7 @@ class BusSession(Exchanges[N]):
         )
 
     def ask(self, message: KindOf[N, M]) -> OutcomeOf[M]:
-        """Requests telemetry, or reads a setting; its outcome.
+        """Request telemetry or read a configuration; return the outcome.
 
         Raises what `Client.request` does.
         """
@@ -62,9 +62,9 @@ class BusSession(Exchanges[N]):
     def get_several(self, *messages: KindOf[N, M]) -> tuple[M, ...]: ...
 
     def get_several(self, *messages: KindOf[N, Any]) -> tuple[Any, ...]:
-        """Requests telemetry, all at once where the link tells replies apart; else in turn.
+        """Request several telemetry messages, at once if the link allows it.
 
-        Raises like `get`, with the others given up.
+        Raises as `get`; the other requests are then cancelled.
         """
         asked = [self._exchange(self.client.request, message) for message in messages]
         outcomes = self._run(self._together(asked))
@@ -74,14 +74,14 @@ class BusSession(Exchanges[N]):
         )
 
     def send(self, message: SpokenBy[N], repeat: bool = False) -> None:
-        """Sends a telecommand or a setting; raises like `get` and `Client.send`."""
+        """Send a telecommand or set a configuration; raises as `get`, `Client.send`."""
         outcome = self._run(self._exchange(self.client.send, message, repeat))
         executed(outcome, message_of(message).NAME)
 
     def answer(
         self, message: SpokenBy[N], reply: KindOf[N, M], repeat: bool = False
     ) -> M:
-        """Sends a telecommand in an envelope; the telemetry that it is answered with.
+        """Send a telecommand (with header and trailer) and return its reply.
 
         Raises like `get` and `EnvelopeClient.send`.
         """
@@ -104,7 +104,7 @@ class BusSession(Exchanges[N]):
     def messages(
         self, *kinds: KindOf[N, Message], seconds: Optional[float] = None
     ) -> Iterator[Message]:
-        """The messages that come unasked in envelopes, for ever or for so many seconds.
+        """Unsolicited messages, without end or for this number of seconds.
 
         Without ``kinds`` all of them. What else happens is told to ``on_event``.
         """
@@ -113,11 +113,11 @@ class BusSession(Exchanges[N]):
             yield from self._messages_in(self.wait(end), kinds)
 
     def start(self, request: Request) -> Outcome:
-        """Any request; its outcome. Raises what `Client.start` does."""
+        """Send any request and return its outcome. Raises as `Client.start`."""
         return self._run(self._exchange(self.client.start, request))
 
     def run(self, procedure: P, progress: Optional[Progress] = None) -> P:
-        """Runs a procedure to its end; ``progress`` is told of bytes, and of how many.
+        """Run a procedure to its end; calls ``progress`` with bytes done and total.
 
         A request that is refused with a code that the ICD does not have is sent again, if
         it may be, as the acknowledge may be damaged, and else taken for a time-out. Raises
@@ -126,7 +126,7 @@ class BusSession(Exchanges[N]):
         return self._run(self._procedure(procedure, progress))
 
     def wait(self, until: Optional[float] = None) -> list[Event]:
-        """What happens next, by ``until`` at the latest (milliseconds of the clock).
+        """Return the next events, until ``until`` (milliseconds of the clock).
 
         Without ``until`` it waits as long as the client wants to, and a second at most.
         """
@@ -151,16 +151,16 @@ class BusSession(Exchanges[N]):
             exchange.close()
 
     def _flush(self) -> None:
-        """Sends what the client wants to be sent."""
+        """Send the pending output of the client."""
         raise NotImplementedError
 
     def _receive(self, seconds: float) -> list[Event]:
-        """Gives the client what comes, or lets it know after so long that nothing does."""
+        """Pass received data to the client, or process a timeout."""
         raise NotImplementedError
 
 
 class Session(BusSession[N]):
-    """Asks, and waits for the outcome, over a port.
+    """Blocking client over a port.
 
     The port is yours, open as you want it: a serial port (pyserial), a connected socket of
     TCP or UDP, a CAN bus (python-can) or an I2C bus (smbus2). Of any other carrier of bytes
