@@ -115,7 +115,7 @@ NOTHING = [
     "coffee machine",
     "propulsion",
     "temperature of moon",
-    "warp drive",
+    "hyperspace jump",
 ]
 
 

@@ -44,7 +44,7 @@ def generate(
     measured: Path | None,
     quiet: bool,
 ) -> None:
-    """Generate code from ICDs: files or folders; by default those in icdgen.toml, or the shipped ones."""
+    """Generate code from ICDs: files or folders (default: the ICDs in icdgen.toml, or the shipped ones)."""
     paths, config = chosen(icds)
     packages = of_project(config)
     languages_to_generate = list(languages) or config.lang

@@ -24,7 +24,7 @@ def init(name: str, origin: str | None, icds: tuple[Path, ...]) -> None:
 
     The ICD has UART framing, a checksum, acknowledges, telemetry, telecommands and a configuration message. It is ready for
     icdgen check, icdgen --lang c, icdgen docs and icdgen sim. --from copies the protocol of a node of your ICDs or of the
-    shipped ones. Editors use the schema beside the ICD to complete and check it. Existing files are not changed.
+    shipped ones. Editors use the schema next to the ICD to complete and check it. Existing files are not changed.
     """
     from icdgen import starter
 

@@ -54,7 +54,7 @@ def log(
     damaged and unknown entries are omitted and reported.
 
     Times of the entries show damage: damaged ranges are omitted with the entry before them. Time jumps, such as a restart of
-    the device, are kept. Exit status: 0 converted or listed, 1 also, but part of a log is damaged, 2 wrong usage.
+    the device, remain. Exit status: 0 converted or listed, 1 also, but part of a log is damaged, 2 wrong usage.
     """
     from icdgen.logfile.log import open_log
 

@@ -14,7 +14,7 @@ from icdgen.commands.common import PATH, say, write_file
 def schema(out: Path | None) -> None:
     """Print the JSON Schema of ICDs and errata overlays, by which editors complete and check them.
 
-    `icdgen init` and `icdgen import` write a copy beside the ICDs, which name it in their first line. After an update of
+    `icdgen init` and `icdgen import` write a copy next to the ICDs, which name it in their first line. After an update of
     icdgen, --out renews the copy.
     """
     from icdgen.icd.schema import PATH as FILE

@@ -47,7 +47,7 @@ Accepted = tuple[Change, Acceptance]
 
 def find_file(start: Path) -> Path | None:
     """Return the file in the nearest parent folder that contains one, within the
-    repository; None if there is none.
+    repository; None without such a file.
     """
     # Like icdgen.toml, the file applies to the folders below it.
     for folder in (start, *start.parents):

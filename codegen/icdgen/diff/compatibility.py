@@ -138,8 +138,8 @@ def _frames(comparison: Comparison, key: str, judge: Judge, logged: bool = False
 
 
 def _counterpart(comparison: Comparison, old: Message, candidates: list[Message]) -> Message | None:
-    """Return the message among those of an id that is the counterpart of the old
-    message, or the only message of this id.
+    """Return the counterpart of the old message among the messages of an id,
+    otherwise the only message of this id.
     """
     after = comparison.match.messages[id(old)].after
     return next(

@@ -190,8 +190,8 @@ Difference = tuple[object, object, tuple[str, ...]]
 
 
 def difference_in_meaning(pair: IdentifiedPair) -> Difference | None:
-    """Return the difference in meaning of a field, if its names can change by nothing
-    else; None otherwise.
+    """Return the difference in meaning of a field, if its names depend on no other
+    change; None otherwise.
     """
     if not isinstance(pair, FieldPair) or not pair.both or is_renamed(pair):
         return None

@@ -44,7 +44,7 @@ class HtmlBackend:
         return files(icd, render, self.packages, self.previous)
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
-        """Return no identifiers: file names and anchors are made unique as they are
-        assigned.
+        """Return no identifiers: file names and anchors become unique on
+        assignment.
         """
         return iter(())

@@ -20,7 +20,7 @@ _CODE = re.compile(r"`([^`]*)`")
 def report(report: Report, colour: bool = False, width: int | None = None, everything: bool = False) -> str:
     """Return the report in GitHub's Markdown.
 
-    Long parts are folded; nothing is omitted.
+    Long parts are folded; no content is omitted.
     """
     lines = [f"## ICD changes: {escaped(report.old.label)} → {escaped(report.new.label)}", ""]
     if not report.comparison.changes:
