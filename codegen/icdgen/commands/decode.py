@@ -45,19 +45,14 @@ def decode(arguments: tuple[str, ...], icds: tuple[Path, ...], kind: str | None,
     readings = recognize.recognize(icd, frame, node, message, kind)
     # The user may have meant an id that the node does not have.
     if node is not None and message is None and arguments[0].lower() == node and arguments[1].isdecimal():
-        readings = [
-            reading if reading.id is not None else reading.noted(_no_id(arguments[1], node)) for reading in readings
-        ]
+        note = f"{node} has no message {arguments[1]}: it is taken for the first byte of the frame"
+        readings = [reading if reading.id is not None else reading.noted(note) for reading in readings]
     {"text": _print_text, "json": _print_json, "csv": _print_csv}[form](readings)
     left_out = [text for reading in readings for text in reading.left_out]
     if form == "csv":  # the other forms have it among the remarks
         for text in left_out:
             say(f"left out: {text}", err=True)
     sys.exit(1 if left_out or any(reading.has_wrong_constant for reading in readings) else 0)
-
-
-def _no_id(word: str, node: str) -> str:
-    return f"{node} has no message {word}: it is taken for the first byte of the frame"
 
 
 def _split_arguments(icd: Icd, words: list[str], kind: str | None) -> tuple[str | None, str | None, str | bytes]:

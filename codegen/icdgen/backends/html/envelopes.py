@@ -36,6 +36,8 @@ _ROLES = {
     "destination": "says whom it is for",
     "checksum": "shows damage",
 }
+# Attributes of a field that the decoder in JavaScript reads.
+_FIELD_KEYS = ("role", "in_trailer", "at", "size", "shift", "bits", "little", "values")
 _KINDS = {
     "fletcher": "Fletcher's, sums modulo 256",
     "fletcher_255": "Fletcher's, sums modulo 255",
@@ -74,7 +76,7 @@ def script_facts(form: Stream, message: Message | None = None) -> dict[str, obje
         "plus": form.length_plus,
         "longest": form.longest,
         "given": GIVEN,
-        "fields": [_field(field) for field in form.fields],
+        "fields": [{name: getattr(field, name) for name in _FIELD_KEYS} for field in form.fields],
     }
     if form.check:
         script_data["check"] = _check(form.check)
@@ -84,11 +86,6 @@ def script_facts(form: Stream, message: Message | None = None) -> dict[str, obje
         rows = [row for row in form.rows(direction) if ids is None or row.id in ids]
         script_data[direction] = [[row.id, row.least, row.most, row.seed] for row in rows]
     return script_data
-
-
-def _field(field: Any) -> dict[str, object]:
-    names = ("role", "in_trailer", "at", "size", "shift", "bits", "little", "values")
-    return {name: getattr(field, name) for name in names}
 
 
 def _check(check: Check) -> dict[str, object]:

@@ -62,12 +62,14 @@ def _points(old: Curve | Scale, new: Curve | Scale) -> tuple[str, ...]:
         return ()
     was, now = (frozenset(curve.points) for curve in tables)
     removed, added = (sorted(points) for points in (was - now, now - was))
-    sides = (("It had", removed), ("It has", added))
-    return tuple(f"{what} {listing(_few(list(map(point_text, points))))}." for what, points in sides if points)
-
-
-def _few(points: list[str]) -> list[str]:
-    return points if len(points) <= MOST else [*points[:MOST], count(len(points) - MOST, "more point")]
+    details = []
+    for what, points in (("It had", removed), ("It has", added)):
+        texts = list(map(point_text, points[:MOST]))
+        if len(points) > MOST:
+            texts.append(count(len(points) - MOST, "more point"))
+        if points:
+            details.append(f"{what} {listing(texts)}.")
+    return tuple(details)
 
 
 @lru_cache(maxsize=4096)

@@ -51,7 +51,8 @@ def scripts(facts: Facts) -> Requests:
     if not form or not facts.hole_map or not facts.crc16:
         return
     if form.list:
-        yield from _lists(facts)
+        for loss in (0.0, 0.3):
+            yield from _recorded(facts, "the list of files", {"do": "list"}, loss)
     if form.download:
         yield from _downloads(facts)
     if form.upload:
@@ -84,11 +85,6 @@ def _node(facts: Facts, bus: str, loss: float, why: str) -> FileNode:
 def _recorded(facts: Facts, why: str, request: dict[str, Any], loss: float, bus: str = UART) -> Requests:
     script, _ = record(facts, request, _node(facts, bus, loss, why))
     yield f"{why}, {loss:.0%} lost", {"op": "file", **request, "script": script}
-
-
-def _lists(facts: Facts) -> Requests:
-    for loss in (0.0, 0.3):
-        yield from _recorded(facts, "the list of files", {"do": "list"}, loss)
 
 
 def _downloads(facts: Facts) -> Requests:
