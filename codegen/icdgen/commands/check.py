@@ -23,4 +23,5 @@ def check(icds: tuple[Path, ...], form: str) -> None:
     of_project(config)  # raises an error for names that cannot be used
     loaded = load(paths, plug_ins=backends.not_ours(config.lang))
     print_findings(loaded.findings, loaded.texts, form)
+    # Warnings fail too, so that CI notices them.
     sys.exit(1 if loaded.findings else 0)

@@ -120,6 +120,7 @@ def chosen(icds: tuple[Path, ...]) -> tuple[list[Path], config.Config]:
     except FileNotFoundError:
         raise UserError("the current folder is no longer there", "change to another one") from None
     paths = list(icds) or configuration.icds or [shipped.icds()]
+    # Functions of this module also run outside of a command, in tests.
     context = click.get_current_context(silent=True)
     if context is not None and not icds:
         context.meta[_CONFIG_KEY] = configuration
@@ -139,6 +140,7 @@ def beside_shipped(error: UserError, context: click.Context) -> UserError:
         return NotFound(str(error), f"{error.help}, which come with icdgen; name yours with --icd, or in icdgen.toml")
     path = configuration.path
     for file in sorted(shipped.icds().glob("*.yaml")):
+        # The message of the error names the missing node.
         if f"`{file.stem}`" in str(error).lower():
             return NotFound(
                 f"{error}: it is a node that comes with icdgen; {_short(path)} does not name it",

@@ -68,6 +68,7 @@ def _split_arguments(icd: Icd, words: list[str], kind: str | None) -> tuple[str 
     only = only_node(icd)
     if len(words) == 1 and words[0].lower() in {n.name for n in icd.nodes}:
         raise UserError(f"there is no frame for {words[0]}", "give it after the node, or - for standard input")
+    # The first word is a node, a message of the only node, or the start of the frame.
     if len(words) > 1:
         if words[0].lower() in {n.name for n in icd.nodes}:
             node = find_node(icd, words.pop(0)).name
@@ -184,6 +185,7 @@ def _is_file(name: str) -> bool:
 
 def _frames_in(file: BinaryIO, name: str) -> str | bytes:
     """Return the content of a file as text if it is ASCII, otherwise as bytes."""
+    # One byte more shows whether the file is too long.
     data = file.read(_MOST + 1)
     if len(data) > _MOST:
         help = "give fewer frames; `icdgen log` takes recordings of any size"

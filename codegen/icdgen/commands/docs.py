@@ -38,6 +38,7 @@ def docs(icds: tuple[Path, ...], out: Path, previous: str | None, serve: bool, p
         built_site = site.make(paths, previous, config.templates, packages, watch)
     if built_site.findings:
         print_findings(built_site.findings, built_site.texts, "text", err=True)
+    # Findings with errors: the site would be incomplete.
     if not built_site.ok:
         sys.exit(1)
     out = out or Path("site")

@@ -71,6 +71,8 @@ def _files(paths: list[Path]) -> list[Path]:
             continue
         result = folders.search(path)
         homes = {icd.parent for icd in result.icds}
+        # Errata overlays next to an ICD belong to it, even if the folder search skips
+        # them.
         errata = [overlay for home in homes for overlay in home.glob("errata/*.yaml")]
         files = sorted({*result.icds, *result.overlays, *errata})
         if not files:

@@ -115,6 +115,7 @@ def import_(
     from icdgen.importer import console, profile, run, table_files
 
     has_tables = len(files) == 1 and table_files.is_folder_of_tables(files[0])
+    # A folder can contain corrected tables of a manual or definition files.
     definitions = [] if has_tables else _definitions(files, kind)
     if definitions:
         _define(definitions, out, update, dry_run, form)

@@ -42,6 +42,7 @@ def _style(origin: str, icds: tuple[Path, ...]) -> Style:
     from icdgen.values.find import find_node
 
     paths = chosen(icds)[0]
+    # `icdgen init` may run in a project whose ICDs are still to be written.
     if not icds and not all(path.exists() for path in paths):
         paths = [shipped.icds()]  # icdgen.toml exists before its ICDs
     loaded = right_or_exit(load(paths))

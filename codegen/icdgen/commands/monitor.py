@@ -101,6 +101,7 @@ class _Rounds:
         """
         from icdgen_runtime.wire.client import Request
 
+        # The wall clock can jump; rounds must not.
         end = time.monotonic() + self.every
         self.watched.begin()
         for message in self.watched.asked():

@@ -17,6 +17,7 @@ def rule(code: str | None) -> None:
     from icdgen.importer import findings
 
     if code is None:
+        # The three kinds of rules have separate registries.
         titles = [(icd_rule.code, icd_rule.title) for icd_rule in rules.ALL.values()]
         titles += [(diff_rule.code, diff_rule.title) for diff_rule in RULES.values()]
         titles += [(name, page.title) for name, page in findings.pages().items()]

@@ -63,6 +63,7 @@ def send(words: tuple[str, ...], icds: tuple[Path, ...], raw: bool, yes: bool, f
     if form == "json":
         response = {key: getattr(outcome, key, None) for key in ("code", "reason", "attempts")}
         response["reply"] = reply.to_json() if reply else None
+        # JSON omits attributes that this kind of outcome does not have.
         known_values = {key: value for key, value in response.items() if value is not None}
         click.echo(json.dumps({"message": frame.message.name, "event": type(outcome).__name__.lower(), **known_values}))
     elif isinstance(outcome, Done):

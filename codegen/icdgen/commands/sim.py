@@ -110,6 +110,7 @@ def sim(
     ways += [(way, host, port) for way, port in (("tcp", tcp), ("udp", udp)) if port is not None]
     if (to := options.pop("connect")) is not None:
         ways.append(("connect", *_place(to)))
+    # Windows has no pseudo-terminals.
     if not ways:
         ways = [("tcp", host, 0)] if sys.platform == "win32" else [("pty",)]
     if pty and sys.platform == "win32":

@@ -13,6 +13,7 @@ def units() -> None:
     from icdgen import tables
     from icdgen.icd.units import SPELLINGS, STANDARD
 
+    # SPELLINGS lists notations that the check rejects, with their correct symbol.
     spellings: dict[str, list[str]] = {}
     for spelling, symbol in SPELLINGS.items():
         spellings.setdefault(symbol, []).append(spelling)

@@ -31,6 +31,7 @@ class AssuranceBackend:
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """Yield each page and table, in a fixed order."""
+        # Imported late: other commands do not need it.
         from icdgen.backends.assurance import pack
 
         return pack.files(icd, render, self.measured)

@@ -91,6 +91,7 @@ def of_line(node: LayoutNode, layout: Layout, orders: Orders) -> Iterator[tuple[
     size, bits, source = 8 * layout.length, stride(node), node.source
     count = node.size if isinstance(node, Array) and isinstance(node.size, int) else 1
     for step in (-8, 8) if scalar is None or scalar.is_bytes else (-8, -1, 1, 8):
+        # A field outside of the frame would be reported by `icdgen check`.
         if 0 <= node.at + step <= size - bits * count:
             yield _step("offset", source, "at", node.at, step), with_attributes(node, at=node.at + step)
     for step in _WIDER.get(scalar.type, ()) if scalar else ():
@@ -156,6 +157,7 @@ def _types(node: LayoutNode, scalar: Scalar) -> Iterator[tuple[Change, LayoutNod
     source = node.source
     for kind in OTHER_TYPES[scalar.type] if "type" in source and "enum" not in source else ():
         if _can_be(node, scalar, kind):
+            # Formulas of integers are exact scales, formulas of floats are not.
             scale, curve = calibration(scalar.formula, kind)
             if "points" in source and kind in ("uint", "int", "float"):
                 curve = scalar.curve
@@ -205,6 +207,7 @@ def _values(node: LayoutNode, scalar: Scalar) -> Iterator[tuple[Change, LayoutNo
             yield change, with_attributes(node, const=scalar.const + step)
     for index, old in enumerate(scalar.special):
         source = node.source["special"][index]
+        # NaN and infinities are exchanged for each other instead of counted up.
         named = [name for name in floats.NAMED if old.number in floats.NAMED and name != old.number]
         for now in named or [source["value"] + step for step in (-1, 1)]:
             new = special(scalar.type, scalar.bits, now, old.meaning)
@@ -289,6 +292,7 @@ def formulas(text: str) -> Iterator[str]:
         last = Decimal(1).scaleb(int(number.as_tuple().exponent))
         for other in (number - last, number + last, number * 10, number / 10):
             yield f"{text[: match.start()]}{other:f}{text[match.end() :]}"
+    # A formula may be solved for the raw value: `raw = value / 0.5`.
     yield text.replace("raw", "-raw", 1) if "=" not in text else text.replace("value", "-value", 1)
     yield f"{text} + 1"
 

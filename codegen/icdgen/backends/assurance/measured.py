@@ -52,6 +52,7 @@ def icd_digest(icd: Icd) -> str:
 def code_digest(files: Iterable[tuple[PurePosixPath, str | bytes]]) -> str:
     """Return the digest of generated files, computed from their names and contents."""
     contents = ((path, content.encode() if isinstance(content, str) else content) for path, content in files)
+    # Sorted, so that the digest does not depend on the order of generation.
     lines = sorted(f"{path} {sha256(data).hexdigest()}\n" for path, data in contents)
     return sha256("".join(lines).encode()).hexdigest()
 

@@ -67,12 +67,14 @@ class MessageWatch:
         ``message``: changed message.
         """
         old = scalars_in(self.message.layout)[index]
+        # Derived values follow from the decoded values, so no frame is decoded again.
         if now.derived is not None:
             pairs = zip(self.lines.rows, self.vectors.rows, strict=True)
             return [
                 line for line, row in pairs if codec.derived(message, row.raw).get(now.name) != row.raw.get(now.name)
             ]
         lines = [self.lines.fields[old.name]] if self._line_notices(old, now) else []
+        # The reduced message must contain the fields on which the presence depends.
         needed = {condition.field for condition in (*old.when, *now.when)}
         reduced_message = self._message_of(
             now, *(place for place in scalars_in(message.layout) if place.name in needed)
@@ -145,6 +147,7 @@ class MessageWatch:
         """Return whether a new message contains a field: its variable-length arrays are
         empty.
         """
+        # An absent optional field has no initial value.
         if field.when and field.name not in self._initial:
             return False
         return field.is_count or field.at < 8 * self._initial_length
@@ -178,6 +181,7 @@ class MessageWatch:
         ``raw``: values of the frame.
         """
         layout = self.message.layout
+        # Bytes after the fixed part belong to the variable parts, in order.
         longest, remaining = frame[: layout.length].ljust(layout.length, b"\0"), frame[layout.length :]
         for part in layout.parts:
             count = raw[part.counter]
@@ -221,6 +225,7 @@ def _notices(
     if answer is None:
         return True
     raw, read, frame = long.row.raw.get(old.name), answer[0].get(now.name), answer[1]
+    # Both must be absent.
     if raw is None or read is None:
         return raw is not read
     # An overlay must have the value in the encoded frame too.

@@ -39,6 +39,7 @@ def files(icd: Icd, render: Renderer, folder: Path | None) -> Iterator[tuple[Pur
     # The traceability computes thousands of mutations, so it runs once for all reports.
     traced, tracing = Trace(icd), Tracing(read, Symbols(icd))
     elements = {node.name: list(traced.elements(node)) for node in icd.nodes}
+    # The tables cover all nodes; each page covers one.
     every = [element for elements_of_node in elements.values() for element in elements_of_node]
     foot = {"version": __version__, "digest": measured.icd_digest(icd), "lines_of": lines_of}
 
@@ -74,6 +75,7 @@ def _counts(icd: Icd, elements: dict[str, list[Element]]) -> list[Sequence[Cell]
         tried = [traced for element in elements[node.name] for traced in element.changes]
         numbers = [kinds.count(kind) for kind in ("message", "field", "enumeration", "member")]
         rows.append((node.title, [*numbers, len(tried), sum(not change.noticed for change in tried)]))
+    # The last row is the total of all nodes.
     total = [sum(column) for column in zip(*(numbers for _, numbers in rows), strict=True)]
     return [[name, *(f"{number:,}" for number in numbers)] for name, numbers in (*rows, ("All", total))]
 

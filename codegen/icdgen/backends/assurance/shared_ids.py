@@ -21,6 +21,8 @@ class SharedIds:
         for node in icd.nodes:
             rows, numbers = vectors[node.name].shared, lines[node.name].shared
             by_direction = {direction: ids(icd, node, direction) for direction in {row.direction for row in rows}}
+            # The messages of an id are needed again for each change, so they are looked
+            # up once.
             shared_rows = [(n, row, by_direction[row.direction][row.id]) for n, row in zip(numbers, rows, strict=True)]
             if shared_rows:
                 self._rows[node.name] = shared_rows

@@ -107,6 +107,7 @@ class Trace:
             traced = list(self._of_enum(enum))
             yield Element("enumeration", node, None, enum, None, ())
             for row, member in enumerate(enum.members, 1):
+                # Changes of an enumeration are computed for all members at once.
                 own = tuple(change for change in traced if change.change.source is member.source)
                 yield Element("member", node, enum, member, row, own)
         for struct in node.structs:
@@ -135,6 +136,7 @@ class Trace:
             results: list[Noticed] = []
             for watch in self._watches.values():
                 layout = with_struct_layout(watch.message.layout, struct.layout, changed)
+                # The layout object is unchanged if the message does not use the struct.
                 if layout is not watch.message.layout:
                     now = replace(watch.message, layout=layout)
                     results += (_noticed(watch.node, watch.layout(now)), self._shared.of_message(watch.message, now))
@@ -172,6 +174,7 @@ class Trace:
         """
         noticed: Noticed = {}
         for node in self.icd.nodes:
+            # Only vector files of nodes that use the message list its id.
             if all(message is not other for other in self.icd.messages_of(node)):
                 continue
             for direction, names_by_id in self._vectors[node.name].ids.items():

@@ -135,6 +135,7 @@ class Tracing:
             if element.owner is None:
                 rows: list[Sequence[Cell]] = []
                 heading = element.model.title if isinstance(element.model, Node) else element.name
+                # Messages, enumerations and structs start a group; their parts follow.
                 groups.append(Group(rows, heading, _notes(element)))
             groups[-1].rows.append(self._shown(element))
         languages = (title(language) for language in self.symbols.languages)

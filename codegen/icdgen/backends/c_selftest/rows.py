@@ -144,6 +144,7 @@ class _Rows:
         data = bytearray(row.frame.ljust(fields[0].field.message.model.length if fields else 0, b"\0"))
         for field in fields:
             value = row.raw[field.field.model.name]
+            # Negative values are packed in two's complement.
             bits = (1 << 8 * field.packed) - 1
             data += value if isinstance(value, bytes) else (value & bits).to_bytes(field.packed, "little")
         return _bytes(bytes(data))
@@ -199,6 +200,7 @@ def _id(id: int, message: Message | None) -> str:
 def _frame(row: SharedRow) -> str:
     """Return the row of a frame with a shared id, and its expected status."""
     octets = f"(const uint8_t[]){{{', '.join(f'0x{byte:02X}' for byte in row.frame)}}}" if row.frame else "NULL"
+    # A frame of no message has an unknown id for C, or a wrong length.
     refused = "ICD_ERROR_UNKNOWN_ID" if row.expected is None else "ICD_ERROR_LENGTH"
     status, name = ("ICD_OK", literal(row.message)) if row.message is not None else (refused, "NULL")
     return f"{{{row.id}u, {len(row.frame)}u, {octets}, {status}, {name}}}"
@@ -279,6 +281,7 @@ def _scaled(field: FieldDescription, settings: Settings | None) -> Accessors:
     lines: list[str] = []
     if settings is None:
         return _accessors(field, field.physical_name, "double", lines)
+    # Floats accept NaN and infinities.
     never = () if field.model.type == "float" else NEVER
     for bits, raw in [*settings, *((bits, None) for bits in never)]:
         assert not isinstance(raw, bytes)

@@ -51,6 +51,7 @@ def of_code(relations: Relations, facts: Facts) -> list[Part]:
         rows = []
         for fact in facts_of(thing):
             value = getattr(thing, fact.name)
+            # Unknown facts have no row; the page lists what the ICD describes.
             if value is None or value == ():
                 continue
             url = relations.links.message(value.message) if isinstance(value, Step) else ""
@@ -72,6 +73,7 @@ def with_others(relations: Relations, facts: Facts, parts: list[Part], section: 
     for path, key, form, value in _keys_with_values(schema.protocol(), section, ()):
         if ".".join((*path, key)) in read:
             continue
+        # A list of mappings becomes a row for each entry.
         if isinstance(value, list) and value and isinstance(value[0], Mapping):
             path, rows = (*path, key), [_entry(entry) for entry in value]
         else:

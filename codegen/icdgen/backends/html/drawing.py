@@ -130,6 +130,8 @@ class _Canvas:
         """
         owner = [0] * (8 * self.message.length)
         for shape, place in zip(self.shapes, scalars_in(self.message.layout), strict=True):
+            # Overlays share their bits with other fields; a counter of the rest has
+            # none.
             if place.view or place.is_count:
                 continue
             if place.is_bytes:
@@ -149,6 +151,8 @@ class _Canvas:
         step = 8 * self.across
         every = [(at // 8, self.owner[at : at + step]) for at in range(0, len(self.owner), step)]
         grid: list[tuple[int, list[int]]] = []
+        # Rows with a single owner are equal to their neighbors; other rows have unique
+        # keys.
         for _, group in groupby(every, key=lambda row: row[1][0] if len(set(row[1])) == 1 else -1 - row[0]):
             run = list(group)
             grid += run if len(run) <= _FEW else [run[0], (-1, run[0][1]), run[-1]]
@@ -159,6 +163,7 @@ class _Canvas:
             shape.rects = self._rects(shape.key)
             shape.labels = fit(shape.rects, self._label(shape.key), shape.key)
         msb0 = self.node.bit_order == "msb0"
+        # Column numbers follow the bit numbering of the ICD.
         columns = [
             (LEFT + (column + 0.5) * self.cell, str(column if msb0 else column // 8 * 8 + 7 - column % 8))
             for column in range(8 * min(self.across, self.length))
@@ -184,6 +189,7 @@ class _Canvas:
             shapes=[shape for shape in self.shapes if shape.rects],
             reserved=[reserved] if reserved.rects else [],
             lines=self._lines(),
+            # The page explains the numbers only if the drawing contains some.
             keyed=any(label.key for shape in self.shapes for label in shape.labels),
             skips=self._skips(),
             plan=plan,

@@ -68,6 +68,7 @@ def script_facts(form: Stream, message: Message | None = None) -> dict[str, obje
 
     ``message``: include only rows of this message.
     """
+    # A message page contains only its own rows, which keeps it small.
     ids = None if message is None else set(message.ids)
     script_data: dict[str, object] = {
         "delimited_by": form.delimited_by,
@@ -108,6 +109,7 @@ def boxes(section: Mapping[str, Any]) -> list[tuple[str, str, float, str]]:
 
 def _boxes(rows: Any) -> Iterator[tuple[str, str, float, str]]:
     for row in sorted(rows, key=lambda row: int(row["at"])):
+        # The minimum width leaves room for the name of the role.
         yield row["role"], f"{row['bits']} bits", max(1.0, row["bits"] / 16), f"{row['at']}"
 
 

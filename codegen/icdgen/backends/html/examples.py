@@ -54,6 +54,7 @@ def examples(message: Message, node: Node) -> list[Example]:
     rows = [("random 0", patterns.random_frame(message, "vector 0")), ("all ones", b"\xff" * message.length)]
     results = []
     for why, frame in rows:
+        # The frame has all elements, so that each field has a value.
         if message.layout.parts:
             frame = patterns.cut(message, node, frame, message.layout.parts[-1].most)
         raw = codec.decode(node, message, frame) if len(scalars_in(message.layout)) <= _MOST else {}

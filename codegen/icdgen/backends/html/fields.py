@@ -70,6 +70,7 @@ def rows(message: Message, node: Node, links: Links) -> list[FieldRow]:
         for key, field in enumerate(scalars_in(message.layout), 1)
         if not field.is_count and repeats.is_shown(key)
     ]
+    # Reserved bits of omitted elements are omitted too.
     for gap in layout.gaps(message, node):
         field_rows += [FieldRow(0, at, bits) for at, bits in repeats.shown_parts(gap.at, gap.bits)]
     return sorted(field_rows, key=lambda row: row.at)

@@ -74,6 +74,7 @@ def pages() -> tuple[Page, ...]:
     if INDEX not in paths:
         return ()
     topics = topics_of(paths[INDEX].read_text("utf-8"))
+    # Pages that the index lacks come last, so that none is lost.
     names = dict.fromkeys([INDEX, *(name for name in topics if name in paths), *paths])
     all_pages = [_page(paths[name], name) for name in names]
     for page in all_pages:
@@ -138,6 +139,7 @@ def _page(path: Path, name: str = "") -> Page:
             if page.sections and tokens[number - 1].type != "heading_open":
                 page.sections[-1].text += f" {_plain(token)}"
         elif token.type in ("fence", "code_block"):
+            # The site has no syntax highlighting, so the language of a block is unused.
             token.type, token.info = "code_block", ""
             if page.sections:
                 page.sections[-1].text += f" {token.content}"
@@ -188,6 +190,7 @@ def _mend_links(token: Token, path: Path) -> None:
             if not target:
                 continue
             child.attrSet("href", target)
+        # A link without target loses both of its tags.
         elif (child.type == "link_close" and not is_linked.pop()) or child.type == "image":
             continue
         children.append(child)
@@ -197,6 +200,7 @@ def _mend_links(token: Token, path: Path) -> None:
 def _target(href: str, path: Path) -> str:
     """Return the target of a link on the site; empty if the site does not contain it."""
     name, hash, anchor = href.partition("#")
+    # External links: the site must work without network.
     if ":" in name or name.startswith("/"):
         return ""
     if not name:

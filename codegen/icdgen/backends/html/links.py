@@ -32,6 +32,7 @@ def slug(text: str, vocabulary: tuple[str, ...]) -> str:
 
     A long name is shortened and gets a checksum.
     """
+    # A name without letters and digits has no words.
     name = snake(words(text, vocabulary)) or f"{crc32(text.encode('utf-8', 'surrogatepass')):08x}"
     # Some file systems limit names to 255 bytes, and paths to 260 characters.
     if len(name) > _LONGEST:

@@ -29,6 +29,7 @@ def values(relations: Relations, node: Node, message: Message, render: Renderer)
     repeats = relations.links.repeats(message)
     parts = sections.bands(relations, message)
     shares = parts or sections.shares(message)
+    # A message with sections has a drawing for each of them.
     pictures = [drawing.draw(message, node, relations.links, part.first, part.end) for part in parts] or [
         drawing.draw(message, node, relations.links)
     ]
@@ -69,6 +70,7 @@ def _facts(relations: Relations, node: Node, message: Message) -> list[tuple[str
     protocol = relations.icd.protocol_of(node) or {}
     reply = protocol.get("stream", {}).get("replies", {}).get(message.name)
     answer = next((candidate for candidate in relations.icd.messages_of(node) if candidate.name == reply), None)
+    # Packet formats have responses instead of acknowledges.
     is_acknowledged = message.telecommand_id is not None and answer is None and "stream" not in protocol
     source = [f"{word} {number}" for word, number in (("table", message.table), ("page", message.page)) if number]
     facts = [

@@ -32,6 +32,7 @@ def home(relations: Relations) -> dict[str, object]:
         (f"{len(errata):,}", "known errata"),
         (f"{notes:,}", "notes"),
     ]
+    # Telemetry with a scale shows raw and physical values.
     example = next(
         (m for m in messages if m.telemetry_id is not None and any(f.has_formula for f in scalars_in(m.layout))), None
     )

@@ -70,6 +70,7 @@ def _field(field: NodePlace, message: Message, node: Node, places: Mapping[str, 
     variable = message.layout.sequence
     digits, base = digits_of(field), base_of(field)
     pieces = () if field.is_count or field.is_bytes else layout.pieces(field, node)
+    # A lookup table may cover only a part of the raw range.
     is_part = bool(curve) and field.is_invertible and field.settable_raws != (field.raw_min, field.raw_max)
     limits = {
         bound.key: [integer(bound.value.numerator), integer(bound.value.denominator)] for bound in bounds(field.limits)

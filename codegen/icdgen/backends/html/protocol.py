@@ -91,6 +91,7 @@ def lines(section: dict[str, Any]) -> list[tuple[str, list[Row]]]:
 def _settings(section: dict[str, Any], prefix: str) -> Iterator[Row]:
     for key, value in section.items():
         label = f"{prefix}{key.replace('_', ' ')}"
+        # bool is a subclass of int.
         if isinstance(value, int) and not isinstance(value, bool):
             yield Row(label, f"0x{value:02X}" if "address" in key else f"{value:,}")
         elif isinstance(value, str):
@@ -141,6 +142,7 @@ def _identifier(node_facts: Facts, section: dict[str, Any]) -> list[Box]:
         return []
     names = {row.get("role", row["name"]): row["name"] for row in section["can"]["identifier"]}
     ordered: list[tuple[str, CanPart]] = sorted(node_facts.can.parts.items(), key=lambda item: -item[1].shift)
+    # The width of a box is proportional to its bits.
     return _row([
         (names.get(role, role), f"{part.bits} bits", part.bits, f"{part.shift + part.bits - 1} … {part.shift}")
         for role, part in ordered

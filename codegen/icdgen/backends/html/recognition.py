@@ -41,6 +41,7 @@ def _tail(relations: Relations, message: Message) -> list[dict[str, Any]]:
     if len(parts) > 1:  # the decoder evaluates the counters in the frame
         return [{"least": own.shortest, "step": own.lengths.step, "pieces": []}]
     tail, node = parts[-1], relations.icd.node(message.node)
+    # A part up to the end of the frame has no counter.
     counter = next((place for place in places_in(own) if place.name == tail.counter and not tail.is_rest), None)
     pieces = () if counter is None else layout.pieces(counter, node)
     tail_data = {"least": own.shortest, "step": tail.step, "pieces": [[p.byte, p.shift, p.bits, p.at] for p in pieces]}

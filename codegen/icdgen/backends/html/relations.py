@@ -45,6 +45,7 @@ class Relations:
     def __init__(self, icd: Icd, packages: Packages | None = None) -> None:
         self.icd, self.links = icd, Links(icd)
         self.packages = packages or Packages()
+        # The prefix changes names in C only, so it is a second ICD.
         self._in_c = with_prefix(icd, self.packages.c_prefix)
         self.speakers: dict[str, list[Node]] = {
             owner.name: [node for node in icd.nodes if node is owner or owner in icd.included(node)]

@@ -84,6 +84,7 @@ class Repeats:
         for place in _arrays(places_in(message.layout)):
             node = place.node
             variable = next((part for part in message.layout.parts if part.node is node), None)
+            # Short arrays of numbers are clearer with all elements.
             if place.count < 2 or not (variable or place.struct is not None or place.count > _LONG):
                 continue
             begin, end = place.at, place.at + place.width

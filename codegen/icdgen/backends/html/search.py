@@ -93,6 +93,7 @@ def _of_message(relations: Relations, node: Node, message: Message) -> Iterator[
     numbers = texts.ids(message)
     ids = "/".join(f"{id} (0x{id:02X})" for _, id in numbers)
     own = _words(message, node)
+    # Manuals and programs write ids in different ways.
     phrases = [spelling for id in message.ids for spelling in (str(id), f"0x{id:02x}", f"{id:02x}h", f"id {id}")]
     for way, id in numbers:
         phrases += [f"{message.kind} {id}"] if way == "id" else [f"{way} {id}"]

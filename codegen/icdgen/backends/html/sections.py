@@ -110,6 +110,7 @@ def shares(message: Message) -> list[Section]:
     keys = list(range(1, len(scalars_in(message.layout)) + 1))
     if not _is_long(message):
         return [Section("Fields", 0, message.length, keys)]
+    # Double ceiling division: first the number of sections, then their size.
     size = -(-len(keys) // -(-len(keys) // _SHARE))  # sections of similar size
     section_list = []
     for start in range(0, len(keys), size):
@@ -164,5 +165,6 @@ def _keys(message: Message, first: int, end: int) -> list[int]:
     """Return the numbers of the fields in a range of bytes; the last range includes
     derived values.
     """
+    # The position of a derived value is the end of the message.
     last = 8 * end + (end == message.length)
     return [key for key, place in enumerate(scalars_in(message.layout), 1) if 8 * first <= place.at < last]

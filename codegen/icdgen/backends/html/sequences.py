@@ -116,6 +116,7 @@ def procedures(relations: Relations, node: Node, node_facts: Facts) -> list[Sequ
 def _steps(relations: Relations, procedure: object) -> Iterator[Arrow]:
     for fact in facts_of(procedure):
         step = getattr(procedure, fact.name)
+        # Optional steps that the ICD does not describe are skipped.
         if fact.kind is not Kind.STEP or not isinstance(step, Step):
             continue
         name, url = step.message.name, relations.links.message(step.message)
@@ -130,6 +131,7 @@ def _packets(relations: Relations, node_facts: Facts) -> Iterator[Arrow]:
     """Yield the packets of a download, whose ids can differ between buses."""
     files = node_facts.files
     assert files is not None
+    # Buses with equal ids share an arrow.
     buses: dict[int, list[str]] = defaultdict(list)
     for bus, id in files.packet_ids.items():
         buses[id].append(BUSES[bus])

@@ -43,6 +43,7 @@ def of_node(relations: Relations, node: Node, render: Renderer) -> Callable[[str
     ]
 
     def of_page(url: str) -> object:
+        # The current page is found by its link in the rendered group.
         target = f'href="{html.escape(PurePosixPath(url).name)}">'
         # Only the open group contains links: pages would otherwise grow with the ICD.
         shown = [head, *(unfolded if f"<li><a {target}" in unfolded else folded for folded, unfolded in group_texts)]

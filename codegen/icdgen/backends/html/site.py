@@ -79,6 +79,7 @@ def files(
     }
 
     def page(path: str, template: str, **values: object) -> tuple[PurePosixPath, str]:
+        # Relative paths: the site works from any folder and without server.
         root = "../" * path.count("/")
         return PurePosixPath(path), render(template, **{"root": root, "path": path, **common, **values})
 

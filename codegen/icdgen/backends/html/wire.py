@@ -163,6 +163,7 @@ def _check(wire: Wire, direction: str, bus: str) -> Speaker | None:
     for speaker in wire.checked:
         form = speaker.facts.checksum
         assert form is not None
+        # The first node with a checksum on this bus stands for all.
         if bus in (form.telecommand_buses if direction == "telecommand" else form.telemetry_buses):
             return speaker
     return None
@@ -287,6 +288,7 @@ def _packets(wire: Wire, form: Can, message: CanMessage, label: str) -> Iterator
     """
     try:
         packets = can_split(wire.link, message)
+    # Such a message cannot be sent on CAN; the other buses show it.
     except (TooLongError, UnsupportedError):
         return
     if len(packets) == 1 and len(message.data) <= form.data_bytes:
