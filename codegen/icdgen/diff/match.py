@@ -238,10 +238,10 @@ def _members(pair: EnumPair) -> list[MemberPair]:
     keys: tuple[Callable[[Member], object], ...] = (lambda m: (m.values, m.name), lambda m: m.name, lambda m: m.value)
     for key in keys:
         for member in list(old):
-            twins = [m for m in old if key(m) == key(member)]
+            same_key = [m for m in old if key(m) == key(member)]
             matches = [m for m in new if key(m) == key(member)]
             # An ambiguous key (a repeated value or name) proves nothing.
-            if len(matches) == 1 and len(twins) == 1:
+            if len(matches) == 1 and len(same_key) == 1:
                 pairs.append(MemberPair(member, matches[0], owner=pair))
                 old.remove(member)
                 new.remove(matches[0])

@@ -69,7 +69,7 @@ class Relations:
         return describe(self._in_c).message(message_in_c)
 
     def _node(self, node: Node) -> None:
-        spoken = {message.name: message for message in self.icd.messages_of(node)}
+        used_messages = {message.name: message for message in self.icd.messages_of(node)}
         for message in node.messages:
             self._errata(message.errata, Place(message.name, self.links.message(message)))
             for name, field in self.shown_fields(message):
@@ -80,7 +80,7 @@ class Relations:
                 if field.unit is not None:
                     self.units.setdefault(field.unit.identifier, (field.unit, []))[1].append(place)
             for part in message.contains:
-                other = spoken.get(part.message)
+                other = used_messages.get(part.message)
                 if other is not None:
                     inner = Contained(self.place(other), part.at, other.length)
                     outer = Contained(self.place(message), part.at, message.length)
@@ -93,7 +93,7 @@ class Relations:
                 anchor = self.links.anchor(enum, str(member.value))
                 self._errata(member.errata, Place(f"{enum.name}: {member.name}", f"{url}#{anchor}"))
         # Log masks refer to frames by their telemetry id.
-        by_id = {m.telemetry_id: m for m in spoken.values() if m.telemetry_id is not None}
+        by_id = {m.telemetry_id: m for m in used_messages.values() if m.telemetry_id is not None}
         for row in node.loggable:
             if row.id in by_id:
                 message = by_id[row.id]
@@ -118,9 +118,9 @@ class Relations:
 
     def wire(self, message: Message) -> Wire:
         """Return the description of the transmission of a message."""
-        spoken = [self._speaker(node) for node in self.speakers[message.node]]
+        speakers = [self._speaker(node) for node in self.speakers[message.node]]
         declared = self._speaker(self.icd.node(message.node))
-        return Wire(*declared, [speaker for speaker in spoken if speaker.facts.checksum])
+        return Wire(*declared, [speaker for speaker in speakers if speaker.facts.checksum])
 
     def _speaker(self, node: Node) -> Speaker:
         if node.name not in self._spoken:

@@ -32,9 +32,9 @@ def other_enumeration(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
 
 def _differences(old: Enum, new: Enum) -> tuple[str, ...]:
     other = [str(value) for value in other_senses(old, new)]
-    gone = [m.name for m in sorted(old.members, key=lambda m: m.value) if not new.member_of(m.value)]
+    removed = [m.name for m in sorted(old.members, key=lambda m: m.value) if not new.member_of(m.value)]
     lines = [f"Another sense: {', '.join(other)}."] if other else []
-    return (*lines, *([f"Without a name now: {some(gone)}."] if gone else []))
+    return (*lines, *([f"Without a name now: {some(removed)}."] if removed else []))
 
 
 def _used(owner: EnumPair, ctx: Context) -> tuple[str, ...]:

@@ -127,8 +127,8 @@ def missing_changed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
         yield CheckResult(text, (), was.why if was else "", now.why if now else "", places=_sections(pair, "missing"))
 
 
-def _verb(was: object, now: object, come: str, gone: str, changed: str) -> str:
-    return come if was is None else gone if now is None else changed
+def _verb(was: object, now: object, when_added: str, when_removed: str, when_changed: str) -> str:
+    return when_added if was is None else when_removed if now is None else when_changed
 
 
 def _sections(pair: NodePair, key: str) -> Places:
