@@ -324,7 +324,7 @@ class UploadForm(NamedTuple):
     destination_bytes: Optional[int] = None
     """Size of a destination in bytes: no file may be larger."""
     destinations: tuple[int, ...] = ()
-    """The destinations that are supported; none: all."""
+    """Supported destinations; none: all."""
 
 
 class ErasureForm(NamedTuple):
@@ -379,7 +379,7 @@ class Operation(NamedTuple):
     timeout: int
     """Longest duration, in milliseconds."""
     programs: tuple[int, ...] = ()
-    """The programs for which this is supported; none: all."""
+    """Supported programs; none: all."""
 
 
 class Facts(NamedTuple):

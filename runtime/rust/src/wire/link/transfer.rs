@@ -134,7 +134,7 @@ pub struct UploadForm {
     pub rounds: u32,
     /// Size of a destination in bytes: no file may be larger.
     pub destination_bytes: Option<usize>,
-    /// The destinations that are supported; none: all.
+    /// Supported destinations; none: all.
     pub destinations: &'static [u8],
 }
 
@@ -149,7 +149,7 @@ pub struct OperationForm {
     pub poll_interval_ms: u32,
     /// Longest duration.
     pub timeout_ms: u32,
-    /// The programs for which this is supported; none: all.
+    /// Supported programs; none: all.
     pub programs: &'static [u8],
 }
 
