@@ -50,7 +50,7 @@ def _declared(fact: Fact) -> Iterator[tuple[str, str]]:
         if name.startswith("has_"):
             about = f"whether `{fact.name}` is known"
         elif name.endswith("_count") and name != fact.name:
-            about = "how many they are"
+            about = "their number"
         elif fact.kind is Kind.ALLOWED:
             about = about.replace("none: all", "NULL: all")
         elif fact.kind is Kind.BUSES:

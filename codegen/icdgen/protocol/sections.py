@@ -343,7 +343,7 @@ class Upload:
         "destination_bytes", "size of a destination in bytes: no file may be larger", 1, U32, None
     )
     destinations: tuple[int, ...] = allowed(
-        "destinations", "the destinations that are supported; none: all", "the destinations that are supported"
+        "destinations", "supported destinations; none: all", "the destinations that are supported"
     )
 
 
@@ -411,7 +411,7 @@ class Operation:
     timeout: int = time("timeout_s", "longest duration")
     programs: tuple[int, ...] = allowed(
         "programs",
-        "the programs for which this is supported; none: all",
+        "supported programs; none: all",
         "the programs for which this is supported, if not all",
     )
 
