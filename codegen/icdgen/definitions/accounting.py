@@ -162,7 +162,7 @@ class AccountedElement(Element):
         return _found(super().find(path, namespaces))
 
     def findall(self, path: str, namespaces: dict[str, str] | None = None) -> Any:
-        return [_found(one) for one in super().findall(path, namespaces)]
+        return [_found(element) for element in super().findall(path, namespaces)]
 
     def iterfind(self, path: str, namespaces: dict[str, str] | None = None) -> Any:
         return map(_found, super().iterfind(path, namespaces))

@@ -45,7 +45,7 @@ class _Database:
         for bus, messages in _buses(self.database(file, data, to)).items():
             stem = PurePath(file).stem
             to.networks.append(_network(f"{stem} {bus}".strip(), messages, account, to))
-        self.account_for(file, data, account, {one.spot.line for one in to.troubles})
+        self.account_for(file, data, account, {finding.spot.line for finding in to.troubles})
         account.report(to)
         return to
 
@@ -58,9 +58,9 @@ class _Database:
         try:
             return self.load(_text(data), to)
         except Exception as error:  # its parsers raise whatever comes up
-            found = re.search(r"at line (\d+)", str(error))
+            match = re.search(r"at line (\d+)", str(error))
             said = line(str(error), 300) or type(error).__name__
-            raise unreadable(file, f"not {self.title}: {said}", "", int(found[1]) if found else 1) from None
+            raise unreadable(file, f"not {self.title}: {said}", "", int(match[1]) if match else 1) from None
 
     def load(self, text: str, to: Definitions) -> Any:
         """What `database` asks of cantools."""
@@ -173,13 +173,13 @@ def _network(title: str, messages: list[Any], account: Account, to: Definitions)
 def _message(message: Any, signals: list[Any], id: int, order: str, enums: Enumerations, to: Definitions) -> Item:
     if message.is_container:
         raise NotHeld("it contains other messages in an order that differs from frame to frame")
-    made: Item = {"name": message.name, "id": Spelled(f"{id:#05X}".replace("X", "x"))}
-    made |= {"kind": "telemetry", "length": message.length}
+    item: Item = {"name": message.name, "id": Spelled(f"{id:#05X}".replace("X", "x"))}
+    item |= {"kind": "telemetry", "length": message.length}
     senders = [sender for sender in message.senders if sender not in _NOBODY]
     if senders:
-        made["group"] = senders[0]
+        item["group"] = senders[0]
     cycle = message.cycle_time
-    made |= summary(
+    item |= summary(
         _sentences(
             message.comment,
             f"Sent every {printed(cycle)} ms." if cycle else "",
@@ -211,7 +211,7 @@ def _message(message: Any, signals: list[Any], id: int, order: str, enums: Enume
     for field, _ in placed:
         if missing & set(field.get("when", ())):
             to.without_field(message.name, field["name"], "the multiplexer that it depends on is left out")
-    return frames.laid_out(made, [one for one in placed if not missing & set(one[0].get("when", ()))], order, to)
+    return frames.laid_out(item, [one for one in placed if not missing & set(one[0].get("when", ()))], order, to)
 
 
 def _sentences(*texts: str | None) -> str:

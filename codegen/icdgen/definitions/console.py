@@ -17,9 +17,11 @@ _LISTED = 20  # identifiers that are shown; all are in the JSON, and in the ICD
 
 def report(reads: Sequence[Read], colour: bool = False) -> str:
     """Of each definition everything to look at, then the figures and the names that got identifiers."""
-    shown = [one for one in reads if len(reads) == 1 or one.trees or one.definitions.total or one.definitions.troubles]
+    shown = [
+        read for read in reads if len(reads) == 1 or read.trees or read.definitions.total or read.definitions.troubles
+    ]
     blocks = ["\n".join(_lines(one, colour)) for one in shown]
-    if others := [printable(one.definitions.file) for one in reads if one not in shown]:
+    if others := [printable(read.definitions.file) for read in reads if read not in shown]:
         names = ", ".join(others[:_LISTED]) + (f" and {len(others) - _LISTED} more" if len(others) > _LISTED else "")
         blocks.append(f"without messages of {'its' if len(others) == 1 else 'their'} own: {names}")
     return "\n\n".join(blocks)
@@ -39,7 +41,7 @@ def _summary(read: Read) -> list[str]:
     if names:
         many = f"{len(names)} names that are not valid identifiers got one"
         what = many if len(names) > 1 else "1 name that is not a valid identifier got one"
-        lines += [f"{what}:", *(f"  {one}" for one in names[:_LISTED])]
+        lines += [f"{what}:", *(f"  {name}" for name in names[:_LISTED])]
         lines += [f"  and {len(names) - _LISTED} more"] if len(names) > _LISTED else []
     return lines
 
@@ -49,7 +51,7 @@ def as_json(reads: Sequence[Read], targets: Sequence[Target], checked: Sequence[
 
     The keys of a single definition stand beside the files, those of several in a list `definitions`.
     """
-    listed = [_as_item(one) for one in reads]
+    listed = [_as_item(read) for read in reads]
     head = listed[0] if len(listed) == 1 else {"definitions": listed}
     tail = {"files": shared.files_as_json(targets), "check": shared.checked_as_json(checked)}
     return json.dumps({**head, **tail}, indent=2, ensure_ascii=False)
@@ -58,8 +60,8 @@ def as_json(reads: Sequence[Read], targets: Sequence[Target], checked: Sequence[
 def _as_item(read: Read) -> dict[str, Any]:
     found = read.definitions
     findings = []
-    for one in found.troubles:
-        place = {"file": one.spot.file} if one.spot.file else {}
-        findings.append({**shared.finding_as_json(one), **place, "line": one.spot.line})
+    for finding in found.troubles:
+        place = {"file": finding.spot.file} if finding.spot.file else {}
+        findings.append({**shared.finding_as_json(finding), **place, "line": finding.spot.line})
     return {"definition": found.file, "kind": read.kind, "messages": found.total, "held": read.held, "findings": findings,
             "identifiers": read.identifiers}  # fmt: skip

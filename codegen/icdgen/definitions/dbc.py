@@ -59,22 +59,22 @@ class _Statement(NamedTuple):
 
 def account_for(text: str, account: Account, reported: Container[int | None]) -> None:
     """Count statements and attributes of a DBC that nobody uses, but for those in lines that a finding names already."""
-    for one in _statements(text):
-        if one.line in reported:
+    for statement in _statements(text):
+        if statement.line in reported:
             continue
-        if one.keyword == "BA_":
-            found = _ATTRIBUTE.match(one.text)
-            if found is not None and found[1] not in _USED_ATTRIBUTES:
-                account.add("BA_", found[1], f"`{' '.join(found[2].split())}`" if found[2] else "", one.line)
-        elif one.keyword == "CM_":
-            target = _COMMENT.match(one.text)
+        if statement.keyword == "BA_":
+            match = _ATTRIBUTE.match(statement.text)
+            if match is not None and match[1] not in _USED_ATTRIBUTES:
+                account.add("BA_", match[1], f"`{' '.join(match[2].split())}`" if match[2] else "", statement.line)
+        elif statement.keyword == "CM_":
+            target = _COMMENT.match(statement.text)
             if target is not None and target[1] not in ("BO_", "SG_"):
-                account.add("CM_", target[1] or "text of the network", "", one.line)
-        elif one.keyword == "VERSION":
-            if not re.match(r'VERSION\s*""', one.text):
-                account.add("", one.keyword, "", one.line)
-        elif one.keyword not in _USED:
-            account.add("", one.keyword, "", one.line)
+                account.add("CM_", target[1] or "text of the network", "", statement.line)
+        elif statement.keyword == "VERSION":
+            if not re.match(r'VERSION\s*""', statement.text):
+                account.add("", statement.keyword, "", statement.line)
+        elif statement.keyword not in _USED:
+            account.add("", statement.keyword, "", statement.line)
 
 
 def _statements(text: str) -> Iterator[_Statement]:
@@ -129,7 +129,7 @@ def mended(text: str, load: Callable[[str], Any], to: Definitions) -> Any:
     """Return what ``load`` makes of the text without its faults. Reports a last line that may have been cut off."""
     database = _mended(text, load, to)
     last = text.count("\n") + 1
-    if text.rstrip(" \t")[-1:] not in ("\n", ";", "") and all(one.spot.line != last for one in to.troubles):
+    if text.rstrip(" \t")[-1:] not in ("\n", ";", "") and all(finding.spot.line != last for finding in to.troubles):
         what = f"the file ends within line {last}: `{one_line(text[text.rfind(chr(10)) + 1 :], 60)}`"
         to.warn(NOT_UNDERSTOOD, what, "check whether the file is complete: the rest may be cut off", "warning", last)
     return database
@@ -167,8 +167,8 @@ def _message_by_message(text: str, load: Callable[[str], Any], to: Definitions) 
             blocks.append(block)
         elif one.keyword == "SG_" and blocks:
             block.append(one)
-        elif (found := _OF_MESSAGE.match(one.text)) is not None:
-            of_message[found[1]] += one.text
+        elif (match := _OF_MESSAGE.match(one.text)) is not None:
+            of_message[match[1]] += one.text
         elif one.keyword != "NS_":
             shared += one.text
     messages: list[Any] = []
@@ -207,11 +207,11 @@ def _without_impossible(text: str, to: Definitions) -> str:
     """The text without messages whose ids no frame has; what else is said of them has no signal then."""
     lines = text.split("\n")
     for number, line in enumerate(lines):
-        found = _MESSAGE.match(line)
-        if found is None or int(found[1]) == _NO_MESSAGE or int(found[1]) & ~_EXTENDED < 1 << 29:
+        match = _MESSAGE.match(line)
+        if match is None or int(match[1]) == _NO_MESSAGE or int(match[1]) & ~_EXTENDED < 1 << 29:
             continue
         to.total += 1
-        to.left_out(found[2], f"its id is {int(found[1]):#x}, which no frame has", number + 1)
+        to.left_out(match[2], f"its id is {int(match[1]):#x}, which no frame has", number + 1)
         lines[number : _end(lines, number)] = [""] * (_end(lines, number) - number)
     return "\n".join(lines)
 
@@ -226,13 +226,13 @@ def _end(lines: list[str], number: int) -> int:
 
 def _without_line(text: str, said: str, to: Definitions) -> str | None:
     """The text without the line that is not understood, of a message with its signals."""
-    found = _SYNTAX.search(said)
-    if found is None:
+    match = _SYNTAX.search(said)
+    if match is None:
         return None
     lines = text.split("\n")
-    number, column = int(found[1]) - 1, int(found[2])
+    number, column = int(match[1]) - 1, int(match[2])
     if number >= len(lines) or not "".join(lines[number:]).strip():  # it ends where more should follow
-        number, column = max((at for at, one in enumerate(lines) if one.strip()), default=0), 0
+        number, column = max((at for at, line in enumerate(lines) if line.strip()), default=0), 0
     if column == 1 + len(lines[number]) - len(lines[number].lstrip()) and _STATEMENT.match(lines[number]):
         before = next((at for at in range(number - 1, -1, -1) if lines[at].strip()), None)
         if before is None:
@@ -252,11 +252,11 @@ def _without_unused(text: str, said: str, to: Definitions) -> str | None:
     """The text without what is said of signals that there are not."""
     for keyword, id, name in _UNUSED.findall(said):
         statement = rf'^[ \t]*{keyword}\s+{id}\s+{re.escape(name)}\s[^";]*(?:"[^"]*"[^";]*)*;'
-        found = re.search(statement, text, re.MULTILINE)
-        if found is None:
+        match = re.search(statement, text, re.MULTILINE)
+        if match is None:
             return None
-        line = text.count("\n", 0, found.start()) + 1
+        line = text.count("\n", 0, match.start()) + 1
         message = f"`{keyword}` names `{name}` of message {id}, which has no such signal"
         to.warn(REPAIRED, message, "it is left out", line=line)
-        text = text[: found.start()] + "\n" * found[0].count("\n") + text[found.end() :]
+        text = text[: match.start()] + "\n" * match[0].count("\n") + text[match.end() :]
     return text if _UNUSED.search(said) else None

@@ -108,12 +108,12 @@ class _Found:
         fields = self.layout.fields(start)
         covered = max((part.end for part in self.layout.parts), default=start)
         length, covered = -(-(self.layout.at - start) // 8), -(-(max(covered, start) - start) // 8)
-        made: Item = {"name": self.name, "id": id, "kind": self.kind, "length": length, **self.more}
+        item: Item = {"name": self.name, "id": id, "kind": self.kind, "length": length, **self.more}
         if self.layout.lost is not None:
             self.layout.lost.report(self.name, to, self.line)
         if length > covered:
-            made["reserved"] = length - covered
-        return {**made, "fields": fields} if fields else made
+            item["reserved"] = length - covered
+        return {**item, "fields": fields} if fields else item
 
 
 def _read(sending: Sending, sheets: Sheets, types: Types, structs: Structs, to: Definitions) -> _Found | None:
@@ -145,7 +145,7 @@ def _group(sheets: Sheets, container: Element) -> Item:
 
 def _used(structs: list[Item], messages: list[Item]) -> list[Item]:
     """The structs that messages have, or structs that these have."""
-    by_name = {one["name"]: one for one in structs}
+    by_name = {struct["name"]: struct for struct in structs}
     left, used = list(messages), set()
     while left:
         for one in left.pop().get("fields", ()):
@@ -153,7 +153,7 @@ def _used(structs: list[Item], messages: list[Item]) -> list[Item]:
             if name is not None and name not in used:
                 used.add(name)
                 left.append(by_name[name])
-    return [one for one in structs if one["name"] in used]
+    return [struct for struct in structs if struct["name"] in used]
 
 
 def _say_process(found: list[_Found], to: Definitions) -> None:

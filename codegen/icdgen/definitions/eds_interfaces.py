@@ -170,8 +170,8 @@ class Interfaces:
     def _declared(self, interface: Element) -> list[Element]:
         """The interface that one is, and those on which that is based, as far as they are known."""
         left = [interface]
-        found: list[Element] = []
-        while left and len(found) < _DEEPEST:
+        result: list[Element] = []
+        while left and len(result) < _DEEPEST:
             one = left.pop()
             bases = [one] if one is interface else one.findall("BaseInterfaceSet/Interface")
             for base in bases:
@@ -179,18 +179,18 @@ class Interfaces:
                     declared = self.sheets.find("interface", self.sheets.attribute(base, "type"), base)
                 except NotHeld:
                     continue
-                if declared not in found:
-                    found.append(declared)
+                if declared not in result:
+                    result.append(declared)
                     left.append(declared)
-        return found
+        return result
 
     def _maps(self, interface: Element) -> dict[str, Element]:
         """Types by the generic type for which they stand."""
-        found: dict[str, Element] = {}
-        for one in interface.iterfind("GenericTypeMapSet/GenericTypeMap"):
-            if (type_ := self._type(one, "type")) is not None:
-                found.setdefault(one.get("name", ""), type_)
-        return found
+        result: dict[str, Element] = {}
+        for element in interface.iterfind("GenericTypeMapSet/GenericTypeMap"):
+            if (type_ := self._type(element, "type")) is not None:
+                result.setdefault(element.get("name", ""), type_)
+        return result
 
     def _numbers(self, component: Element) -> dict[str, tuple[str, int]]:
         """By interface: the parameter that is a number which never changes, and the number."""
@@ -201,10 +201,10 @@ class Interfaces:
                 values[variable.get("name", "")] = whole(text, "a value", 0)
             except NotHeld:
                 continue
-        found: dict[str, tuple[str, int]] = {}
-        for one in component.iterfind("Implementation/ParameterMapSet/ParameterMap"):
-            name, parameter = one.get("interface", ""), one.get("parameter", "")
-            value = values.get(one.get("variableRef", ""))
-            if value is not None and (name not in found or parameter.lower().endswith("id")):
-                found[name] = (parameter, value)
-        return found
+        result: dict[str, tuple[str, int]] = {}
+        for element in component.iterfind("Implementation/ParameterMapSet/ParameterMap"):
+            name, parameter = element.get("interface", ""), element.get("parameter", "")
+            value = values.get(element.get("variableRef", ""))
+            if value is not None and (name not in result or parameter.lower().endswith("id")):
+                result[name] = (parameter, value)
+        return result

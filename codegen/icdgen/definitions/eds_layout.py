@@ -47,11 +47,11 @@ class Layout(Container[Part]):
     def read(self, container: Element) -> None:
         """Raises `NotHeld`."""
         self._add(container, (), self.within)
-        for one in self.constraints:
-            part = next((part for part in self.parts if part.path == one.path), None)
+        for constraint in self.constraints:
+            part = next((part for part in self.parts if part.path == constraint.path), None)
             if part is None and self.lost is not None:
-                raise self.missing(line(".".join(one.path), 100))
-            raw = eds_parts.constrain(part, one, self.sheets, self.types)
+                raise self.missing(line(".".join(constraint.path), 100))
+            raw = eds_parts.constrain(part, constraint, self.sheets, self.types)
             if raw is not None and part is not None:
                 self.told[part.path, part.entry] = raw
         if self.parts and self.parts[-1].bits:
@@ -181,11 +181,11 @@ class Layout(Container[Part]):
     def _count(self, owner: Element, path: str, name: str) -> int:
         """Of several dimensions all elements; the index of the last one runs fastest."""
         count = 1
-        for one in owner.iterfind(path):
-            if index := self.sheets.attribute(one, "indexTypeRef"):
-                count *= self._indices(self.sheets.find("type", index, one), name)
+        for element in owner.iterfind(path):
+            if index := self.sheets.attribute(element, "indexTypeRef"):
+                count *= self._indices(self.sheets.find("type", index, element), name)
             else:
-                count *= whole(self.sheets.attribute(one, "size"), f"a dimension of `{name}`", 1, 8 * MOST_BYTES)
+                count *= whole(self.sheets.attribute(element, "size"), f"a dimension of `{name}`", 1, 8 * MOST_BYTES)
             if count > 8 * MOST_BYTES:
                 raise NotHeld(f"`{name}` is an array of {count:,} elements")
         return count
@@ -238,7 +238,7 @@ class Layout(Container[Part]):
         """What is there as often as another field says. Raises `NotHeld`."""
         name = path[-1]
         counter = self.sheets.attribute(entry, "listLengthField")
-        by = next((one for one in reversed(self.parts) if one.path == (*path[:-1], *counter.split("."))), None)
+        by = next((part for part in reversed(self.parts) if part.path == (*path[:-1], *counter.split("."))), None)
         if by is None or by.piece is None or by.piece.item["type"] != "uint" or by.piece.bits != by.bits:
             raise NotHeld(
                 f"`{name}` is there as often as `{line(counter, 60)}` says, which is not a number in front of it"

@@ -115,12 +115,12 @@ def line_of(entry: Element, sheets: Sheets) -> Line | None:
         return None
     terms = entry.findall("PolynomialCalibrator/Term")
     found = {"0": Fraction(0), "1": Fraction(not terms)}
-    for one in terms:
-        power = sheets.attribute(one, "exponent")
+    for term in terms:
+        power = sheets.attribute(term, "exponent")
         if power not in found:
             return None
         try:
-            found[power] += evaluate(sheets.attribute(one, "coefficient"))
+            found[power] += evaluate(sheets.attribute(term, "coefficient"))
         except ValueError:
             return None
     return Line(found["1"], found["0"]) if found["1"] else None

@@ -70,8 +70,8 @@ class Sheets:
                 self._found.setdefault(("interface", f"{name}/{one.get('name', '')}"), one)
 
     def _types(self, owner: Element, before: str) -> None:
-        for one in owner.iterfind("DataTypeSet/*"):
-            self._found.setdefault(("type", f"{before}{one.get('name', '')}"), one)
+        for element in owner.iterfind("DataTypeSet/*"):
+            self._found.setdefault(("type", f"{before}{element.get('name', '')}"), element)
 
     def _define(self, package: str, define: Element, file: str) -> None:
         name, value = f"{package}/{define.get('name', '')}", define.get("value", "")
@@ -102,10 +102,10 @@ class Sheets:
     def labels(self, type_: Element) -> Iterator[tuple[str, int]]:
         """Labels of an enumeration with their values; one without a value follows the one before. Raises `NotHeld`."""
         value = -1
-        for one in type_.iterfind("EnumerationList/Enumeration"):
-            text = self.attribute(one, "value")
-            value = whole(text, "the value of a label") if text or "value" in one.attrib else value + 1
-            yield self.attribute(one, "label"), value
+        for element in type_.iterfind("EnumerationList/Enumeration"):
+            text = self.attribute(element, "value")
+            value = whole(text, "the value of a label") if text or "value" in element.attrib else value + 1
+            yield self.attribute(element, "label"), value
 
     def says(self, element: Element, key: str) -> bool:
         """Whether an attribute says `true`."""

@@ -203,16 +203,16 @@ class Types(Reading):
 
     def _meaning(self, chain: list[Element], entry: Element, made: Piece, where: str) -> Item:
         """Calibration and unit of the entry; the limits of its type, where no calibration makes others of them."""
-        found: Item = {}
+        item: Item = {}
         try:
             if entry.tag != "LengthEntry":  # whose calibration says how long a container is
-                found |= calibrated(entry) or {}
+                item |= calibrated(entry) or {}
         except ValueError as error:
             self.raw_only(where, str(error), _BITS_ONLY)
-            return found
-        if not found and "special" not in made.item and made.range != ALL:
-            found |= eds_ranges.limited(made.item, made.bits, made.range)
-        return {**self._unit((entry, *chain)), **found}
+            return item
+        if not item and "special" not in made.item and made.range != ALL:
+            item |= eds_ranges.limited(made.item, made.bits, made.range)
+        return {**self._unit((entry, *chain)), **item}
 
     def _unit(self, chain: tuple[Element, ...]) -> Item:
         for of in chain:

@@ -26,11 +26,11 @@ def evaluate(text: str) -> Fraction:
     if len(text) > _LONGEST:
         raise ValueError("too long")
     while at < len(text):
-        found = _TOKEN.match(text, at)
-        if found is None:
+        match = _TOKEN.match(text, at)
+        if match is None:
             raise ValueError("no number")
-        tokens.append(found[1])
-        at = found.end()
+        tokens.append(match[1])
+        at = match.end()
     sum_ = _Sum(tokens[::-1])
     value = sum_.terms(0)
     if sum_.left:

@@ -56,9 +56,9 @@ class Kaitai:
             if not any(part.is_whole for part in layout.parts):
                 to.left_out(called, "none of its fields is" if layout.parts else "it has no `seq`, and so no field")
                 continue
-            made: Item = {"name": called, "id": _ID, "kind": "telemetry", "length": -(-layout.at // 8)}
-            made |= summary(str(body.get("doc") or "")) if len(layouts) == 1 else {}
-            network.messages.append({**made, "fields": _fields(layout, order)})
+            item: Item = {"name": called, "id": _ID, "kind": "telemetry", "length": -(-layout.at // 8)}
+            item |= summary(str(body.get("doc") or "")) if len(layouts) == 1 else {}
+            network.messages.append({**item, "fields": _fields(layout, order)})
         network.declare(shared.enums.declared())
         to.networks.append(network)
         account = Account(_WITHOUT_EFFECT)
@@ -69,7 +69,7 @@ class Kaitai:
 
 def _messages(root: Type, shared: File) -> list[Layout]:
     """A layout for each way in which values decide what comes next, in the order of the file."""
-    found: list[Layout] = []
+    result: list[Layout] = []
     left: list[dict[Key, int | None]] = [{}]
     while left:
         decided = left.pop()
@@ -86,17 +86,17 @@ def _messages(root: Type, shared: File) -> list[Layout]:
                 break
             continue
         shared.to.total += 1
-        found.append(layout)
-        if len(found) >= MOST_MESSAGES and left:
+        result.append(layout)
+        if len(result) >= MOST_MESSAGES and left:
             shared.to.total += 1
             shared.to.left_out(root.name, f"it branches in more than {MOST_MESSAGES} ways; the others are not imported")
             break
-    return found
+    return result
 
 
 def _names(name: str, layouts: list[Layout]) -> list[str]:
     """What was decided tells messages apart, with the values where the words do not; a number where that is long."""
-    words = [" ".join([name, *(label.word for label in one.labels if label.word)]) for one in layouts]
+    words = [" ".join([name, *(label.word for label in layout.labels if label.word)]) for layout in layouts]
     times = Counter(words)
     said = [
         text if times[text] == 1 else " ".join([name, *(f"{label.word} {label.value}".strip() for label in one.labels)])

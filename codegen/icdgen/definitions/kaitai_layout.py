@@ -150,7 +150,7 @@ class Layout(Container[Part]):
         if found is None:
             raise NotHeld(why)
         of = scope.find(found[0])
-        if of.item.get("type") != "uint" or "count" in of.item or of.mask or not any(of is one for one in self.parts):
+        if of.item.get("type") != "uint" or "count" in of.item or of.mask or not any(of is part for part in self.parts):
             raise NotHeld(f"{why}, which is not a number in front of it")
         made = Counter(of, found[1])
         if self.ends:

@@ -154,14 +154,14 @@ def contents(attribute: Map) -> bytes | None:
         return None
     parts = said if isinstance(said, Seq) else [said]
     made = b""
-    for one in parts:
-        value = integer(one) if isinstance(one, str) and integer(one) is not None else one
+    for part in parts:
+        value = integer(part) if isinstance(part, str) and integer(part) is not None else part
         if isinstance(value, int) and 0 <= value <= 255:
             made += bytes([value])
-        elif isinstance(one, str):
-            made += one.encode()
+        elif isinstance(part, str):
+            made += part.encode()
         else:
-            raise NotHeld(f"its contents are `{line(str(one), 60)}`")
+            raise NotHeld(f"its contents are `{line(str(part), 60)}`")
     if not 1 <= len(made) <= MOST_BYTES:
         raise NotHeld(f"its contents are {len(made)} bytes")
     return made

@@ -82,23 +82,23 @@ def read_set(paths: Sequence[Path], reader: Reader) -> list[Definitions]:
     """
     _need(reader)
     most = getattr(reader, "most_bytes", MAX_BYTES)
-    made: list[Definitions] = []
+    result: list[Definitions] = []
     sources: list[Source] = []
     for path in paths:
         try:
             sources.append(Source(str(path), contents(path, most)))
         except Findings as error:
-            made.append(Definitions(str(path)))
-            made[-1].refuse(error)
+            result.append(Definitions(str(path)))
+            result[-1].refuse(error)
     if (together := getattr(reader, "read_set", None)) is not None:
-        return [*made, *together(sources)]
+        return [*result, *together(sources)]
     for source in sources:
         try:
-            made.append(reader.read(*source))
+            result.append(reader.read(*source))
         except Findings as error:
-            made.append(Definitions(source.file))
-            made[-1].refuse(error)
-    return made
+            result.append(Definitions(source.file))
+            result[-1].refuse(error)
+    return result
 
 
 def read(path: Path, reader: Reader) -> Definitions:

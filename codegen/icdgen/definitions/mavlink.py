@@ -95,7 +95,7 @@ class MavLink2:
                     continue
                 network.messages.append(made if len(roots) == 1 else {**made, "group": Path(path).stem})
         network.messages.sort(key=lambda one: int(one["id"]))
-        in_order = {one["name"]: seeds[one["name"]] for one in network.messages}
+        in_order = {message["name"]: seeds[message["name"]] for message in network.messages}
         seeds.clear()
         seeds |= in_order
         network.declare(one for _, one in sorted(enums.items()))
@@ -120,18 +120,18 @@ class MavLink2:
             if tag == "field":
                 (more if is_more else base).append(_field(one))
         base.sort(key=lambda one: -_BITS[one.type])  # as they are sent; those of one width stay in their order
-        made: Item = {"name": name, "id": id, "kind": "telemetry", "length": 0}
+        item: Item = {"name": name, "id": id, "kind": "telemetry", "length": 0}
         if self.has_extensions:
-            made["may_end_early"] = "zeros"
-        made |= summary(_said(element))
+            item["may_end_early"] = "zeros"
+        item |= summary(_said(element))
         fields, at = [], 0
         for field in (*base, *(more if self.has_extensions else ())):
             fields.append({"at": at, **_held(name, field, enums, version, to)})
             at += field.bits
-        made["length"] = at // 8
+        item["length"] = at // 8
         if at <= 8:
-            made.pop("may_end_early", None)  # one byte is always sent
-        return _extra(name, base), {**made, "fields": fields} if fields else made
+            item.pop("may_end_early", None)  # one byte is always sent
+        return _extra(name, base), {**item, "fields": fields} if fields else item
 
     def envelope(self) -> Item:
         """The section `protocol`; the system and the component are those of a ground station and of an autopilot."""
@@ -148,7 +148,7 @@ class MavLink2:
             {"bits": 8, "role": "type", "value": {"telecommand": 190, "telemetry": 1}},
             {"bits": self.id_bits, "role": "id"},
         ]
-        places = accumulate((one["bits"] for one in parts), initial=0)
+        places = accumulate((part["bits"] for part in parts), initial=0)
         header = [{"at": at, **one} for at, one in zip(places, parts, strict=False)]
         trailer = [{"at": 0, "bits": 16, "role": "checksum", "checksum": "x25"}]
         checksum = {**_X25, "covers": {"from": "length", "to": "data"}, "seeds": {}}
@@ -177,8 +177,8 @@ def _with_included(file: str, data: bytes, account: Account) -> Iterator[tuple[s
 
     def read(path: str, content: bytes, stack: tuple[str, ...]) -> None:
         root = found[path] = safe_xml.parse(path, content, account=account)
-        for one in root.iterfind("include"):
-            name = (one.text or "").strip()
+        for element in root.iterfind("include"):
+            name = (element.text or "").strip()
             target = os.path.join(os.path.dirname(path), name)
             if not name or os.path.basename(name) != name:
                 raise unreadable(path, f"`{line(name, 100)}`, which it includes, is not in its folder", "put it there")
@@ -199,19 +199,19 @@ def _with_included(file: str, data: bytes, account: Account) -> Iterator[tuple[s
 
 def _field(element: Element) -> _Field:
     """Raises `NotHeld` for a type that there is not."""
-    found = re.fullmatch(r"(\w+?)(?:\[([0-9]{1,3})\])?", element.get("type", ""))
-    type_ = "uint8_t" if found and found[1] == _VERSION_FIELD else found[1] if found else ""
+    match = re.fullmatch(r"(\w+?)(?:\[([0-9]{1,3})\])?", element.get("type", ""))
+    type_ = "uint8_t" if match and match[1] == _VERSION_FIELD else match[1] if match else ""
     type_ = "int8_t" if type_ == "array" else type_ if type_ in _BITS else f"{type_}_t"
-    if found is None or type_ not in _BITS:
+    if match is None or type_ not in _BITS:
         raise NotHeld(f"`{element.get('name', '')}` is of the type `{line(element.get('type'), 100)}`")
-    return _Field(element.get("name", ""), type_, int(found[2] or 0), element)
+    return _Field(element.get("name", ""), type_, int(match[2] or 0), element)
 
 
 def _extra(name: str, fields: list[_Field]) -> int:
     """CRC_EXTRA: what both sides must agree upon, in a byte; extensions are no part of it."""
     data = f"{name} ".encode()
-    for one in fields:
-        data += f"{one.type} {one.name} ".encode() + (bytes([one.elements]) if one.elements else b"")
+    for field in fields:
+        data += f"{field.type} {field.name} ".encode() + (bytes([field.elements]) if field.elements else b"")
     checksum = 0xFFFF
     for byte in data:
         checksum ^= byte
@@ -251,14 +251,14 @@ def _held(owner: str, field: _Field, enums: dict[str, Item], version: int, to: D
 
 def _formula(factor: str, multiplier: str) -> str:
     """``raw*0.01``; the multiplier may be a quotient."""
-    found = re.fullmatch(r"\s*([0-9.]+(?:[eE][-+]?[0-9]+)?)(?:\s*/\s*([0-9]+))?\s*", multiplier)
+    match = re.fullmatch(r"\s*([0-9.]+(?:[eE][-+]?[0-9]+)?)(?:\s*/\s*([0-9]+))?\s*", multiplier)
     try:
-        scale = Fraction(found[1]) if found else Fraction(1)
+        scale = Fraction(match[1]) if match else Fraction(1)
     except ValueError:
         return ""
     text = "" if factor == "1" else f"*{factor}"
-    text += f"*{found[1].lower()}" if found and scale != 1 else ""
-    return f"raw{text}" + (f"/{found[2]}" if found and found[2] else "") if text else ""
+    text += f"*{match[1].lower()}" if match and scale != 1 else ""
+    return f"raw{text}" + (f"/{match[2]}" if match and match[2] else "") if text else ""
 
 
 def _name_values(one: Item, enum: Item, bits: int, where: str, to: Definitions) -> None:
@@ -346,9 +346,9 @@ def _text(element: Element) -> str:
 
 def _number(text: str) -> Any:
     """A number as enumerations have them, ``1<<3`` among them; None for what is none."""
-    found = _NUMBER.match(text)
-    if found is None:
+    match = _NUMBER.match(text)
+    if match is None:
         return None
-    value = int(found[1], 0) if "x" in found[1].lower() else int(found[1])
-    power = int(found[3] or 0)
-    return value << power if found[2] == "<<" else value ** power if found[2] else value
+    value = int(match[1], 0) if "x" in match[1].lower() else int(match[1])
+    power = int(match[3] or 0)
+    return value << power if match[2] == "<<" else value ** power if match[2] else value

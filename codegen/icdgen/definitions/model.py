@@ -51,7 +51,7 @@ class Network:
     def declare(self, enums: Iterable[Item]) -> None:
         """Takes those enumerations that a field has."""
         used = {one.get("enum") for one in self.fields}
-        self.enums = [one for one in enums if one["name"] in used]
+        self.enums = [enum for enum in enums if enum["name"] in used]
 
     def name_messages_apart(self, to: Definitions) -> None:
         """Put group or kind in front of the names of messages with the same name, or else the id behind, with a note (IMP092)."""
@@ -143,13 +143,21 @@ class Definitions:
 
     def refuse(self, findings: Findings) -> None:
         """Notes that the file cannot be read."""
-        for one in findings.findings:
-            self.warn(one.code, one.message, one.help, "error", one.place.line if one.place.line > 1 else None)
+        for finding in findings.findings:
+            self.warn(
+                finding.code,
+                finding.message,
+                finding.help,
+                "error",
+                finding.place.line if finding.place.line > 1 else None,
+            )
 
     def take(self, part: Definitions) -> None:
         """Takes the findings of a file that is read as one with others."""
         file = part.file if part.file != self.file else ""
-        self.troubles += [one._replace(spot=one.spot._replace(file=one.spot.file or file)) for one in part.troubles]
+        self.troubles += [
+            finding._replace(spot=finding.spot._replace(file=finding.spot.file or file)) for finding in part.troubles
+        ]
 
 
 class Source(NamedTuple):

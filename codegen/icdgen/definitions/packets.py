@@ -166,6 +166,6 @@ def _id_in_front(found: Sequence[Sent]) -> int:
 
 def _telling(ours: list[Sent]) -> Hashable | None:
     """What has one value in each message, of those the one with the most different ones."""
-    common = [key for key in (ours[0].told if ours else ()) if all(key in one.told for one in ours)]
-    fits = [key for key in common if all(0 <= one.told[key] < 1 << _MOST_ID_BITS for one in ours)]
-    return max(fits, key=lambda key: len({one.told[key] for one in ours}), default=None)
+    common = [key for key in (ours[0].told if ours else ()) if all(key in our.told for our in ours)]
+    fits = [key for key in common if all(0 <= our.told[key] < 1 << _MOST_ID_BITS for our in ours)]
+    return max(fits, key=lambda key: len({our.told[key] for our in ours}), default=None)

@@ -31,7 +31,7 @@ class Read:
     @property
     def failed(self) -> bool:
         """Whether something that the file defines is missing."""
-        return any(one.severity == "error" for one in self.definitions.troubles)
+        return any(finding.severity == "error" for finding in self.definitions.troubles)
 
 
 def read(path: Path, reader: Reader) -> Read:
@@ -39,7 +39,7 @@ def read(path: Path, reader: Reader) -> Read:
     found = kinds.read(path, reader)
     made = _settled(found, reader)
     if not made.trees:
-        first = next((one for one in found.troubles if one.severity == "error"), None)
+        first = next((finding for finding in found.troubles if finding.severity == "error"), None)
         why = ", for none is defined" if first is None else f": {first.message}"
         raise unreadable(str(path), f"no message can be imported{why}", "" if first is None else first.help)
     return made

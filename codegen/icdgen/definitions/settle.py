@@ -121,7 +121,7 @@ def _degrade(network: Network, line: _Line, finding: Finding, to: Definitions) -
         to.warn(RAW_ONLY, f"unit `{line.item['symbol']}` is left out: {reason}", "its fields have no unit", "error")
     elif line.what in (_FIELD, _MEMBER) and line.item is not line.whole:
         _degrade_part(network, line, reason, to)
-    elif any(line.whole is one for one in network.enums):
+    elif any(line.whole is enum for enum in network.enums):
         _drop_enumeration(network, line.whole, reason, to)
     else:
         _take_out(network, line.whole, reason, to)
@@ -137,7 +137,7 @@ def _degrade_part(network: Network, line: _Line, reason: str, to: Definitions) -
         if not line.whole["members"]:
             _drop_enumeration(network, line.whole, "no name of it can be imported", to)
         return
-    whole = "message" if any(line.whole is one for one in network.messages) else "struct"
+    whole = "message" if any(line.whole is message for message in network.messages) else "struct"
     if item.keys() & set(_MEANING) and "count" not in item:
         _make_raw(network, item)
         text = f"{whole} `{owner}`, `{item['name']}`: {reason}"
@@ -156,7 +156,7 @@ def _degrade_part(network: Network, line: _Line, reason: str, to: Definitions) -
 def _make_raw(network: Network, item: Item) -> None:
     if (enum := item.get("enum")) is not None:
         members: list[Item] = next((one["members"] for one in network.enums if one["name"] == enum), [])
-        item["type"] = "int" if any(one["value"] < 0 for one in members) else "uint"
+        item["type"] = "int" if any(member["value"] < 0 for member in members) else "uint"
     for key in _MEANING:
         item.pop(key, None)
 
@@ -170,12 +170,12 @@ def _drop_enumeration(network: Network, enum: Item, reason: str, to: Definitions
 
 
 def _is_open(fields: list[Item]) -> bool:
-    return any("up_to" in one or "after" in one for one in fields)
+    return any("up_to" in field or "after" in field for field in fields)
 
 
 def _reserve(network: Network, message: Item) -> None:
     """Bytes at the end of a message that no field has any longer become reserved."""
-    lengths = {one["name"]: 8 * one["length"] for one in network.structs if "length" in one}
+    lengths = {struct["name"]: 8 * struct["length"] for struct in network.structs if "length" in struct}
     end = 0
     for field in message["fields"]:
         bits = lengths.get(field.get("struct"), field.get("bits", 0))
@@ -187,7 +187,7 @@ def _reserve(network: Network, message: Item) -> None:
 
 def _take_out(network: Network, whole: Item, reason: str, to: Definitions) -> None:
     """Leave out a message; of a struct the fields that have it follow, for it is unknown then."""
-    if any(whole is one for one in network.messages):
+    if any(whole is message for message in network.messages):
         network.seeds.pop(whole["name"], None)
         to.left_out(whole["name"], reason)
         _remove(network.messages, whole)
@@ -202,7 +202,7 @@ def _remove(items: list[Item], item: Item) -> None:
 
 def _declare_structs(network: Network) -> None:
     """Drop structs that no message has any longer, directly or within others."""
-    by_name = {one["name"]: one for one in network.structs}
+    by_name = {struct["name"]: struct for struct in network.structs}
     needed: set[str] = set()
     waiting = list(_structs_in(network.messages))
     while waiting:
@@ -210,7 +210,7 @@ def _declare_structs(network: Network) -> None:
         if name in by_name and name not in needed:
             needed.add(name)
             waiting += _structs_in([by_name[name]])
-    network.structs = [one for one in network.structs if one["name"] in needed]
+    network.structs = [struct for struct in network.structs if struct["name"] in needed]
     network.declare(network.enums)
 
 

@@ -73,7 +73,7 @@ class SunSpec:
         left = [_MOST_POINTS]
         for tree in sorted(models, key=lambda one: int(one["id"])):
             to.total += 1
-            model = _Model(tree, enums, to, left, {one["name"] for one in network.structs})
+            model = _Model(tree, enums, to, left, {struct["name"] for struct in network.structs})
             try:
                 network.messages.append(model.message())
             except NotHeld as why:
@@ -96,9 +96,9 @@ def _parse(file: str, data: bytes) -> list[AccountedMap]:
     except (UnicodeDecodeError, RecursionError, ValueError):
         raise unreadable(file, "not JSON", "a model is a JSON object with `id` and `group`") from None
     models = tree if isinstance(tree, list) else [tree]
-    for one in models:
-        group = one.get("group") if isinstance(one, dict) else None
-        if not isinstance(group, dict) or type(one.get("id")) is not int or one["id"] >> _REGISTER:
+    for model in models:
+        group = model.get("group") if isinstance(model, dict) else None
+        if not isinstance(group, dict) or type(model.get("id")) is not int or model["id"] >> _REGISTER:
             raise unreadable(
                 file, "not a model of SunSpec, nor a list of them", "a model has an `id` of 16 bits and a `group`"
             )
@@ -125,12 +125,12 @@ class _Model:
         end = self.block(self.group, fields, 0, "", 0)
         if not fields:
             raise NotHeld("it has no points")
-        told: Item = {"name": self.name, "id": self.id, "kind": "telemetry", "length": end // 8} | _said(self.group)
+        item: Item = {"name": self.name, "id": self.id, "kind": "telemetry", "length": end // 8} | _said(self.group)
         if self.scaled:
             shown = ", ".join(f"`{name}`" for name in self.scaled[:3]) + (" ..." if len(self.scaled) > 3 else "")
             text = f"message `{self.name}`: the factors of {len(self.scaled)} points are in other registers: {shown}"
             self.to.warn(RAW_ONLY, text, "raw values are imported; their summaries name the scale factor", "note")
-        return {**told, "fields": fields}
+        return {**item, "fields": fields}
 
     def block(self, group: dict[str, Any], fields: list[Item], at: int, before: str, depth: int) -> int:
         """Appends the points of a group and of those in it; the bit where what has a fixed place ends. Raises `NotHeld`."""
@@ -222,12 +222,12 @@ def _fixed_number_help(group: str, counter: object) -> str:
 
 def _symbols(point: dict[str, Any], is_bits: bool) -> dict[int, str]:
     """The names of values; of bits those of the values that have this bit alone."""
-    found: dict[int, str] = {}
+    result: dict[int, str] = {}
     for one in _list(point, "symbols"):
         value = one.get("value")
         if type(value) is int and 0 <= value < 1 << 32 and (not is_bits or value < 64):
-            found.setdefault(1 << value if is_bits else value, _text(one, "name"))
-    return found
+            result.setdefault(1 << value if is_bits else value, _text(one, "name"))
+    return result
 
 
 def _special(kind: _Kind, said: str) -> Item:

@@ -54,19 +54,19 @@ class Xtce:
     def read_set(self, sources: Sequence[Source]) -> list[Definitions]:
         """What each set of files defines in which one refers to another, called like their folder; and each other file."""
         roots: dict[str, Element] = {}
-        made: list[Definitions] = []
+        result: list[Definitions] = []
         for source in sources:
             try:
                 roots[source.file] = safe_xml.parse(source.file, source.data, account=Account())
             except Findings as error:
-                made.append(Definitions(source.file))
-                made[-1].refuse(error)
+                result.append(Definitions(source.file))
+                result[-1].refuse(error)
         for files in xtce_files.sets(roots):
             first = next(iter(files))
             folder = Path(os.path.commonpath([Path(file).absolute().parent for file in files]))
             name = node_name(first if len(files) == 1 else f"{folder.name}.xml")
-            made.append(_define(files, Definitions(first, more=len(files) - 1), name))
-        return made
+            result.append(_define(files, Definitions(first, more=len(files) - 1), name))
+        return result
 
 
 def _define(roots: Mapping[str, Element], to: Definitions, name: str) -> Definitions:
@@ -100,7 +100,7 @@ class _Found:
         self.kind, self.element, self.layout, self.more = kind, element, layout, more
         self.name = called(element)
         self.told: dict[Hashable, int] = {one.reference: layout.tell(one) for one in layout.told}
-        self.header = packets.header((one.at, one.bits, one.item.get("const")) for one in layout.parts)
+        self.header = packets.header((part.at, part.bits, part.item.get("const")) for part in layout.parts)
         first = next(iter(layout.parts), None)
         is_id = first is not None and first.is_message_id
         self.front: tuple[Hashable, int] | None = (first.reference, first.bits) if first and is_id else None
@@ -108,7 +108,7 @@ class _Found:
     def message(self, id: int, start: int, to: Definitions) -> Item:
         """As it stands in an ICD. Raises `NotHeld`."""
         made = {"name": self.name, "id": id, "kind": self.kind, "length": 0, **self.more}
-        lost = [one for one in self.layout.parts if one.at < start and not self._is_ahead(one, start)]
+        lost = [part for part in self.layout.parts if part.at < start and not self._is_ahead(part, start)]
         if lost:
             shown = ", ".join(f"`{one.path[-1]}`" for one in lost)
             text = f"message `{self.name}`: {shown} lies within the header"
@@ -168,7 +168,7 @@ def _identified(found: list[_Found], to: Definitions) -> list[_Found]:
     is_packet = any(one.header is not None for one in found)
     bases = [one for one in found if is_packet and one.is_base and (one.header is None or one.header.apid is None)]
     if bases:
-        shown = ", ".join(f"`{one.name}`" for one in bases[:3]) + (" ..." if len(bases) > 3 else "")
+        shown = ", ".join(f"`{base.name}`" for base in bases[:3]) + (" ..." if len(bases) > 3 else "")
         what = "1 container is" if len(bases) == 1 else f"{len(bases)} containers are"
         text = f"{what} without an application process: {shown}"
         to.warn(BASE_ONLY, text, "others are based on them, which are messages", "note")
@@ -198,16 +198,16 @@ def _used(names: Names, path: str) -> set[int]:
 
 
 def _arguments(chain: list[Element]) -> dict[str, Element]:
-    found: dict[str, Element] = {}
+    result: dict[str, Element] = {}
     for command in chain:
-        for one in command.iterfind("ArgumentList/Argument"):
-            found.setdefault(one.get("name", ""), one)
-    return found
+        for element in command.iterfind("ArgumentList/Argument"):
+            result.setdefault(element.get("name", ""), element)
+    return result
 
 
 def _paired(messages: list[Item]) -> list[Item]:
     """A telecommand and a telemetry frame of one name that have the same fields are one configuration message, set and got."""
-    sent = {(one["name"], one.get("group")): one for one in messages if one["kind"] == _TELECOMMAND}
+    sent = {(message["name"], message.get("group")): message for message in messages if message["kind"] == _TELECOMMAND}
     made: list[Item] = []
     gone: set[int] = set()
     for one in messages:
@@ -241,7 +241,7 @@ def _group(names: Names, element: Element) -> Item:
 
 
 def _hazard(chain: list[Element]) -> Item:
-    said = next((one for command in chain for one in command.iterfind("DefaultSignificance")), None)
+    said = next((element for command in chain for element in command.iterfind("DefaultSignificance")), None)
     if said is None or said.get("consequenceLevel", "none") not in _HAZARDOUS:
         return {}
     return {

@@ -90,18 +90,18 @@ def _number(text: str) -> int | float | str:
 
 def number(text: str, what: str) -> int:
     """An integer. Raises `NotHeld`."""
-    found = _INTEGER.match(text)
-    if found is None:
+    match = _INTEGER.match(text)
+    if match is None:
         raise NotHeld(f"{what} is `{line(text, 60)}`")
-    return int(found[1])
+    return int(match[1])
 
 
 def decimal(text: str) -> str:
     """A number as a formula has it. Raises `ValueError`."""
-    found = NUMBER.match(text)
-    if found is None:
+    match = NUMBER.match(text)
+    if match is None:
         raise ValueError(f"a coefficient is `{line(text, 60)}`")
-    return printed(Decimal(found[1]))
+    return printed(Decimal(match[1]))
 
 
 def fixed(element: Element | None, default: int | None = None) -> int | None:
@@ -115,13 +115,13 @@ def fixed(element: Element | None, default: int | None = None) -> int | None:
 def polynomial(terms: list[Element]) -> str:
     """Raises `ValueError` for one that cannot be said."""
     found: dict[int, str] = {}
-    for one in terms:
-        power = number(one.get("exponent", ""), "an exponent")
+    for term in terms:
+        power = number(term.get("exponent", ""), "an exponent")
         if not 0 <= power <= _MOST_POWER:
             raise ValueError(f"it is calibrated by raw^{power}")
         if power in found:
             raise ValueError(f"raw^{power} has two coefficients")
-        found[power] = decimal(one.get("coefficient", ""))
+        found[power] = decimal(term.get("coefficient", ""))
     return formula(found)
 
 
@@ -147,7 +147,7 @@ def _binary(text: str) -> str:
 
 def through(points: list[Element]) -> str:
     """Through two points."""
-    (x0, y0), (x1, y1) = ([decimal(one.get(key, "")) for key in ("raw", "calibrated")] for one in points)
+    (x0, y0), (x1, y1) = ([decimal(point.get(key, "")) for key in ("raw", "calibrated")] for point in points)
     across, up = Fraction(x1) - Fraction(x0), Fraction(y1) - Fraction(y0)
     if not across:
         raise ValueError("two points of its calibration have one raw value")

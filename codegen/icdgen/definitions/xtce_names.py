@@ -52,7 +52,7 @@ class Names:
                 for group in meta:
                     for one in group if group.tag in _SETS else ():
                         self._note(_SETS[group.tag], one, path, file)
-            left += [(one, path, depth + 1) for one in reversed(system.findall("SpaceSystem"))]
+            left += [(element, path, depth + 1) for element in reversed(system.findall("SpaceSystem"))]
 
     def _note(self, kind: str, element: Element, path: str, file: str) -> None:
         first = self._found.setdefault((kind, f"{path}/{element.get('name', '')}"), element)
@@ -98,7 +98,7 @@ class Names:
     def container_of(self, command: Element) -> Element | None:
         """The container of a command, or of the nearest on which it is based. Raises `NotHeld`."""
         containers = (one.find("CommandContainer") for one in self.commands(command))
-        return next((one for one in containers if one is not None), None)
+        return next((container for container in containers if container is not None), None)
 
     def base_of(self, container: Element) -> Element | None:
         """The container that one extends. Raises `NotHeld`.

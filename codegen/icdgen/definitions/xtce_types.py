@@ -196,7 +196,7 @@ class Types(Reading):
 
     def _limits(self, item: Item, chain: list[Element]) -> Item:
         """The keys of the range that is valid, if there is one and it is that of the value that is imported."""
-        ranges = [one for type_ in chain for path in _RANGES for one in type_.iterfind(path)]
+        ranges = [element for type_ in chain for path in _RANGES for element in type_.iterfind(path)]
         owners = [one for type_ in chain if (one := type_.find("ValidRangeSet")) is not None]
         of_raw = any(one.get("validRangeAppliesToCalibrated") == "false" for one in (*ranges, *owners))
         if len(ranges) != 1 or (of_raw and item.keys() & {"formula", "points"}):
@@ -259,7 +259,7 @@ def said(element: Element) -> str:
 
 def _time(item: Item, chain: list[Element]) -> dict[str, Any]:
     """The key of the formula of seconds, or what the encoding says, since an epoch; adds the unit. Raises `ValueError`."""
-    of = next((one for type_ in chain for one in type_.iterfind("Encoding")), None)
+    of = next((element for type_ in chain for element in type_.iterfind("Encoding")), None)
     if of is None:
         return {}
     text = formula({1: decimal(of.get("scale", "1")), 0: decimal(of.get("offset", "0"))})
@@ -290,7 +290,9 @@ def _numbers(type_: str, bits: int, order: str) -> Piece:
 def _order(encoding: Element) -> str:
     """Which byte is sent first: an attribute of XTCE 1.2, a list in 1.1."""
     said = encoding.get("byteOrder", "mostSignificantByteFirst")
-    bytes_ = [number(one.get("byteSignificance", ""), "a byte") for one in encoding.iterfind("ByteOrderList/Byte")]
+    bytes_ = [
+        number(element.get("byteSignificance", ""), "a byte") for element in encoding.iterfind("ByteOrderList/Byte")
+    ]
     if said == "leastSignificantByteFirst" or (len(bytes_) > 1 and bytes_ == sorted(bytes_)):
         return LITTLE
     if said != "mostSignificantByteFirst" or bytes_ != sorted(bytes_, reverse=True):
@@ -347,7 +349,7 @@ def _adjusted(dynamic: Element) -> tuple[str, int, int | None]:
 
 def _unit(chain: list[Element]) -> dict[str, str]:
     """The first type that has units: `m` and `s` to the power of -2 are `m/s^2`."""
-    sets = [one for type_ in chain for one in type_.iterfind("UnitSet")]  # many are empty
+    sets = [element for type_ in chain for element in type_.iterfind("UnitSet")]  # many are empty
     units = next((found for one in sets if (found := one.findall("Unit"))), [])
     parts = ""
     for one in units:

@@ -158,7 +158,7 @@ def _matched(old: list[Child], items: list[dict[str, Any]], kind: str) -> dict[i
     """Index of the new item -> the old entry that it goes on from, each used once; the surest match first."""
     plain = [_plain(child.value) for child in old]
     free = {index for index, value in enumerate(plain) if isinstance(value, dict)}
-    found: dict[int, Child] = {}
+    result: dict[int, Child] = {}
     for same in _MATCHES[kind]:
         waiting: dict[object, list[int]] = {}
         for index in sorted(free):
@@ -166,11 +166,11 @@ def _matched(old: list[Child], items: list[dict[str, Any]], kind: str) -> dict[i
                 waiting.setdefault(key, []).append(index)
         for index, item in enumerate(items):
             key = same(item)
-            if index not in found and key is not None and waiting.get(key):
+            if index not in result and key is not None and waiting.get(key):
                 taken = waiting[key].pop(0)
-                found[index] = old[taken]
+                result[index] = old[taken]
                 free.discard(taken)
-    return found
+    return result
 
 
 def _ids(item: dict[str, Any]) -> object:

@@ -61,7 +61,7 @@ class Monitor:
         """What has to be asked for."""
         rows = self.known.stream.telecommands if self.known.stream else ()
         asking = {row.reply for row in rows if row.least == 0}
-        yield from (one for one in self.messages if not self.listens or one.telemetry_id in asking)
+        yield from (message for message in self.messages if not self.listens or message.telemetry_id in asking)
 
     def begin(self) -> None:
         """A round begins."""

@@ -146,8 +146,8 @@ class LogSurvey:
         whole = numbers_at(data, stride, seconds_at, seconds_size, little, count=count)
         parts = numbers_at(data, stride, rest_at, rest_size, little, count=count)
         milliseconds = whole.astype(np.int64) * 1000 + parts.astype(np.int64)
-        found: Sequence[int] = np.where((parts < 1000) & (whole <= LATEST_SECOND), milliseconds, -1)  # type: ignore[assignment]
-        return found
+        result: Sequence[int] = np.where((parts < 1000) & (whole <= LATEST_SECOND), milliseconds, -1)  # type: ignore[assignment]
+        return result
 
     def _anchor(self) -> int | None:
         """Return the first byte at which entries begin, normally the first one behind the header."""

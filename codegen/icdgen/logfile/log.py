@@ -57,9 +57,11 @@ def open_log(icd: Icd, node: Node, path: Path, direction: Direction, messages: S
 def _only(source: Source, messages: Sequence[Message]) -> Source:
     if not messages:
         return source
-    wanted = {key(one) for one in messages}
-    columns = tuple(one for one in source.plan.columns if one.message is not None and key(one.message) in wanted)
-    if lacking := wanted - {key(one.message) for one in columns if one.message is not None}:
+    wanted = {key(message) for message in messages}
+    columns = tuple(
+        column for column in source.plan.columns if column.message is not None and key(column.message) in wanted
+    )
+    if lacking := wanted - {key(column.message) for column in columns if column.message is not None}:
         names = ", ".join(sorted(name for _, name in lacking))
         raise UserError(f"{source.path} has no {names}", f"`icdgen log {source.path}` lists what it holds")
     return replace(source, plan=replace(source.plan, columns=columns))

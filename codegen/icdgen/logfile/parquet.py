@@ -113,7 +113,7 @@ class ColumnReader:
         import pyarrow as pa
 
         self.column, self.stride = column, entry_bytes
-        self.operands = [ColumnReader(one, entry_bytes) for one in column.operands]
+        self.operands = [ColumnReader(operand, entry_bytes) for operand in column.operands]
         self.names: pa.Array | None = None  # of all values, where there are few
         metadata = {"frame": column.frame, "field": column.field.name if column.field else "", "unit": column.unit}
         if column.field and column.field.enum:
@@ -174,10 +174,10 @@ class ColumnReader:
         import numpy as np
 
         column = self.column
-        found: np.ndarray
+        result: np.ndarray
         if column.field is not None and column.field.derived is not None:
-            found = derived_column(np, column.field.derived, [one._numbers(data) for one in self.operands])
-            return found
+            result = derived_column(np, column.field.derived, [operand._numbers(data) for operand in self.operands])
+            return result
         raw = self._raw(data)
         if column.steps:
             return self._physical(raw)

@@ -34,8 +34,8 @@ def reader(column: Column) -> Callable[[bytes], Value]:
 
 def _derived(column: Column) -> Callable[[bytes], float]:
     assert column.field and column.field.derived
-    how, numbers = column.field.derived, [_number(one) for one in column.operands]
-    return lambda entry: how.double([one(entry) for one in numbers])
+    how, numbers = column.field.derived, [_number(operand) for operand in column.operands]
+    return lambda entry: how.double([number(entry) for number in numbers])
 
 
 def _number(column: Column) -> Callable[[bytes], float]:

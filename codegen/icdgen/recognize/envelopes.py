@@ -81,7 +81,9 @@ def readings(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> list[Rea
 
     Raises `BadLength` or `NotFound` if there is a packet which is cut off, damaged or of no message; `Ambiguous`.
     """
-    heard = [_heard(one, direction, data) for one in speakers if one.facts.stream for direction in DIRECTIONS]
+    heard = [
+        _heard(speaker, direction, data) for speaker in speakers if speaker.facts.stream for direction in DIRECTIONS
+    ]
     found = [one for one in heard if one.readings and (one.lost == 0 or _is_marked(one.speaker))]
     if not found:
         if fault := _likeliest(heard):

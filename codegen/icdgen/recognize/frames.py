@@ -58,7 +58,7 @@ def _line_by_line(icd: Icd, speakers: Sequence[Speaker], lines: Sequence[str], a
 
 
 def _readings(icd: Icd, speakers: Sequence[Speaker], pasted: Pasted, asked: Asked) -> list[Reading]:
-    if pasted.packets and any(one.facts.can for one in speakers):
+    if pasted.packets and any(speaker.facts.can for speaker in speakers):
         found = bus.readings(speakers, pasted.packets, asked)
     else:
         found = _framed(speakers, pasted.whole, asked) or _unframed(icd, speakers, pasted, asked)
@@ -120,7 +120,9 @@ def _refuse_pieces(speakers: Sequence[Speaker], data: bytes) -> None:
 def _surely_enveloped(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> list[Reading]:
     """Of messages whose frames differ in length one in its envelope can be as long as another without: a checksum tells."""
     with suppress(Ambiguous, BadLength):
-        return [one for one in envelopes.readings(speakers, data, asked) if one.checked and asked.is_of(one)]
+        return [
+            reading for reading in envelopes.readings(speakers, data, asked) if reading.checked and asked.is_of(reading)
+        ]
     return []
 
 
@@ -161,7 +163,11 @@ def _bare(icd: Icd, speakers: Sequence[Speaker], data: bytes, asked: Asked) -> R
         raise fault.error
     _refuse_pieces(speakers, data)
     # Where packets are not recognized by their first bytes, any bytes may be a piece of one.
-    plainly = [one for one in speakers if one.link.stream is None or (asked.kind and faults.has_sync(one.link.stream))]
+    plainly = [
+        speaker
+        for speaker in speakers
+        if speaker.link.stream is None or (asked.kind and faults.has_sync(speaker.link.stream))
+    ]
     if not plainly:
         raise _no_packet(speakers, data, asked)
     return _guessed(plainly, data, asked)

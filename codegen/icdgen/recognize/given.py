@@ -62,4 +62,4 @@ def _reading(speaker: Speaker, message: Message, id: int | None, data: bytes, *r
 def _talking(icd: Icd, speaker: Speaker, message: Message) -> list[Speaker]:
     """How all talk that have the message: those that include it may add a checksum."""
     others = (one for one in all_speakers(icd) if one.node is not speaker.node)
-    return [speaker, *(one for one in others if message in icd.messages_of(one.node))]
+    return [speaker, *(other for other in others if message in icd.messages_of(other.node))]

@@ -134,7 +134,7 @@ def decided(found: Sequence[Reading], of: str, asked: Asked) -> Reading:
     likely = [one for one in found if one.checked] or [one for one in found if one.what != ACKNOWLEDGE] or list(found)
     if len(likely) > 1 and all(asked.is_of(one) and one.what in KINDS for one in likely):
         first, *others = likely
-        if all(one.message is first.message and one.data == first.data for one in others):
+        if all(other.message is first.message and other.data == first.data for other in others):
             return replace(first, what=first.message.kind)
     if len(likely) > 1:
         wrong = f", not {asked.names}" if asked.messages and not any(map(asked.is_of, likely)) else ""
@@ -189,7 +189,7 @@ def why_not(apart: Sequence[Apart], unknown: NotFound) -> BadLength | NotFound:
 
 def none_of(messages: Sequence[Message], data: str) -> NotFound:
     """Data that are of none of the messages that share an id."""
-    told = ", ".join(f"`{one.name}` ({describe(one)}, {length_text(one)})" for one in messages)
+    told = ", ".join(f"`{message.name}` ({describe(message)}, {length_text(message)})" for message in messages)
     help = "a byte was damaged, or there are too many; name the message to have them read all the same"
     return NotFound(f"{data} are like none of {told}, by length and constants", help)
 

@@ -138,15 +138,15 @@ def of_fields(icd: Icd, node: Node, name: str, key: str, value: object) -> list[
     if not elements and not is_none:
         return [(message, find_field(message, fields, key, vocabulary), value)]
     if isinstance(value, Mapping):
-        return [(message, one, value) for one in elements]
+        return [(message, element, value) for element in elements]
     texts = [] if is_none else listed(key, str(value), len(elements), part is not None)
-    found: list[tuple[Message, FrameField, object]] = [
+    result: list[tuple[Message, FrameField, object]] = [
         (message, one, text) for one, text in zip(elements, texts, strict=False)
     ]
     if part is None:
-        return found
+        return result
     counter = next(field for field in fields if field.name == part.counter)
-    return [(message, counter, len(texts) - part.plus), *found]
+    return [(message, counter, len(texts) - part.plus), *result]
 
 
 def locate_message(icd: Icd, node: Node, name: str) -> Message:

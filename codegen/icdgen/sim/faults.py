@@ -59,7 +59,7 @@ class Faults:
         if self.hits("noise", on):
             out[:0] = self.random.randbytes(self.random.randrange(1, 32))
         pieces = [bytes(out)] * (2 if self.hits("duplicate", on) else 1)
-        return [(self.random.randrange(1, self.late_ms + 1) if self.hits("late", on) else 0, one) for one in pieces]
+        return [(self.random.randrange(1, self.late_ms + 1) if self.hits("late", on) else 0, piece) for piece in pieces]
 
 
 def parse(text: str) -> Fault:

@@ -182,11 +182,11 @@ class Program:
         if step is None or step.message.name != message.name:
             return {}
         bits = {field.name: field.bits for field in self.icd.longest_frame(step.message)}
-        found: Raw = {}
+        result: Raw = {}
         for role, name in step.fields.items():
             count = self.counts.get(role, 0)
-            found[name] = count % (1 << bits[name]) if bits[name] > 1 else int(count > 0)
-        return found
+            result[name] = count % (1 << bits[name]) if bits[name] > 1 else int(count > 0)
+        return result
 
     def _acknowledged(self, now: int, message: Message) -> Raw:
         polled = self.known.polled

@@ -83,7 +83,7 @@ def build(icd: Icd, name: str | None, options: Options) -> tuple[DeviceLine, con
     storage = Storage(on_upload=_saver(options.uploads))
     storage.files.update(_file(icd, node, text) for text in options.files)
     settings = Settings(options.boot, options.busy, options.processing, options.strict, round(options.every * 1000))
-    spoil = faults.Faults(Random(options.seed), [faults.parse(one) for one in options.faults], options.late)
+    spoil = faults.Faults(Random(options.seed), [faults.parse(fault) for fault in options.faults], options.late)
     chosen = values_of(facts.of(icd, node), options.chosen)
     computer = Computer(icd, node, settings, storage)
     line: DeviceLine = EnvelopeLine(computer, spoil, chosen) if computer.program.known.stream else Line(computer, spoil)

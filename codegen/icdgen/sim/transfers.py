@@ -88,15 +88,15 @@ class Transfers:
 
     def answer(self, now: int, message: Message) -> Raw:
         """Values of the fields that play a part in a transfer."""
-        found: Raw = {}
+        result: Raw = {}
         if message.name in self.maps:
             field, part = self.maps[message.name]
-            found[field] = bytes(self.map[part])
+            result[field] = bytes(self.map[part])
         for step, give in self.frames:
             if step.message.name == message.name:
                 values = give(now)
-                found |= {name: values[role] for role, name in step.fields.items() if role in values}
-        return found
+                result |= {name: values[role] for role, name in step.fields.items() if role in values}
+        return result
 
     def fetch(self) -> Packet:
         """The next packet of the burst; the last one again when there is none left, nothing but fill before any."""
