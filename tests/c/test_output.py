@@ -11,7 +11,7 @@ import pytest
 
 from icdgen import layout
 from icdgen.backends.c import CBackend
-from icdgen.backends.c.declared_names import FILE
+from icdgen.backends.c.symbols import FILE
 from icdgen.backends.c.text import comment, literal, plain
 from icdgen.describe import describe
 from icdgen.icd.model import Icd

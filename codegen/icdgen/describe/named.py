@@ -24,6 +24,6 @@ class Named(Generic[Model]):
         self.words = naming.words(model.identifier or model.name, vocabulary)
         self.name = naming.snake(self.words)
 
-    def identifier(self, scope: str, name: str) -> Identifier:
+    def identifier(self, scope: str, name: str, role: str = "") -> Identifier:
         """Return a name that generated code declares for the part."""
-        return Identifier(scope, name, self.owner, self.model.source)
+        return Identifier(scope, name, self.owner, self.model.source, role)

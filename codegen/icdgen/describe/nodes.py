@@ -160,9 +160,9 @@ class NodeDescription:
     def __init__(self, description: Description, node: Node) -> None:
         self._description, self.model, self.name = description, node, node.name
 
-    def identifier(self, scope: str, name: str) -> Identifier:
+    def identifier(self, scope: str, name: str, role: str = "") -> Identifier:
         """Return a name that generated code declares for the node."""
-        return Identifier(scope, name, f"node `{self.name}`", self.model.source)
+        return Identifier(scope, name, f"node `{self.name}`", self.model.source, role)
 
     @cached_property
     def messages(self) -> tuple[MessageDescription, ...]:

@@ -20,6 +20,7 @@ class Identifier:
     text: str
     owner: str  # the line of the ICD in words: "field `Foo` of `Bar`"
     source: Map | None  # the mapping of that line
+    role: str = ""  # distinguishes names of the same line: see `icdgen.describe.symbols`
 
 
 class Language(Protocol):

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 from icdgen.backends import Identifier
 from icdgen.backends.c import names
-from icdgen.backends.c.declared_names import declared_names
 from icdgen.backends.c.short_names import with_short_names
+from icdgen.backends.c.symbols import C_NAMES
 from icdgen.backends.c.types import type_of
 from icdgen.backends.origin import origin
 from icdgen.describe import (
@@ -20,6 +20,7 @@ from icdgen.describe import (
     NodeDescription,
     describe,
 )
+from icdgen.describe.symbols import symbols
 from icdgen.icd.model import Icd
 from icdgen.render import Renderer
 from tests.conformance.testees import RUNTIME, TEMPLATES
@@ -105,7 +106,7 @@ class CTesteeBackend:
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """Files that are the same for every ICD, the list of nodes, and one file a node."""
         description = describe(icd)
-        yield from with_short_names(self._files(description, render), lambda: declared_names(description))
+        yield from with_short_names(self._files(description, render), lambda: symbols(description, C_NAMES))
 
     def _files(self, description: Description, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """The files with the names of the plan, of which the C backend shortens some."""

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 from icdgen.backends import Identifier
 from icdgen.backends.c import accessors, bits, conditional, constants, decoding, encoding, members, names, parts, types
-from icdgen.backends.c.declared_names import declared_names
 from icdgen.backends.c.decoding import THRESHOLDS, Groups, Structs
 from icdgen.backends.c.runtime import assembled
 from icdgen.backends.c.short_names import with_short_names
 from icdgen.backends.c.statement import call, head, like
+from icdgen.backends.c.symbols import C_NAMES
 from icdgen.backends.c.text import FILE, comment, described, literal, noted, prose
 from icdgen.backends.origin import origin
 from icdgen.backends.packages import Packages
@@ -22,6 +22,7 @@ from icdgen.describe.comments import sentence, text_comment, words
 from icdgen.describe.description import Composite, VariablePartDescription
 from icdgen.describe.groups import groups
 from icdgen.describe.numbers import byte_count, length_text
+from icdgen.describe.symbols import symbols
 from icdgen.icd.model import Icd
 from icdgen.icd.prefixed import with_prefix
 
@@ -87,7 +88,7 @@ class CBackend:
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """List every name that the headers declare."""
-        return declared_names(describe(icd))
+        return symbols(describe(icd), C_NAMES)
 
 
 def _composite(composite: Composite[Any], more_headers: Iterable[str] = ()) -> dict[str, object]:

@@ -75,3 +75,18 @@ def constant(message: Composite[Any], name: str) -> str:
 def enumerator_of(direction: str, message: MessageDescription) -> str:
     """``DEMO_TELEMETRY_IS_STATUS``, where messages of ``demo_telemetry`` share ids."""
     return f"{direction}_is_{message.name}".upper()
+
+
+def getter(composite: Composite[Any], name: str) -> str:
+    """``demo_status_rate_deg_per_s``: the function that returns a value by its name in snake case."""
+    return f"{stem(composite)}_{name}"
+
+
+def setter(composite: Composite[Any], name: str) -> str:
+    """``demo_status_set_rate_deg_per_s``: the function that sets a physical value."""
+    return f"{stem(composite)}_set_{name}"
+
+
+def client_function(node: str, verb: str, message: MessageDescription) -> str:
+    """``demo_send_reset``: the function of a client for a message."""
+    return f"{node}_{verb}_{message.name}"

@@ -32,14 +32,15 @@ class CSelftestBackend:
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """Yield the engine, the list of nodes, and one file of vectors per node."""
-        from icdgen.backends.c.declared_names import declared_names
         from icdgen.backends.c.short_names import with_short_names
+        from icdgen.backends.c.symbols import C_NAMES
         from icdgen.backends.c_selftest import rows
         from icdgen.describe import describe
+        from icdgen.describe.symbols import symbols
 
         # The names must match those of the generated C package.
         prefixed = with_prefix(icd, self.packages.c_prefix)
-        return with_short_names(rows.files(prefixed, render), lambda: declared_names(describe(prefixed)))
+        return with_short_names(rows.files(prefixed, render), lambda: symbols(describe(prefixed), C_NAMES))
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """Return no identifiers: all names derive from names of the ``c`` backend."""

@@ -11,7 +11,9 @@ from icdgen.backends import Identifier
 from icdgen.backends.origin import origin
 from icdgen.backends.packages import Packages
 from icdgen.backends.python import names
+from icdgen.backends.python.symbols import PythonNames
 from icdgen.describe import describe
+from icdgen.describe.symbols import symbols
 from icdgen.icd.model import Icd
 
 if TYPE_CHECKING:
@@ -83,7 +85,7 @@ class PythonBackend:
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """List every name that the generated files declare, for the rules on names."""
-        return names.declared_names(describe(icd), self.package)
+        return symbols(describe(icd), PythonNames(self.package))
 
 
 def _functions() -> dict[str, object]:

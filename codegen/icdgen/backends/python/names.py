@@ -1,16 +1,14 @@
-"""Identifiers of the Python package, and all that it declares, for the name rules."""
+"""Names of classes and modules of the Python package, and names that it uses itself."""
 
 from __future__ import annotations
 
 import keyword
-from collections.abc import Iterator
 from typing import Any
 from zlib import crc32
 
-from icdgen.backends import Identifier
-from icdgen.describe import Description, EnumDescription
+from icdgen.describe import EnumDescription
 from icdgen.describe.description import Composite
-from icdgen.naming import DEVICES, camel
+from icdgen.naming import camel
 
 RESERVED = frozenset(keyword.kwlist)
 
@@ -52,36 +50,6 @@ def home(one: Composite[Any] | EnumDescription, node: str, up: str) -> str:
     return f"{start}{TYPES}.{module_name(one)}"
 
 
-def declared_names(description: Description, package: str) -> Iterator[Identifier]:
-    """All names that come from the ICDs, and what they clash with of the names that are always there."""
-    for node in description.nodes:
-        scope, within = f"package {package}", f"{package}.{node.name}"
-        yield node.identifier(scope, node.name)
-        if node.name in IN_PACKAGE:
-            yield Identifier(scope, node.name, IN_PACKAGE[node.name].format(node.name), None)
-        for name in DEVICES:
-            yield Identifier(f"files of {within}", name, "a device of Windows", None)
-        for owner in map(description.node, (*description.icd.included(node.model), node.model)):
-            for one in owner.declared:
-                yield one.identifier(f"module {within}", class_name(one))
-        for struct in node.structs:
-            yield struct.identifier(f"files of {within}", module_name(struct))
-            yield from _fields(struct, f"members of {within}.{class_name(struct)}")
-        for enum in node.enums:  # messages have files in every language
-            yield enum.identifier(f"files of {within}", module_name(enum))
-            for member in enum.members:
-                yield member.identifier(f"members of {within}.{class_name(enum)}", member.name.upper())
-        for message in node.messages:
-            yield from _fields(message, f"members of {within}.{class_name(message)}")
-
-
-def _fields(one: Composite[Any], scope: str) -> Iterator[Identifier]:
-    for field in one.declared_members:
-        if field.model.is_count:
-            continue
-        exact, physical = field.integer_scale, [field.physical_name] if field.has_physical else []
-        physical += [field.integer_name(exact.per)] if exact is not None else []
-        for name in (field.name, *physical, *(constant.name.upper() for constant in field.constants)):
-            yield field.identifier(scope, name)
-            if name in IN_MESSAGE:
-                yield Identifier(scope, name, IN_MESSAGE[name].format(name), None)
+def constant_name(name: str) -> str:
+    """Return the name of an attribute of a class that does not change: ``IDLE``, ``TIMEOUT_NO_TIMEOUT``."""
+    return name.upper()

@@ -11,8 +11,9 @@ from icdgen.backends import Identifier
 from icdgen.backends.origin import origin
 from icdgen.backends.packages import Packages
 from icdgen.backends.rust import names
-from icdgen.backends.rust.declared_names import declared_names
+from icdgen.backends.rust.symbols import RUST_NAMES
 from icdgen.describe import describe
+from icdgen.describe.symbols import symbols
 from icdgen.icd.model import Icd
 
 if TYPE_CHECKING:
@@ -79,7 +80,7 @@ class RustBackend:
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """List every name that the crate declares, by scope."""
-        return declared_names(describe(icd))
+        return symbols(describe(icd), RUST_NAMES)
 
 
 def _functions() -> dict[str, object]:

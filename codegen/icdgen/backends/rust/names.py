@@ -98,6 +98,11 @@ def has(field: FieldDescription) -> str:
     return f"has_{field.name}"
 
 
+def setter(name: str) -> str:
+    """``set_rate_deg_per_s``: the method that sets a physical value by its name in snake case."""
+    return f"set_{name}"
+
+
 def open_type(field: FieldDescription) -> str:
     """Type of the elements that are in a frame."""
     return f"[{one_type(field)}]" if field.count else "[u8]"

@@ -1,0 +1,129 @@
+"""Names that the headers declare, for the symbol table."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from icdgen.backends import Identifier
+from icdgen.backends.c import names
+from icdgen.backends.c.parts import part_name
+from icdgen.describe import Description, EnumDescription, FieldDescription, MessageDescription, NodeDescription
+from icdgen.describe.arrays import all_struct_arrays
+from icdgen.describe.constants import Constant
+from icdgen.describe.contained import contained_messages
+from icdgen.describe.description import Composite
+from icdgen.describe.enums import MemberDescription
+from icdgen.describe.symbols import NamingPolicy, Symbols
+
+FILE = "C names at file scope"
+FILES = "C header files"
+
+_STATUS = ("LENGTH", "RANGE", "UNKNOWN_ID", "UNSUPPORTED", "CHECKSUM", "BUSY")
+_SUPPORT = ("ICDGEN_SHARED", "icd_status_t", "ICD_OK", *(f"ICD_ERROR_{end}" for end in _STATUS))
+_SIZES = (
+    "LONGEST", "CAN_SLOT_BYTES", "CLIENT_BYTES", "REQUEST_BYTES", "LOG_BYTES", "BLOCK_BYTES", "BLOCK_BITMAP_BYTES",
+    "LINE_BYTES", "SEQUENCES",
+)  # fmt: skip
+_BUSES = ("uart", "i2c", "can")
+
+
+class CNames(NamingPolicy):
+    """Names in C. All names at file scope begin with that of the node; a role is the end of the name."""
+
+    reserved = names.RESERVED
+
+    def fixed(self, description: Description) -> Symbols:
+        for name in _SUPPORT:
+            yield Identifier(FILE, name, "the support header", None)
+        yield Identifier(FILES, "icdgen.h", "the support header", None)
+        yield Identifier(FILES, "icdgen_wide.h", "formulas of many digits", None)
+        for end in ("h", "c"):
+            yield Identifier(FILES, f"icdgen_wire.{end}", "the wire layer", None)
+
+    def node(self, node: NodeDescription) -> Symbols:
+        yield node.identifier(FILES, f"{node.name}.h")
+        for end in ("ICD_DIGEST", "NODE_TYPE", "INTERFACE_VERSION", "H"):
+            yield node.identifier(FILE, f"{node.name.upper()}_{end}", end)
+        for kind in ("telemetry", "telecommand"):
+            owner, source = f"{kind} of node `{node.name}`", node.model.source
+            rare = ("which", "which_t") if node.shares_ids(kind) else ()
+            for end in ("t", "name", "length", "size", "decode", "encode", *rare):
+                yield Identifier(FILE, f"{node.name}_{kind}_{end}", owner, source, f"{kind}_{end}")
+        for direction in node.directions:
+            stem = f"{node.name}_{direction.kind}"
+            for message, _ in direction.messages:
+                if node.shares_ids(direction.kind):
+                    yield message.identifier(FILE, names.enumerator_of(stem, message))
+                yield message.identifier(f"members of {stem}_t", message.name)
+        if node.enums:
+            owner = "the enumerations"
+            yield Identifier(FILES, f"{node.name}/enums.h", owner, None)
+            yield Identifier(FILE, f"{node.name.upper()}_ENUMS_H", owner, None, "ENUMS_H")
+
+    def link(self, node: NodeDescription) -> Symbols:
+        owner, source = f"the link of node `{node.name}`", node.model.source
+        for file in ("link.h", "link.c", "client.h"):
+            yield Identifier(FILES, f"{node.name}/{file}", owner, source)
+        kinds = [f"client_{bus}" for bus in _BUSES] if node.has_client else ["client_init", "sender_t", "sender_init"]
+        for end in ("link", "client_t", *kinds):
+            yield Identifier(FILE, f"{node.name}_{end}", owner, source, end)
+        commands = ("send",) if node.has_client else ("send", "ask", "put")
+        for verbs, messages in ((commands, node.telecommands), (("request", "receive"), node.telemetry)):
+            for message in messages:
+                for verb in verbs:
+                    yield message.identifier(FILE, names.client_function(node.name, verb, message))
+        for end in (*_SIZES, "NODE", "LINK_H", "LINK_C", "CLIENT_H"):
+            yield Identifier(FILE, f"{node.name.upper()}_{end}", owner, source, end)
+
+    def enumeration(self, enum: EnumDescription) -> Symbols:
+        for end in ("t", "name"):
+            yield enum.identifier(FILE, f"{names.stem(enum)}_{end}", end)
+
+    def member(self, enum: EnumDescription, member: MemberDescription) -> Symbols:
+        yield member.identifier(FILE, names.enumerator(enum, member))
+
+    def composite(self, composite: Composite[Any]) -> Symbols:
+        stem = names.stem(composite)
+        yield composite.identifier(FILES, f"{composite.node.name}/{composite.name}.h")
+        yield composite.identifier(FILE, names.constant(composite, "h"), "H")
+        for end in ("t", "init", "fields"):
+            yield composite.identifier(FILE, f"{stem}_{end}", end)
+        if not isinstance(composite, MessageDescription):
+            return
+        for end in ("length", *(id.name for id in composite.ids)):
+            yield composite.identifier(FILE, names.constant(composite, end), end.upper())
+        rare = (*(("misfit",) if composite.is_narrow else ()), *(("size",) if composite.last_part else ()))
+        for end in ("decode", "encode", *rare):
+            yield composite.identifier(FILE, f"{stem}_{end}", end)
+        for array in all_struct_arrays(composite):
+            yield composite.identifier(FILE, names.reading(composite, array.name))
+            yield composite.identifier(FILE, names.writing(composite, array.name))
+        last = composite.last_part
+        if last is not None and last.element_struct is not None and not composite.earlier_parts:
+            yield composite.identifier(FILE, names.walking(composite, last.field.name))
+        for part in contained_messages(composite):
+            yield composite.identifier(FILE, f"{stem}_{part_name(part.message)}")
+
+    def field(self, composite: Composite[Any], field: FieldDescription) -> Symbols:
+        if field.model.view:
+            yield field.identifier(FILE, names.getter(composite, field.name))
+        else:
+            yield field.identifier(f"members of {names.stem(composite)}_t", field.name)
+        if field.model.when:
+            yield field.identifier(FILE, names.has(field))
+        for end in _physical_names(field) if field.has_physical else ():
+            yield field.identifier(FILE, names.getter(composite, end))
+            if field.is_settable:
+                yield field.identifier(FILE, names.setter(composite, end))
+
+    def constant(self, composite: Composite[Any], field: FieldDescription, constant: Constant) -> Symbols:
+        yield field.identifier(FILE, names.constant(composite, constant.name))
+
+
+C_NAMES = CNames()
+
+
+def _physical_names(field: FieldDescription) -> tuple[str, ...]:
+    """Names of the physical value as text or a double, and of the value in whole parts of the unit."""
+    integers = None if field.arithmetic is None else field.arithmetic.integers
+    return (field.physical_name,) if integers is None else (field.physical_name, field.integer_name(integers.scale.per))

@@ -1,0 +1,72 @@
+"""Names that the Python package declares, for the symbol table."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from icdgen.backends import Identifier
+from icdgen.backends.python import names
+from icdgen.describe import EnumDescription, FieldDescription, NodeDescription
+from icdgen.describe.constants import Constant
+from icdgen.describe.description import Composite
+from icdgen.describe.enums import MemberDescription
+from icdgen.describe.symbols import NamingPolicy, Part, Symbols
+from icdgen.icd.model import Message
+from icdgen.naming import DEVICES
+
+
+class PythonNames(NamingPolicy):
+    """Names in a package. Names that the code uses itself are declared only where a name of the ICD is equal."""
+
+    reserved = names.RESERVED
+
+    def __init__(self, package: str) -> None:
+        super().__init__()
+        self._package = package
+
+    def node(self, node: NodeDescription) -> Symbols:
+        scope = f"package {self._package}"
+        yield node.identifier(scope, node.name)
+        if node.name in names.IN_PACKAGE:
+            yield Identifier(scope, node.name, names.IN_PACKAGE[node.name].format(node.name), None)
+        for name in DEVICES:
+            yield Identifier(self._files(node.name), name, "a device of Windows", None)
+
+    def public(self, node: NodeDescription, part: Part) -> Symbols:
+        yield part.identifier(f"module {self._package}.{node.name}", names.class_name(part))
+
+    def enumeration(self, enum: EnumDescription) -> Symbols:
+        yield enum.identifier(self._files(enum.node.name), names.module_name(enum))
+
+    def member(self, enum: EnumDescription, member: MemberDescription) -> Symbols:
+        yield member.identifier(self._members(enum), names.constant_name(member.name))
+
+    def composite(self, composite: Composite[Any]) -> Symbols:
+        if not isinstance(composite.model, Message):  # messages have files in every language
+            yield composite.identifier(self._files(composite.node.name), names.module_name(composite))
+
+    def field(self, composite: Composite[Any], field: FieldDescription) -> Symbols:
+        if field.model.is_count:
+            return
+        scope, exact = self._members(composite), field.integer_scale
+        yield from _in_class(field, scope, field.name)
+        if field.has_physical:
+            yield from _in_class(field, scope, field.physical_name)
+        if exact is not None:
+            yield from _in_class(field, scope, field.integer_name(exact.per))
+
+    def constant(self, composite: Composite[Any], field: FieldDescription, constant: Constant) -> Symbols:
+        return _in_class(field, self._members(composite), names.constant_name(constant.name))
+
+    def _files(self, node: str) -> str:
+        return f"files of {self._package}.{node}"
+
+    def _members(self, part: Part) -> str:
+        return f"members of {self._package}.{part.node.name}.{names.class_name(part)}"
+
+
+def _in_class(field: FieldDescription, scope: str, text: str) -> Symbols:
+    """Name of a field in the class of its message, and what the class uses under this name."""
+    yield field.identifier(scope, text)
+    if text in names.IN_MESSAGE:
+        yield Identifier(scope, text, names.IN_MESSAGE[text].format(text), None)

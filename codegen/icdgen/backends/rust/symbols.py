@@ -1,0 +1,114 @@
+"""Names that the crate declares, for the symbol table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from icdgen.backends import Identifier
+from icdgen.backends.rust import arrays, names
+from icdgen.backends.rust.accessors import integers_of, single_name
+from icdgen.describe import Description, EnumDescription, FieldDescription, MessageDescription, NodeDescription
+from icdgen.describe.constants import Constant
+from icdgen.describe.description import Composite
+from icdgen.describe.enums import MemberDescription
+from icdgen.describe.nodes import Direction
+from icdgen.describe.symbols import NamingPolicy, Symbols
+from icdgen.naming import DEVICES
+
+_METHODS = ("from_bytes", "from_array", "to_bytes", "default")
+_METHODS_OF_VARIABLE_LENGTH = ("from_longest", "size")
+_CONSTANTS = ("NAME", "LENGTH", "ID", "SET_ID", "GET_ID")
+_METHODS_OF_STRUCTS = ("fit", "rows", "default")
+_CONSTANTS_OF_STRUCTS = ("NAME", "FIELDS")
+_USED_BY_ENUMS = ("Option", "From", "Enumeration")
+_CRATE = "modules of the crate"
+
+
+class RustNames(NamingPolicy):
+    """Names in Rust. Modules, types, variants, fields, methods and constants are scopes of their own."""
+
+    reserved = names.RESERVED
+
+    def fixed(self, description: Description) -> Symbols:
+        yield from _used(_CRATE, names.USED_MODULES)
+        for name, use in names.ROOTS.items():
+            yield Identifier(_CRATE, name, use, None)
+        yield from _used(_CRATE, DEVICES, "a device of Windows")
+
+    def node(self, node: NodeDescription) -> Symbols:
+        yield node.identifier(_CRATE, node.name)
+        yield from _used(f"modules of {node.name}", names.USED_IN_NODES)
+        yield from _used(f"modules of {node.name}", DEVICES, "a device of Windows")
+        yield from _used(f"types of {node.name}", names.USED_TYPES)
+        yield from _used(f"enumerations of {node.name}", _USED_BY_ENUMS)
+
+    def message_of_direction(self, node: NodeDescription, direction: Direction, message: MessageDescription) -> Symbols:
+        scope = f"variants of {node.name}::{direction.kind.capitalize()}"
+        yield message.identifier(scope, names.type_name(message))
+
+    def enumeration(self, enum: EnumDescription) -> Symbols:
+        yield enum.identifier(f"enumerations of {enum.node.name}", names.type_name(enum))
+        yield from _used(_variants(enum), (names.catch_all(enum),))
+
+    def member(self, enum: EnumDescription, member: MemberDescription) -> Symbols:
+        yield member.identifier(_variants(enum), names.type_name(member))
+
+    def composite(self, composite: Composite[Any]) -> Symbols:
+        node, scope = composite.node.name, _scope(composite)
+        yield composite.identifier(f"modules of {node}", composite.name)
+        yield composite.identifier(f"types of {node}", names.type_name(composite))
+        methods, constants = f"methods of {scope}", f"constants of {scope}"
+        if not isinstance(composite, MessageDescription):
+            yield from _used(methods, _METHODS_OF_STRUCTS)
+            yield from _used(constants, _CONSTANTS_OF_STRUCTS)
+            return
+        yield from _used(methods, _METHODS)
+        yield from _used(constants, _CONSTANTS)
+        if composite.last_part is not None:
+            yield from _used(methods, _METHODS_OF_VARIABLE_LENGTH)
+        if composite.earlier_parts:
+            yield from _used(methods, ("inner",))
+        for _, name in arrays.named(composite):
+            yield composite.identifier(methods, arrays.reader(name))
+            yield composite.identifier(methods, arrays.writer(name))
+
+    def field(self, composite: Composite[Any], field: FieldDescription) -> Symbols:
+        scope, is_read_only = _scope(composite), field.model.view
+        methods, name = f"methods of {scope}", names.field_name(field)
+        if composite.last_part is not None and (field.is_in_last_part or field.is_in_earlier_part):
+            yield field.identifier(methods, name)
+        yield field.identifier(methods if is_read_only else f"fields of {scope}", name)
+        if field.model.when:
+            yield field.identifier(methods, names.has(field))
+        if field.has_physical:
+            yield field.identifier(methods, field.physical_name)
+            if field.is_settable:
+                yield field.identifier(methods, names.setter(field.physical_name))
+        if field.steps is not None:
+            yield field.identifier(methods, single_name(field))
+        integers = integers_of(field)
+        if integers is not None:
+            name = field.integer_name(integers.scale.per)
+            yield field.identifier(methods, name)
+            if not is_read_only:
+                yield field.identifier(methods, names.setter(name))
+
+    def constant(self, composite: Composite[Any], field: FieldDescription, constant: Constant) -> Symbols:
+        yield field.identifier(f"constants of {_scope(composite)}", constant.name.upper())
+
+
+RUST_NAMES = RustNames()
+
+
+def _scope(composite: Composite[Any]) -> str:
+    return f"{composite.node.name}::{composite.model.name}"
+
+
+def _variants(enum: EnumDescription) -> str:
+    return f"variants of {enum.node.name}::{enum.model.name}"
+
+
+def _used(scope: str, texts: Iterable[str], use: str = "a name of the generated code") -> Iterator[Identifier]:
+    """Names that the generated code itself declares or refers to in a scope."""
+    return (Identifier(scope, text, use, None) for text in texts)

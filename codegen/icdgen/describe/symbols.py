@@ -1,0 +1,115 @@
+"""Symbol table: every identifier that generated code of a language declares, with the part of the ICD that it names.
+
+The parts of an ICD are the same for all languages, and `symbols` is the only place that goes through them. A language has
+a `NamingPolicy`: it names one kind of part in each method. The rules on names, the comparison of ICDs and the verification
+package read the table. Templates look a single name up with `NamingPolicy.symbol`, so they cannot write a name that the
+rules do not see.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+from weakref import WeakKeyDictionary
+
+from icdgen.describe.constants import Constant
+from icdgen.describe.description import Composite, FieldDescription
+from icdgen.describe.enums import EnumDescription, MemberDescription
+from icdgen.describe.nodes import Description, Direction, MessageDescription, NodeDescription
+from icdgen.icd.identifiers import Identifier
+
+Symbols = Iterable[Identifier]
+Part = Composite[Any] | EnumDescription
+
+
+class NamingPolicy:
+    """Names of one language. A method yields the identifiers that are declared for one part of the ICD; by default none.
+
+    A role distinguishes the identifiers of a part. Only names that templates look up need a role.
+    """
+
+    reserved: frozenset[str] = frozenset()
+    """Words that cannot be identifiers."""
+
+    def __init__(self) -> None:
+        self._texts: WeakKeyDictionary[object, dict[str, str]] = WeakKeyDictionary()
+
+    def fixed(self, description: Description) -> Symbols:
+        """Names that are declared for every ICD."""
+        return ()
+
+    def node(self, node: NodeDescription) -> Symbols:
+        """Names of a node: its file, its types for all messages of a direction, and what these types contain."""
+        return ()
+
+    def message_of_direction(self, node: NodeDescription, direction: Direction, message: MessageDescription) -> Symbols:
+        """Names of a message in a type for all messages of a direction. Included nodes can declare the message.
+
+        The rules report only the first equal names of two messages. Names in such types come last.
+        """
+        return ()
+
+    def public(self, node: NodeDescription, part: Part) -> Symbols:
+        """Names that a node has for a message, enumeration or struct of its own or of an included node."""
+        return ()
+
+    def link(self, node: NodeDescription) -> Symbols:
+        """Names of the link of a node."""
+        return ()
+
+    def enumeration(self, enum: EnumDescription) -> Symbols:
+        """Names of an enumeration."""
+        return ()
+
+    def member(self, enum: EnumDescription, member: MemberDescription) -> Symbols:
+        """Names of a value of an enumeration."""
+        return ()
+
+    def composite(self, composite: Composite[Any]) -> Symbols:
+        """Names of a message or struct. `field` has the names of its fields."""
+        return ()
+
+    def field(self, composite: Composite[Any], field: FieldDescription) -> Symbols:
+        """Names of a field, an overlay field or a derived value: the member, its getters and setters."""
+        return ()
+
+    def constant(self, composite: Composite[Any], field: FieldDescription, constant: Constant) -> Symbols:
+        """Names of a constant of a field."""
+        return ()
+
+    def symbol(self, part: NodeDescription | Part, role: str) -> str:
+        """Return the name of a part in a role. Raises `KeyError` if the table has no such name."""
+        texts = self._texts.get(part)
+        if texts is None:
+            texts = self._texts[part] = {symbol.role: symbol.text for symbol in self._symbols_of(part) if symbol.role}
+        return texts[role]
+
+    def _symbols_of(self, part: NodeDescription | Part) -> Symbols:
+        if isinstance(part, NodeDescription):
+            return (*self.node(part), *(self.link(part) if part.is_linked else ()))
+        return self.enumeration(part) if isinstance(part, EnumDescription) else self.composite(part)
+
+
+def symbols(description: Description, policy: NamingPolicy) -> Iterator[Identifier]:
+    """List the identifiers of a language in the order of the ICDs, fixed names first."""
+    yield from policy.fixed(description)
+    for node in description.nodes:
+        yield from policy.node(node)
+        for included in map(description.node, (*description.icd.included(node.model), node.model)):
+            for part in included.declared:
+                yield from policy.public(node, part)
+        for enum in node.enums:
+            yield from policy.enumeration(enum)
+            for member in enum.members:
+                yield from policy.member(enum, member)
+        if node.is_linked:
+            yield from policy.link(node)
+        for composite in node.composites:
+            yield from policy.composite(composite)
+            for field in composite.declared_members:
+                yield from policy.field(composite, field)
+                for constant in field.constants:
+                    yield from policy.constant(composite, field, constant)
+        for direction in node.directions:
+            for message, _ in direction.messages:
+                yield from policy.message_of_direction(node, direction, message)
