@@ -52,7 +52,7 @@ class PythonNames(NamingPolicy):
         yield from _in_class(field, scope, field.name)
         if field.has_physical:
             yield from _in_class(field, scope, field.physical_name)
-        if exact is not None:
+        if exact is not None and not field.model.view:  # classes have no integer accessors of read-only values
             yield from _in_class(field, scope, field.integer_name(exact.per))
 
     def constant(self, composite: Composite[Any], field: FieldDescription, constant: Constant) -> Symbols:
