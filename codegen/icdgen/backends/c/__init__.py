@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from icdgen.render import Renderer
 
 _SPELLING = (
-    byte_count, call, comment, described, head, length_text, like, literal, prose, names.constant, names.enumerator,
-    names.enumerator_of, names.stem, sentence, text_comment, words,
+    byte_count, call, comment, described, head, length_text, like, literal, prose, names.client_function, names.constant,
+    names.enumerator, names.enumerator_of, names.getter, names.setter, C_NAMES.symbol, sentence, text_comment, words,
 )  # fmt: skip
 _FUNCTIONS = {function.__name__: function for function in _SPELLING}
 """Functions with which templates spell names and text."""
@@ -71,7 +71,7 @@ class CBackend:
             shared = {"origin": origin(node.model), "title": prose(words(node.model.title)), **_FUNCTIONS}
             if node.enums:
                 enums = [(enum, *constants.of_enum(enum)) for enum in node.enums]
-                values = {"node": node.name, "enums": enums, "within": constants.within}
+                values = {"node": node, "enums": enums, "within": constants.within}
                 yield folder / "enums.h", render("enums.h.j2", **values, **shared)
             for struct in node.structs:
                 yield folder / f"{struct.name}.h", render("struct.h.j2", m=struct, **_composite(struct), **shared)
@@ -194,6 +194,7 @@ def _link(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
 
     return {
         "node": node.name,
+        "of_node": node,
         "about": comment([FILE, f"{words(node.model.title)}: description of its protocol and sizes of buffers."]),
         "sizes": links.sizes(link),
         "tables": links.tables(link),
@@ -206,6 +207,7 @@ def _client(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
     )
     common = {
         "node": node.name,
+        "of_node": node,
         "about": comment([FILE, f"{words(node.model.title)}: client with one function per message."]),
         "includes": ["link.h", *headers],
         "telecommands": [(message, message.telecommand_id_name) for message in node.telecommands],
