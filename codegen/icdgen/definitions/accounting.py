@@ -286,7 +286,9 @@ def accounted(tree: Any, named: frozenset[str] = frozenset(), owner: str = "", p
 
 
 def _used(root: AccountedElement) -> set[AccountedElement]:
-    """Elements that were read, or in which one was; without recursion, for files may nest as deep as they like."""
+    """Return the elements that were read or that contain one that was read. Iterative,
+    because files may nest arbitrarily deep.
+    """
     listed = cast("list[AccountedElement]", list(Element.iter(root)))
     used: set[AccountedElement] = set()
     for element in reversed(listed):  # those within come behind

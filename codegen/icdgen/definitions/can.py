@@ -30,7 +30,9 @@ _NOBODY = ("", "Vector__XXX")  # as a DBC names a sender that is not known
 
 
 class _Database:
-    """What the four kinds have in common. ``name`` is cantools' name of one, too, and ``begins`` tells a file of it."""
+    """Reader shared by the four database formats. ``name`` is the format name of
+    cantools; ``begins`` is a pattern that recognizes a file of the format.
+    """
 
     needs: tuple[str, ...] = ("cantools",)
     name = title = begins = ""
@@ -39,7 +41,7 @@ class _Database:
         return re.search(self.begins, start) is not None
 
     def read(self, file: str, data: bytes) -> Definitions:
-        """Raises `Findings` for a file that cantools cannot read."""
+        """Read a database. Raises `Findings` if cantools cannot read the file."""
         to = Definitions(file)
         account = Account(_WITHOUT_MEANING)
         for bus, messages in _buses(self.database(file, data, to)).items():
@@ -54,7 +56,7 @@ class _Database:
         raise NotImplementedError
 
     def database(self, file: str, data: bytes, to: Definitions) -> Any:
-        """cantools' own reading."""
+        """Return the database that cantools parses."""
         try:
             return self.load(_text(data), to)
         except Exception as error:  # its parsers raise whatever comes up
@@ -63,7 +65,7 @@ class _Database:
             raise unreadable(file, f"not {self.title}: {said}", "", int(match[1]) if match else 1) from None
 
     def load(self, text: str, to: Definitions) -> Any:
-        """What `database` asks of cantools."""
+        """Parse the text with cantools."""
         from cantools import database
 
         # What it notes by the way is found again, and said as a finding.
@@ -72,7 +74,7 @@ class _Database:
 
 
 class Dbc(_Database):
-    """Vector's CAN databases."""
+    """Vector CAN databases (DBC)."""
 
     name = "dbc"
     title = "a CAN database (DBC)"
@@ -89,7 +91,7 @@ class Dbc(_Database):
 
 
 class Sym(_Database):
-    """PEAK's symbol files."""
+    """PEAK symbol files (SYM)."""
 
     name = "sym"
     title = "a symbol file (SYM)"
@@ -112,7 +114,7 @@ class _Xml(_Database):
 
 
 class Kcd(_Xml):
-    """Kayak's CAN definitions."""
+    """Kayak CAN definitions (KCD)."""
 
     name, root = "kcd", "NetworkDefinition"
     title = "a CAN definition (KCD)"
@@ -122,7 +124,7 @@ class Kcd(_Xml):
 
 
 class Arxml(_Xml):
-    """AUTOSAR's system descriptions, as far as they describe CAN."""
+    """AUTOSAR system descriptions (ARXML), limited to CAN."""
 
     name, root = "arxml", "AUTOSAR"
     title = "an AUTOSAR system description (ARXML)"
@@ -140,7 +142,7 @@ def _text(data: bytes) -> str:
 
 
 def _buses(database: Any) -> dict[str, list[Any]]:
-    """Messages by bus, where there are several."""
+    """Return the messages by bus if the database has several buses."""
     found: dict[str, list[Any]] = {}
     for message in getattr(database, "messages", ()):
         found.setdefault(message.bus_name or "", []).append(message)
@@ -215,19 +217,23 @@ def _message(message: Any, signals: list[Any], id: int, order: str, enums: Enume
 
 
 def _sentences(*texts: str | None) -> str:
-    """Texts one after the other, each ended like a sentence."""
+    """Join texts to sentences, each with a full stop."""
     plain = [text for each in texts if (text := line(each))]
     return " ".join(text if text.endswith((".", "!", "?")) or len(plain) == 1 else f"{text}." for text in plain)
 
 
 def _is_alternative(one: Item, other: Item) -> bool:
-    """Whether two are one signal that a symbol file has under several values of a multiplexer."""
+    """Return whether two fields are the same signal, declared for several values of a
+    multiplexer (SYM).
+    """
     plain = [{key: value for key, value in each.items() if key not in ("when", "enum")} for each in (one, other)]
     return plain[0] == plain[1] and "when" in one and one["when"].keys() == other.get("when", {}).keys()
 
 
 def signal_place(signal: Any) -> frames.Place:
-    """Where a signal lies; in a DBC the bits of a byte are numbered from the least significant in either order."""
+    """Return the position of a signal. DBC numbers the bits of a byte from the least
+    significant bit in both byte orders.
+    """
     if signal.byte_order == "little_endian":
         return frames.Place(signal.start, signal.length, frames.LITTLE)
     return frames.Place(signal.start // 8 * 8 + 7 - signal.start % 8, signal.length, frames.BIG)
@@ -257,20 +263,20 @@ def _field(message: Any, signal: Any, signals: list[Any], enums: Enumerations, t
 
 
 def _is_flag(signal: Any) -> bool:
-    """Whether a signal is a bit without further meaning."""
+    """Return whether a signal is a single bit without scale, sign or labels."""
     is_plain = not (signal.choices or signal.is_signed or signal.is_float)
     return is_plain and signal.length == 1 and (signal.scale, signal.offset) == (1, 0)
 
 
 def _range(signal: Any) -> tuple[int, int]:
-    """The raw values that there are, from the first to the last; of floats nearly so."""
+    """Return the smallest and largest raw value; for floats, approximate bounds."""
     if signal.is_float:
         return -(2**127), 2**127
     return raws(signal.length, signal.is_signed)
 
 
 def _condition(signal: Any, signals: list[Any]) -> Item:
-    """The multiplexer and its values with which a signal is there."""
+    """Return the multiplexer and its values for which the signal is present."""
     if signal.multiplexer_ids is None:
         return {}
     told = signal.multiplexer_signal

@@ -1,6 +1,8 @@
-"""Account of what cantools drops of SYM, KCD and ARXML files, which it reads without a word about it.
+"""Account for the parts of SYM, KCD and ARXML files that cantools ignores without a
+warning.
 
-The tables list what cantools reads and `can` uses, or what has no meaning for an ICD; everything else is counted.
+The tables list the parts that cantools reads and `can` uses, and those without meaning
+for an ICD. All other parts are counted.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The report of a definition that was read, as text and as JSON."""
+"""Report about an imported definition, as text and as JSON."""
 
 from __future__ import annotations
 
@@ -16,7 +16,9 @@ _LISTED = 20  # identifiers that are shown; all are in the JSON, and in the ICD
 
 
 def report(reads: Sequence[Read], colour: bool = False) -> str:
-    """Of each definition everything to look at, then the figures and the names that got identifiers."""
+    """Return the findings of each definition, followed by its statistics and the
+    renamed identifiers.
+    """
     shown = [
         read for read in reads if len(reads) == 1 or read.trees or read.definitions.total or read.definitions.troubles
     ]

@@ -1,4 +1,6 @@
-"""Faults of DBC files that cantools refuses the whole file for: what they spoil is left out, and the rest is read."""
+"""Repair of DBC files that cantools rejects as a whole: faulty statements are dropped,
+the remaining ones are read.
+"""
 
 from __future__ import annotations
 
@@ -50,7 +52,9 @@ _HELD_BACK = " of a DBC"  # behind the name of an attribute that cantools shall 
 
 
 class _Statement(NamedTuple):
-    """A statement with its first line, counted from 1; signals are statements of their own."""
+    """Statement with its first line, counted from 1. Each signal is a separate
+    statement.
+    """
 
     keyword: str
     text: str
@@ -58,7 +62,9 @@ class _Statement(NamedTuple):
 
 
 def account_for(text: str, account: Account, reported: Container[int | None]) -> None:
-    """Count statements and attributes of a DBC that nobody uses, but for those in lines that a finding names already."""
+    """Count unused statements and attributes of a DBC, except in lines that already
+    have a finding.
+    """
     for statement in _statements(text):
         if statement.line in reported:
             continue
@@ -78,7 +84,7 @@ def account_for(text: str, account: Account, reported: Container[int | None]) ->
 
 
 def _statements(text: str) -> Iterator[_Statement]:
-    """The statements of a DBC; a keyword within quotes begins none."""
+    """Yield the statements of a DBC. Keywords within quotes are ignored."""
     begun: tuple[str, int] | None = None
     line, counted = 1, 0
     for found in _STRING_OR_KEYWORD.finditer(text):
@@ -94,15 +100,19 @@ def _statements(text: str) -> Iterator[_Statement]:
 
 
 def with_short_names(text: str) -> str:
-    """The text with attributes for long names that cantools does not interpret: it would name signals by their long names and
-    their multiplexers by the short ones."""
+    """Return the text with renamed attributes for long names, so that cantools does not
+    interpret them. Otherwise cantools would use long names for signals but short names
+    for their multiplexers.
+    """
     for name in (_LONG_SIGNAL, _LONG_MESSAGE):
         text = text.replace(f'"{name}"', f'"{name}{_HELD_BACK}"')
     return text
 
 
 def give_long_names(messages: list[Any]) -> None:
-    """Name messages and signals of cantools by the attributes for long names, unless these are empty or there twice."""
+    """Rename messages and signals to the names in their long-name attributes, unless
+    these are empty or duplicate.
+    """
     names = {message.name for message in messages}
     for message in messages:
         taken = {signal.name for signal in message.signals}
@@ -116,7 +126,9 @@ def give_long_names(messages: list[Any]) -> None:
 
 
 def _long_name(of: Any, attribute: str, taken: set[str]) -> str:
-    """The long name; the short one if there is none, or if another has it, too."""
+    """Return the long name, or the short name if there is no long name or it is already
+    taken.
+    """
     found = of.dbc.attributes.get(attribute + _HELD_BACK) if of.dbc is not None and of.dbc.attributes else None
     name = one_line(str(found.value), _LONGEST_NAME) if found is not None else ""
     if not name or name in taken:
@@ -126,7 +138,9 @@ def _long_name(of: Any, attribute: str, taken: set[str]) -> str:
 
 
 def mended(text: str, load: Callable[[str], Any], to: Definitions) -> Any:
-    """Return what ``load`` makes of the text without its faults. Reports a last line that may have been cut off."""
+    """Return the result of ``load`` for the repaired text. Reports a last line that may
+    be truncated.
+    """
     database = _mended(text, load, to)
     last = text.count("\n") + 1
     if text.rstrip(" \t")[-1:] not in ("\n", ";", "") and all(finding.spot.line != last for finding in to.troubles):
@@ -136,7 +150,9 @@ def mended(text: str, load: Callable[[str], Any], to: Definitions) -> Any:
 
 
 def _mended(text: str, load: Callable[[str], Any], to: Definitions) -> Any:
-    """What ``load`` makes of the text without its faults. Raises what it raises for one that is none of those known."""
+    """Return the result of ``load`` for the repaired text. Raises the exception of
+    ``load`` if the fault cannot be repaired.
+    """
     text = _without_impossible(_widened(text, to), to)
     try:
         for _ in range(MOST):
@@ -157,7 +173,9 @@ def _mended(text: str, load: Callable[[str], Any], to: Definitions) -> Any:
 
 
 def _message_by_message(text: str, load: Callable[[str], Any], to: Definitions) -> Any:
-    """The messages that can be read if each is read alone, with what the file says of it."""
+    """Load each message separately with its attributes and comments, and return the
+    messages that can be read.
+    """
     shared, blocks = "", []
     of_message: defaultdict[str, str] = defaultdict(str)
     block: list[_Statement] = []
@@ -185,7 +203,9 @@ def _message_by_message(text: str, load: Callable[[str], Any], to: Definitions) 
 
 
 def _widened(text: str, to: Definitions) -> str:
-    """Ids that a standard frame cannot have become those of extended frames, which have a bit more in front."""
+    """Set the flag of extended frames (bit 31) in ids that exceed the 11 bits of a
+    standard frame.
+    """
     told = set()
 
     def widen(found: re.Match[str]) -> str:
@@ -204,7 +224,7 @@ def _widened(text: str, to: Definitions) -> str:
 
 
 def _without_impossible(text: str, to: Definitions) -> str:
-    """The text without messages whose ids no frame has; what else is said of them has no signal then."""
+    """Return the text without messages whose id exceeds 29 bits."""
     lines = text.split("\n")
     for number, line in enumerate(lines):
         match = _MESSAGE.match(line)
@@ -217,7 +237,9 @@ def _without_impossible(text: str, to: Definitions) -> str:
 
 
 def _end(lines: list[str], number: int) -> int:
-    """The line behind a message, or another statement."""
+    """Return the index of the line after a message with its signals, or after another
+    statement.
+    """
     end = number + 1
     while lines[number].lstrip().startswith("BO_ ") and end < len(lines) and lines[end].lstrip().startswith("SG_"):
         end += 1
@@ -225,7 +247,9 @@ def _end(lines: list[str], number: int) -> int:
 
 
 def _without_line(text: str, said: str, to: Definitions) -> str | None:
-    """The text without the line that is not understood, of a message with its signals."""
+    """Return the text without the line with the syntax error; a message is removed with
+    its signals.
+    """
     match = _SYNTAX.search(said)
     if match is None:
         return None
@@ -249,7 +273,7 @@ def _without_line(text: str, said: str, to: Definitions) -> str | None:
 
 
 def _without_unused(text: str, said: str, to: Definitions) -> str | None:
-    """The text without what is said of signals that there are not."""
+    """Return the text without statements about signals that do not exist."""
     for keyword, id, name in _UNUSED.findall(said):
         statement = rf'^[ \t]*{keyword}\s+{id}\s+{re.escape(name)}\s[^";]*(?:"[^"]*"[^";]*)*;'
         match = re.search(statement, text, re.MULTILINE)

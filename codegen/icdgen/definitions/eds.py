@@ -36,7 +36,9 @@ class Eds:
         return root == eds_sheets.PARAMETERS or (root in eds_sheets.ROOTS and _SPACE in start)
 
     def read(self, file: str, data: bytes) -> Definitions:
-        """Raises `Findings` for an XML, or one beside it, that cannot be read."""
+        """Read a data sheet. Raises `Findings` if the file, or an XML file in its
+        folder, cannot be read.
+        """
         account = Account(_WITHOUT_EFFECT)
         to = Definitions(file)
         sheets = Sheets(safe_xml.parse(file, data, account=account), eds_sheets.beside(file, len(data)), to)
@@ -46,7 +48,9 @@ class Eds:
         return to
 
     def read_set(self, sources: Sequence[Source]) -> list[Definitions]:
-        """What each file defines, with the types and design parameters of all, and of the files beside them."""
+        """Return the definitions of each file. Types and design parameters are shared
+        by all files and their folders.
+        """
         made = [Definitions(one.file) for one in sources]
         roots: dict[str, Element] = {}
         for source, to in zip(sources, made, strict=True):
@@ -71,7 +75,7 @@ class Eds:
 
 
 def _define(sheets: Sheets, to: Definitions) -> None:
-    """Adds the ICD of the packages of a file."""
+    """Add the ICD of the packages of a file."""
     types, structs = Types(to, sheets), Structs()
     sent, alone = Interfaces(sheets).sent()
     found = [one for one in (_read(sending, sheets, types, structs, to) for sending in sent) if one is not None]
@@ -87,7 +91,7 @@ def _define(sheets: Sheets, to: Definitions) -> None:
 
 
 class _Found:
-    """A container with its layout."""
+    """Container with its layout."""
 
     def __init__(self, sending: Sending, layout: Layout, more: Item, sheets: Sheets) -> None:
         self.container, self.layout, self.more = sending.container, layout, more
@@ -104,7 +108,7 @@ class _Found:
         self.header = head._replace(apid=apid) if head is not None and head.apid is None else head
 
     def message(self, id: int, start: int, to: Definitions) -> Item:
-        """As it stands in an ICD. Raises `NotHeld`."""
+        """Return the message of the ICD. Raises `NotHeld` if it is not supported."""
         fields = self.layout.fields(start)
         covered = max((part.end for part in self.layout.parts), default=start)
         length, covered = -(-(self.layout.at - start) // 8), -(-(max(covered, start) - start) // 8)
@@ -117,7 +121,9 @@ class _Found:
 
 
 def _read(sending: Sending, sheets: Sheets, types: Types, structs: Structs, to: Definitions) -> _Found | None:
-    """A container that is sent; None, and said, where it is not imported."""
+    """Read the layout of a container. Returns None and adds a finding if it cannot be
+    imported.
+    """
     to.total += 1
     container = sending.container
     types.message = line(container.get("name"), 200)
@@ -132,19 +138,19 @@ def _read(sending: Sending, sheets: Sheets, types: Types, structs: Structs, to: 
 
 
 def _title(sheets: Sheets) -> str:
-    """Of a device its name, of a package what it is in short."""
+    """Return the name of the device, or the short description of the package."""
     device = sheets.root.find("Device")
     of = device if device is not None else sheets.root.find("Package")
     return "" if of is None else line(of.get("shortDescription") or of.get("name"), 100)
 
 
 def _group(sheets: Sheets, container: Element) -> Item:
-    """The package, where the file has several."""
+    """Return the package as the group of the message if the file has several packages."""
     return {"group": line(sheets.package(container), 200)} if len(sheets.own) > 1 else {}
 
 
 def _used(structs: list[Item], messages: list[Item]) -> list[Item]:
-    """The structs that messages have, or structs that these have."""
+    """Return the structs that messages use, directly or through other structs."""
     by_name = {struct["name"]: struct for struct in structs}
     left, used = list(messages), set()
     while left:

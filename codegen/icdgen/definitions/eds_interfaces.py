@@ -1,4 +1,6 @@
-"""What data sheets send: the containers that interfaces of components carry, which way, and by which number."""
+"""Interfaces of data sheets: the containers that components send, their direction and
+the number that identifies them.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,9 @@ _TOPICS = {packets.TELECOMMAND: ("TELECOMMAND", "GLOBAL_CMD"), packets.TELEMETRY
 
 @dataclass
 class Sending:
-    """A container that is sent. ``kind`` and ``number`` are None where no interface says them."""
+    """Container that is sent. ``kind`` and ``number`` are None if no interface states
+    them.
+    """
 
     container: Element
     kind: str | None = None
@@ -45,7 +49,7 @@ class Sending:
 
 
 class Interfaces:
-    """What the interfaces of a file carry."""
+    """Containers that the interfaces of a file carry."""
 
     def __init__(self, sheets: Sheets) -> None:
         self.sheets = sheets
@@ -65,7 +69,7 @@ class Interfaces:
                 self._uses[one] = used
 
     def _type(self, of: Element, key: str) -> Element | None:
-        """What an attribute names, if it is known."""
+        """Return the type that an attribute names, or None if it is not defined."""
         try:
             reference = self.sheets.attribute(of, key)
             return self.sheets.find("type", reference, of) if reference else None
@@ -94,7 +98,9 @@ class Interfaces:
         return sent, alone
 
     def _leaves(self, container: Element) -> list[Element]:
-        """The containers of the file that are based on one, and on which none is based; it itself if there are none."""
+        """Return the most derived containers of the file that are based on a container,
+        or the container itself.
+        """
         left, seen = [container], {container}
         leaves: list[Element] = []
         while left:
@@ -111,7 +117,7 @@ class Interfaces:
         return leaves
 
     def _circles(self) -> set[Element]:
-        """Types that use themselves, or those that do: nothing else would tell of them."""
+        """Return the types in cycles of uses, and the types that use these."""
         users: dict[Element, list[Element]] = {}
         for one, used in self._uses.items():
             for other in used:
@@ -134,7 +140,9 @@ class Interfaces:
             return False
 
     def _carried(self, is_mapped: bool) -> Iterator[Sending]:
-        """Containers that arguments of commands are, with what is mapped to a generic type, or of a type that they name."""
+        """Yield the containers that command arguments carry, either mapped to a generic
+        type or named as the type.
+        """
         for package in self.sheets.own:
             for component in package.iterfind("ComponentSet/Component"):
                 numbers = self._numbers(component)
@@ -168,7 +176,7 @@ class Interfaces:
             yield Sending(container, way, number, parameter, interface.get("name", ""))
 
     def _declared(self, interface: Element) -> list[Element]:
-        """The interface that one is, and those on which that is based, as far as they are known."""
+        """Return the declarations of an interface and of its base interfaces."""
         left = [interface]
         result: list[Element] = []
         while left and len(result) < _DEEPEST:
@@ -185,7 +193,7 @@ class Interfaces:
         return result
 
     def _maps(self, interface: Element) -> dict[str, Element]:
-        """Types by the generic type for which they stand."""
+        """Return the types by the generic type that they replace."""
         result: dict[str, Element] = {}
         for element in interface.iterfind("GenericTypeMapSet/GenericTypeMap"):
             if (type_ := self._type(element, "type")) is not None:
@@ -193,7 +201,7 @@ class Interfaces:
         return result
 
     def _numbers(self, component: Element) -> dict[str, tuple[str, int]]:
-        """By interface: the parameter that is a number which never changes, and the number."""
+        """Return the parameter with a constant number, and the number, by interface."""
         values: dict[str, int] = {}
         for variable in component.iterfind("Implementation/VariableSet/Variable"):
             try:
