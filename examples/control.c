@@ -16,7 +16,7 @@ static icd_event_t done(int port, icd_status_t started)
         fprintf(stderr, "not sent, status %d\n", (int)started);
         exit(EXIT_FAILURE);
     }
-    end = port_ask(port, &acp.client, frame, sizeof frame); /* sends, waits, and sends again after a time-out */
+    end = port_ask(port, &acp.client, frame, sizeof frame); /* sends, waits, repeats requests of telemetry */
     if (end.kind == ICD_EVENT_REFUSED) {                    /* end.reason: the role of the code in the ICD */
         fprintf(stderr, "refused, code %u\n", (unsigned)end.code);
         exit(EXIT_FAILURE);

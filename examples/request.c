@@ -4,7 +4,7 @@
 
 int main(int argc, char **argv)
 {
-    static cubeacp_client_t acp; /* a compiler error for messages of other devices */
+    static cubeacp_client_t acp; /* has a type of its own: the compiler rejects messages of other devices */
     static uint8_t buffer[CUBEACP_CLIENT_BYTES], frame[CUBEACP_LONGEST];
     cubeacp_estimated_attitude_angles_t angles;
     const int port = port_open("127.0.0.1", argc > 1 ? argv[1] : "4000");

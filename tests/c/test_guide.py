@@ -79,8 +79,8 @@ def test_the_first_lines_of_the_guide_decode_and_encode(tmp_path):
     include, _, body = lines.partition("\n")
     source = tmp_path / "lines.c"
     source.write_text(
-        f"{include}\nbool use(const uint8_t *data, size_t length);\n"
-        f"bool use(const uint8_t *data, size_t length)\n{{\n{body}return temperature > raw && buffer[0] == 1u;\n}}\n"
+        f"{include}\nbool use(uint8_t id, const uint8_t *data, size_t length);\n"
+        f"bool use(uint8_t id, const uint8_t *data, size_t length)\n{{\n{body}return temperature > raw && buffer[0] == 1u;\n}}\n"
     )
     for command in (("init", "heater"), ("--lang", "c")):
         subprocess.run([sys.executable, "-m", "icdgen", *command], cwd=tmp_path, check=True, capture_output=True)

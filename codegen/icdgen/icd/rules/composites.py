@@ -48,7 +48,12 @@ def repeated_frames_exist_and_fit(ctx: Context) -> Iterator[Fault]:
         elif not frame.layout.sequence and part.at + frame.length * 8 > message.length * 8:
             end = part.at + frame.length * 8
             text = f"{quote(frame.name)} ends at bit {end:,}, but {quote(message.name)} has {message.length * 8:,} bits"
-            yield Fault(message.source, row.at("at"), text, "correct `at`, or the `length` of either")
+            yield Fault(
+                message.source,
+                row.at("at"),
+                text,
+                f"correct `at`, or the `length` of {quote(frame.name)} or {quote(message.name)}",
+            )
 
 
 def _repeated(frame: Message, frames: dict[str, Message]) -> set[str]:

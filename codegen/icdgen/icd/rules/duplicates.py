@@ -184,7 +184,7 @@ def _ambiguous_aliases(items: Sequence[Aliased], vocabulary: tuple[str, ...]) ->
                 text, help = f"{text}its own name", "remove the alias"
             elif key in names:
                 line = line_of(other.source.at("name"), place)
-                text, help = f"{text}the name of something else, in {line}", "choose another alias"
+                text, help = f"{text}also the name of {quote(other.name)}, in {line}", "choose another alias"
             elif other is item:
                 text, help = f"{text}listed twice", "remove one of them"
             else:

@@ -227,7 +227,7 @@ def checksums_can_be_computed(ctx: Context) -> Iterator[Fault]:
         for name in checksums:
             if name not in used:
                 message = f"no field of the frame has the checksum {quote(name)}"
-                help = "add a field of the role `checksum`, or remove it"
+                help = f"add a field `role: checksum, checksum: {name}`, or remove {quote(name)} here"
                 yield Fault(section_of(link.node), checksums.key_at(name), message, help)
 
 

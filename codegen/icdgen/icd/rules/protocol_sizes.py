@@ -127,5 +127,10 @@ def assumptions_name_existing_keys(ctx: Context) -> Iterator[Fault]:
             continue
         for key in assumptions:
             if key == "assumptions" or key not in owner:
-                message = f"`{key}` is listed as assumed, but the section has no such key"
-                yield Fault(owner, assumptions.key_at(key), message, "name a key of this section")
+                message = f"`assumptions` lists `{key}`, which is not a key of this mapping"
+                yield Fault(
+                    owner,
+                    assumptions.key_at(key),
+                    message,
+                    "write a key whose value is assumed, and why: `reply_timeout_ms: measured`",
+                )
