@@ -116,8 +116,8 @@ def _frames_are_whole(icd: Icd, request: dict) -> bool:
     except (Refusal, facts.Unsupported, errors.RangeError, errors.TooLongError):
         return True
     for row in request["script"]:
-        event, want = row.get("event"), procedure._wanted
-        if event and event["event"] == "done" and procedure._is_asked and isinstance(want, Request):
+        event, want = row.get("event"), procedure._pending
+        if event and event["event"] == "done" and procedure._is_outstanding and isinstance(want, Request):
             if want.kind == TELEMETRY and len(event["bytes"]) != 2 * known.telemetry[want.id].length:
                 return False
         if event:

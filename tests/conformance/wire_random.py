@@ -179,7 +179,7 @@ def _played(known: Facts, request: dict, source: random.Random) -> list[dict]:
         if pending and chance < 0.9:
             row["event"], pending = pending, None
         elif packets and chance < 0.9:
-            position = source.choice([n for n in range(procedure.count) if n not in procedure.got] or [0])
+            position = source.choice([n for n in range(procedure.count) if n not in procedure.packets] or [0])
             piece = loaded[position * 20 : position * 20 + 20].ljust(20, b"\xee")
             row["event"] = {"event": "packet", "number": position + (chance < 0.03), "bytes": piece.hex()}
         if "event" in row:

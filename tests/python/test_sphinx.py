@@ -47,7 +47,7 @@ def test_sphinx_makes_pages_of_the_shipped_package(shipped, tmp_path):
     text = pages(shipped, SHIPPED, tmp_path)
     assert "Estimated Roll Angle in deg: -327.68 to 327.67." in text
     assert "estimated_roll_angle_deg: float" in text
-    assert "Requests telemetry, or reads a setting." in text
+    assert "Request telemetry or read a configuration." in text
 
 
 def test_examples_in_docstrings_are_true(shipped):
