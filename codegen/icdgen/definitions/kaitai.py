@@ -1,4 +1,7 @@
-"""Kaitai Struct (.ksy): the sequence of a format as messages, one for each way in which it goes on."""
+"""Reader of Kaitai Struct definitions (.ksy).
+
+The `seq` of a format becomes one message for each combination of its conditional branches.
+"""
 
 from __future__ import annotations
 
@@ -16,20 +19,20 @@ from icdgen.definitions.model import Definitions, Item, Network, NotHeld, again
 from icdgen.definitions.reading import TooMuch
 from icdgen.definitions.wording import line, node_name, shortest, summary
 
-MOST_MESSAGES = 256
+MOST_MESSAGES = 256  # of a file; each independent condition doubles their number
 _META = re.compile(r"^meta:[ \t]*(?:#.*)?\r?\n(?:[ \t]*(?:#.*)?\r?\n)*[ \t]+\w", re.MULTILINE)
 _BODY = re.compile(r"^(?:seq|types|instances|enums|doc):", re.MULTILINE)
-_NAMED = frozenset({"types", "instances", "enums"})  # below which keys are names of the author
-_WITHOUT_EFFECT = frozenset(  # about the file, for collections of formats and for the compiler
+_NAMED = frozenset({"types", "instances", "enums"})  # keys whose children are user-defined names
+_WITHOUT_EFFECT = frozenset(  # keys for collections of formats and for the compiler, without effect on the layout
     f"meta.{key}"
     for key in ("license", "xref", "tags", "application", "file-extension", "ks-version", "ks-debug", "ks-opaque-types")
 )
-_LONGEST_NAME = 40  # beyond that identifiers of it may be too long
-_ID, _ID_BITS = 1, 8  # no frame of Kaitai has an id but in its data
+_LONGEST_NAME = 40  # characters; identifiers of the generated code that contain a longer name may be too long
+_ID, _ID_BITS = 1, 8  # placeholder: a format of Kaitai Struct has no message id outside its data
 
 
 class Kaitai:
-    """What of the language says where fields stand, without programs."""
+    """Reader of `ksy` files: the part of the language that gives fields fixed positions, without computed layouts."""
 
     name = "ksy"
     title = "a format of Kaitai Struct"
@@ -39,7 +42,10 @@ class Kaitai:
         return _META.search(start) is not None and _BODY.search(start) is not None
 
     def read(self, file: str, data: bytes) -> Definitions:
-        """Raises `Findings` for what is no YAML, or no .ksy."""
+        """Return the messages, structs and enumerations of a .ksy file.
+
+        Raises `Findings` if the file is not YAML, or not a Kaitai Struct definition.
+        """
         body = accounted(parse(file, data), _NAMED)
         to = Definitions(file)
         shared = File(to)
@@ -68,7 +74,10 @@ class Kaitai:
 
 
 def _messages(root: Type, shared: File) -> list[Layout]:
-    """A layout for each way in which values decide what comes next, in the order of the file."""
+    """Return a layout for each combination of branches (`if`, `switch-on`), in the order of the file.
+
+    Walks the type again with one more decision whenever the layout depends on a value that is not decided yet.
+    """
     result: list[Layout] = []
     left: list[dict[Key, int | None]] = [{}]
     while left:
@@ -95,7 +104,10 @@ def _messages(root: Type, shared: File) -> list[Layout]:
 
 
 def _names(name: str, layouts: list[Layout]) -> list[str]:
-    """What was decided tells messages apart, with the values where the words do not; a number where that is long."""
+    """Return a distinct name for each layout: the name of the format and the labels of its branches.
+
+    Repeated names include the values of the branches. Names that are still repeated, or too long, get a number instead.
+    """
     words = [" ".join([name, *(label.word for label in layout.labels if label.word)]) for layout in layouts]
     times = Counter(words)
     said = [
@@ -113,7 +125,10 @@ def _names(name: str, layouts: list[Layout]) -> list[str]:
 
 
 def _fields(layout: Layout, order: str) -> list[Item]:
-    """The parts as fields; bits on which something depends become fields of their own, and the whole a view."""
+    """Return the fields of a layout.
+
+    A part of which only some bits are decided becomes several fields, and an overlay field (`view`) for the complete value.
+    """
     fields: list[Item] = []
     called = shortest([part.path for part in layout.parts])
     names = {id(part): name for part, name in zip(layout.parts, called, strict=True)}
@@ -128,7 +143,7 @@ def _fields(layout: Layout, order: str) -> list[Item]:
         elif part.mask == (1 << part.bits) - 1:
             is_negative = item["type"] == "int" and part.value >> part.bits - 1
             value = part.value - (1 << part.bits) if is_negative else part.value
-            kind = {"type": "uint"} if item["type"] == "bool" else {}  # a flag has no constant
+            kind = {"type": "uint"} if item["type"] == "bool" else {}  # a field of type `bool` cannot have a constant
             said = {**_placed(part, part.at, part.bits, order), "name": name, **item, **kind, "const": value}
             fields.append(again(item, said))
         else:
@@ -137,7 +152,7 @@ def _fields(layout: Layout, order: str) -> list[Item]:
 
 
 def _divided(part: Part, name: str, order: str) -> list[Item]:
-    """The runs of bits that are known, and of those that are not; and the whole as a view."""
+    """Return a field for each run of decided or undecided bits, and an overlay field (`view`) for the complete part."""
     made: list[Item] = []
     low = 0
     is_lsb = part.place.order != "big"
@@ -158,6 +173,7 @@ def _divided(part: Part, name: str, order: str) -> list[Item]:
 
 
 def _placed(part: Part, at: int, bits: int, order: str) -> Item:
+    """Return the keys for the position, and for the byte order if it differs from ``order`` of the message."""
     if not part.is_ordered:
         return {"at": at, "bits": bits}
     place = part.place._replace(at=at, bits=bits).counted(order)

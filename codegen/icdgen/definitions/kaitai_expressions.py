@@ -1,4 +1,7 @@
-"""Expressions of Kaitai Struct, as far as messages are told by them and formulas made of them."""
+"""Expressions of Kaitai Struct: conditions that select a message, counts of elements, and linear formulas.
+
+Other expressions are not supported.
+"""
 
 from __future__ import annotations
 
@@ -18,21 +21,21 @@ _COMPARED = re.compile(r"(?P<left>[^=!<>]+?)\s*(?P<sign>==|!=)\s*(?P<right>[^=!<
 _ENUM = re.compile(r"(?P<enum>[a-z_][a-z0-9_]*(?:::[a-z_][a-z0-9_]*)*)::(?P<member>[a-z_][a-z0-9_]*)\Z")
 _REFERENCE = re.compile(rf"(?<![\w.]){_PATH}")
 _WHOLE_DIVISION = re.compile(r"/(?!\s*[0-9]+(?:\.[0-9]+|[eE]))")
-_LONGEST = 400
+_LONGEST = 400  # characters of an expression; limits the time that the regular expressions take
 
 
-Members = Callable[[str], dict[int, str]]  # those of an enumeration, by its name
+Members = Callable[[str], dict[int, str]]  # from the name of an enumeration to its members, by value
 
 
 class Masked(NamedTuple):
-    """A field, or some bits of it."""
+    """Operand of a comparison: a field, or the bits of it that ``mask`` selects."""
 
     path: str
     mask: int | None
 
 
 class Equality(NamedTuple):
-    """What a condition asks: whether bits of a field have a value, which is a number or a member of an enumeration."""
+    """Comparison of bits of a field with ``value``, a number or a member of an enumeration."""
 
     of: Masked
     value: str
@@ -40,15 +43,16 @@ class Equality(NamedTuple):
 
 
 def masked(text: object) -> Masked:
-    """``header.flags & 0x13``. Raises `NotHeld`."""
+    """Parse an operand such as ``header.flags & 0x13``. Raises `NotHeld` for any other expression."""
     found = _MASKED.match(str(text).strip()) if len(str(text)) <= _LONGEST else None
     if found is None:
         raise NotHeld(f"`{line(str(text), 80)}` is neither a field nor bits of a field")
+    # `.to_i` converts an enumeration to its integer.
     return Masked(found["path"].removesuffix(".to_i"), None if found["mask"] is None else integer(found["mask"]))
 
 
 def equalities(text: object) -> list[Equality]:
-    """``a == 1 and flag``: all must hold. Raises `NotHeld` for anything else."""
+    """Parse a conjunction of comparisons such as ``a == 1 and flag``. Raises `NotHeld` for any other expression."""
     said = str(text).strip()
     found = []
     for part in re.split(r"\band\b", said) if len(said) <= _LONGEST else [""]:
@@ -67,6 +71,7 @@ def equalities(text: object) -> list[Equality]:
 
 
 def _of(text: str, whole: str) -> Masked:
+    """Parse the operand of a comparison. Raises `NotHeld` with the text of the complete condition, ``whole``."""
     try:
         return masked(text)
     except NotHeld:
@@ -74,7 +79,7 @@ def _of(text: str, whole: str) -> Masked:
 
 
 def number(text: str, members: Members) -> int:
-    """The raw value that is compared with. Raises `NotHeld`."""
+    """Return the raw value of a literal or of a member of an enumeration. Raises `NotHeld` for any other text."""
     if (found := {"true": 1, "false": 0}.get(text.lower(), integer(text))) is not None:
         return found
     if (member := _ENUM.match(text)) is not None:
@@ -85,13 +90,15 @@ def number(text: str, members: Members) -> int:
 
 
 def line_of(text: object, is_integer: bool) -> tuple[str, str] | None:
-    """The field that a value is computed from, and the formula; None if it is not a linear function of one field.
+    """Return the field that an expression depends on, and its formula. None if it is not a linear function of one field.
 
-    ``is_integer`` of a field: there the division of whole numbers drops the rest.
+    ``is_integer``: the field is an integer, so that a division by an integer drops the remainder and is not linear.
     """
     said = str(text)
     paths = set(_REFERENCE.findall(said)) if len(said) <= _LONGEST else set()
-    if len(paths) != 1 or "^" in said or (is_integer and _WHOLE_DIVISION.search(said)):  # `^` is no power there
+    if (
+        len(paths) != 1 or "^" in said or (is_integer and _WHOLE_DIVISION.search(said))
+    ):  # `^` is the exclusive or in Kaitai Struct
         return None
     plain = re.sub(r"\s*([*/])\s*", r"\1", " ".join(_REFERENCE.sub("raw", said).split()))
     try:
@@ -102,7 +109,7 @@ def line_of(text: object, is_integer: bool) -> tuple[str, str] | None:
 
 
 def counted(text: object) -> tuple[str, int] | None:
-    """The field that a number is, and what is added to it; None if it is anything else."""
+    """Return the field and the constant of an expression such as ``length - 4``. None for any other expression."""
     found = line_of(text, is_integer=True)
     if found is None:
         return None

@@ -1,4 +1,4 @@
-"""The sequence of a .ksy as fields one after the other, for one way of deciding all that it makes depend on values."""
+"""Layout of a .ksy: its attributes as consecutive parts, for one combination of its conditional branches."""
 
 from __future__ import annotations
 
@@ -19,29 +19,32 @@ from icdgen.icd.located import Map
 from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS, REST
 
 RAW_ONLY = "IMP078"
-_DEEPEST = 50  # types that hold each other
-_WORD = 8  # bytes of the largest number
+_DEEPEST = 50  # nested types
+_WORD = 8  # bytes of the largest integer
 
 
 @dataclass
 class Layout(Container[Part]):
-    """Walks the root type. ``decided`` are the values of fields on which something depends."""
+    """Parts of a root type. ``decided`` are the values of the fields that select branches."""
 
     file: File
     decided: dict[Key, int | None]
     is_struct: bool = False
     labels: list[Label] = field(default_factory=list)
-    ends: list[int] = field(default_factory=list)  # of the parts with a size of their own that are being read
+    ends: list[int] = field(default_factory=list)  # bit behind each enclosing part that states its `size`
 
     def read(self, root: Type) -> None:
-        """Raises `NotHeld`, and `Undecided`."""
+        """Add the parts of the root type.
+
+        Raises `NotHeld` if it is not supported, `Undecided` if a branch depends on a value that is not in ``decided``.
+        """
         try:
             self.type(root, Scope(root), (), (root,))
         except Ended:
             return
 
     def type(self, type_: Type, scope: Scope, path: tuple[str, ...], within: tuple[Type, ...]) -> None:
-        """The attributes of a type, and what is computed from them."""
+        """Add the attributes of a type (`seq`), and the formulas of its `instances`."""
         try:
             self._sequence(type_, scope, path, within)
         except Ended:
@@ -50,6 +53,7 @@ class Layout(Container[Part]):
         self._instances(type_, scope, path)
 
     def _sequence(self, type_: Type, scope: Scope, path: tuple[str, ...], within: tuple[Type, ...]) -> None:
+        """Add the attributes of `seq`. Attributes that are not supported become bytes."""
         for index, one in enumerate(type_.seq):
             self.file.step()
             self.check_size()
@@ -69,10 +73,11 @@ class Layout(Container[Part]):
                 self._as_bytes(one, where, why, known)
 
     def _attribute(self, one: Map, name: str, where: tuple[str, ...], scope: Scope, within: tuple[Type, ...]) -> None:
+        """Add the parts of an attribute. ``where`` is its path, ``within`` the enclosing types. Raises `NotHeld`."""
         if "process" in one:
             raise NotHeld(f"its bytes are processed by `{line(str(one['process']), 60)}` before they are read")
         if sized(one) == 0:
-            return  # it has no bytes, whatever it is
+            return  # `size: 0`: the attribute has no bytes, whatever its type
         if (always := contents(one)) is not None:
             self._constant(where, always, one)
             return
@@ -104,7 +109,7 @@ class Layout(Container[Part]):
         self._within(one, inner, below, where, within)
 
     def _within(self, one: Map, inner: Type, below: Scope, where: tuple[str, ...], within: tuple[Type, ...]) -> None:
-        """The fields of a type that stands here once, in so many bytes if it says so."""
+        """Add the fields of a type that is not repeated. If the attribute states a `size`, the next part begins behind it."""
         if "size" in one and sized(one) is None:
             raise NotHeld(f"its size is `{line(str(one['size']), 80)}`")
         size = sized(one)
@@ -127,7 +132,10 @@ class Layout(Container[Part]):
         self.at = end
 
     def _count(self, one: Map, scope: Scope) -> int | Counter | str | None:
-        """How often it is there: a number, as a field says, or to the end (`rest`)."""
+        """Return the number of repetitions: None without `repeat`, a number, a counter, or `rest` for `repeat: eos`.
+
+        Raises `NotHeld` for any other expression.
+        """
         repeat = one.get("repeat")
         if repeat is None:
             return None
@@ -145,7 +153,7 @@ class Layout(Container[Part]):
         return count
 
     def _counter(self, said: object, scope: Scope, why: str) -> Counter:
-        """What counts, if it is a number in front of it, and ``why`` else. Raises `NotHeld`."""
+        """Return the preceding integer that an expression refers to. Raises `NotHeld` with ``why`` for other expressions."""
         found = counted(said)
         if found is None:
             raise NotHeld(why)
@@ -160,12 +168,13 @@ class Layout(Container[Part]):
         return made
 
     def _align(self) -> None:
+        """Move to the next byte: Kaitai Struct aligns after bit-sized integers."""
         self.at = -(-self.at // 8) * 8
 
     def _place(
         self, where: tuple[str, ...], piece: Piece, count: int | Counter | str | None, one: Map, scope: Scope
     ) -> Part:
-        """Puts a number, a text or bytes where the last part ended."""
+        """Add a number, a text or bytes behind the last part. Raises `NotHeld`."""
         counter = count if isinstance(count, Counter) else None
         if not piece.bits and "size" in one:
             counter = self._counter(one["size"], scope, f"its size is `{line(str(one['size']), 80)}`")
@@ -191,13 +200,13 @@ class Layout(Container[Part]):
         return part
 
     def _fit(self, part: Part) -> None:
-        """Adds a part if there is room for it. Raises `NotHeld`."""
+        """Add a part. Raises `NotHeld` if it does not fit into the enclosing part."""
         if self.ends and self.at + part.bits > self.ends[-1]:
             raise NotHeld("it is longer than the part that contains it")
         self.add(part)
 
     def _valid(self, part: Part, said: Any, scope: Scope) -> None:
-        """The only value, or the limits, if that is what is valid."""
+        """Apply the key `valid`: a single value becomes a constant, `min` and `max` become limits. Ignores other forms."""
         item = part.item
         if said is None or item["type"] not in ("uint", "int", "enum", "bool") or "count" in item:
             return
@@ -211,11 +220,11 @@ class Layout(Container[Part]):
         try:
             value = number(str(equal), scope.type.members)
         except NotHeld:
-            return  # what is valid is computed
+            return  # `valid` has an expression
         part.mask, part.value = whole, value & whole
 
     def _constant(self, where: tuple[str, ...], always: bytes, one: Map) -> None:
-        """Bytes that are always the same, as numbers."""
+        """Add the bytes of `contents` as constant integers of up to 8 bytes."""
         self._align()
         for start in range(0, len(always), _WORD):
             data = always[start : start + _WORD]
@@ -229,7 +238,7 @@ class Layout(Container[Part]):
     def _structs(
         self, where: tuple[str, ...], inner: Type, count: int | Counter | str, one: Map, within: tuple[Type, ...]
     ) -> None:
-        """An array of what a type is. Raises `NotHeld` if that is not always alike."""
+        """Add an array of structs. Raises `NotHeld` if the layout of the type depends on values or varies in size."""
         self._align()
         layout = Layout(self.file, {}, is_struct=True)
         try:
@@ -237,7 +246,7 @@ class Layout(Container[Part]):
         except Undecided as error:
             raise NotHeld(f"what each of them has depends on `{error.key[0][-1]}`") from None
         if not layout.parts and not layout.at:
-            return  # none of them has a byte
+            return  # a type without bytes, such as an empty `seq`
         if layout.is_open or layout.at % 8:
             raise NotHeld("they are not of a fixed number of bytes")
         counter = count if isinstance(count, Counter) else None
@@ -248,7 +257,10 @@ class Layout(Container[Part]):
         self._fit(placed(where, Piece(item, layout.at), self.at, counter))
 
     def _as_bytes(self, one: Map, where: tuple[str, ...], why: NotHeld, known: bool) -> None:
-        """Holds what cannot be told further as bytes: as many as it has, or all that are left. Raises `NotHeld` in a struct."""
+        """Add an attribute that is not supported as bytes, and report it (IMP081).
+
+        An attribute without a fixed size takes all remaining bytes; then `Ended` is raised. Raises ``why`` in a struct.
+        """
         if self.is_struct:
             raise why
         try:
@@ -276,17 +288,17 @@ class Layout(Container[Part]):
             raise Ended
 
     def _bytes(self, where: tuple[str, ...], bits: int) -> None:
-        """Bytes without a meaning; 0 bits are all that are left."""
+        """Add bytes without a meaning. 0 ``bits`` stand for all bytes up to the end of the frame."""
         self._align()
         item: Item = {"type": "bytes"}
         part = placed(where, Piece(item, bits), self.at)
         part.is_whole = False
         self.add(part)
 
-    # what depends on values
+    # Branches: `if` and `switch-on`.
 
     def _is_there(self, one: Map, name: str, scope: Scope) -> bool:
-        """Whether an attribute with `if` is in this message. Raises `NotHeld`."""
+        """Return whether this message contains an attribute with `if`. Raises `NotHeld` if the condition is not supported."""
         asked = equalities(one["if"])
         if len(asked) > 1 and any(each.is_negated for each in asked):
             raise NotHeld(f"it depends on `{line(str(one['if']), 80)}`, which is more than equalities of fields")
@@ -301,7 +313,7 @@ class Layout(Container[Part]):
         return True
 
     def _switched(self, switch: Map, scope: Scope) -> str | None:
-        """The type that is there in this message; None for none. Raises `NotHeld`."""
+        """Return the type that a `switch-on` selects in this message, None if no case applies. Raises `NotHeld`."""
         cases = switch.get("cases")
         if not isinstance(cases, Map):
             raise NotHeld("a switch has no cases")
@@ -314,7 +326,11 @@ class Layout(Container[Part]):
         return chosen
 
     def _choose(self, of: Masked, options: list[int], scope: Scope, is_else: bool) -> tuple[int | None, bool]:
-        """Which of the values some bits of a field have in this message, None for another; and whether that is news."""
+        """Return which of ``options`` the bits of a field have in this message, and whether a new decision was needed.
+
+        Returns None as the value if the bits differ from all options. ``is_else``: other values have their own branch.
+        Raises `Undecided` if the value is not in ``decided``, `NotHeld` if the field is not an integer.
+        """
         part = scope.find(of.path)
         item = part.item
         if "count" in item or item["type"] not in ("uint", "int", "enum", "bool"):
@@ -343,7 +359,7 @@ class Layout(Container[Part]):
         return (None if chosen is None else raw[chosen]), True
 
     def _instances(self, type_: Type, scope: Scope, path: tuple[str, ...]) -> None:
-        """Formulas of fields, where an instance is a line over one."""
+        """Add the formulas of `instances`, and the fields of instances at a fixed `pos`. Reports instances not imported."""
         instances = type_.instances.items()
         for name, one in instances if type_.seq else sorted(instances, key=_position):
             if not isinstance(one, Map) or self._stands_at(name, one, type_, scope):
@@ -363,7 +379,10 @@ class Layout(Container[Part]):
                 )
 
     def _stands_at(self, name: str, one: Map, type_: Type, scope: Scope) -> bool:
-        """Whether an instance stands at a fixed place of a format without a sequence, which then is that of a field."""
+        """Add an instance with a fixed `pos` as a field, and return whether it is one.
+
+        This is supported for the root type of a format without `seq`.
+        """
         at = one.get("pos")
         if not isinstance(at, int) or "io" in one or type_.outer is not None or type_.seq:
             return False
@@ -379,8 +398,9 @@ class Layout(Container[Part]):
         return True
 
     def _formula(self, one: Map, scope: Scope) -> bool:
+        """Add the formula of an instance to the field it depends on, and return whether that is possible."""
         if isinstance(one["value"], (int, float)):
-            return True  # a constant, of which nothing is sent
+            return True  # a constant of the definition; the frame does not contain it
         found = line_of(one["value"], is_integer=False)
         if found is None:
             return False
@@ -392,11 +412,11 @@ class Layout(Container[Part]):
         if item.get("type") not in ("uint", "int", "float") or "formula" in item or "view" in item:
             return False
         if any(one.counter is not None and one.counter.part is part for one in self.parts):
-            return False  # what counts is a plain number
+            return False  # a counter cannot have a formula
         if item["type"] != "float" and line_of(one["value"], is_integer=True) is None:
             return False
         if found[1] != "raw":
-            for raw in ("min", "max"):  # in an ICD they are those of the physical value
+            for raw in ("min", "max"):  # in an ICD, limits apply to the physical value
                 item.pop(raw, None)
             item |= {"formula": found[1], **unit(_unit(one))}
             if "summary" not in item:
@@ -405,11 +425,11 @@ class Layout(Container[Part]):
 
 
 def _position(instance: tuple[str, Any]) -> float:
-    """Where an instance stands; those that are computed come last."""
+    """Sort key of an instance: its `pos` in bytes. Computed instances come last."""
     at = instance[1].get("pos") if isinstance(instance[1], Map) else None
     return at if isinstance(at, int) else math.inf
 
 
 def _unit(one: Map) -> str:
-    """That of the key which files of Kaitai use for it; the language itself has none."""
+    """Return the unit from the key `-unit`, a convention of Kaitai Struct files; the language itself has no units."""
     return str(one.get("-unit") or "")

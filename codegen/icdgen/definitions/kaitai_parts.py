@@ -1,4 +1,4 @@
-"""What stands in a message of a .ksy, and what an expression can name of it."""
+"""Parts of a message of a .ksy, and the scopes in which expressions refer to them."""
 
 from __future__ import annotations
 
@@ -14,22 +14,27 @@ from icdgen.definitions.reading import Reading
 from icdgen.definitions.wording import line
 from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS
 
-Key = tuple[tuple[str, ...], int, tuple[int, ...]]  # a field by its path, bits of it, and the values that are asked for
+Key = tuple[
+    tuple[str, ...], int, tuple[int, ...]
+]  # path of a field, mask of its bits, and the values that have branches
 
 
 class Undecided(Exception):
-    """What comes next depends on a value: one of ``options``, or none of them (None)."""
+    """Raised if the layout depends on a value that is not decided yet.
+
+    ``options`` are the values to try; None stands for all other values.
+    """
 
     def __init__(self, key: Key, options: list[int | None]) -> None:
         self.key, self.options = key, options
 
 
 class Ended(Exception):
-    """The rest of what is being read is imported as bytes."""
+    """Raised if the remaining bytes of the enclosing type are imported without their structure."""
 
 
 class Label(NamedTuple):
-    """What a decision adds to the name of the message, and the value that was decided on."""
+    """Word that a branch adds to the name of the message, and the value that selects the branch."""
 
     word: str
     value: str
@@ -37,22 +42,26 @@ class Label(NamedTuple):
 
 @dataclass
 class Part(containers.Part):
-    """Attribute in its place. The bits of ``mask`` have the values in ``value``; ``excluded`` are pairs of mask and value."""
+    """Attribute at its position.
+
+    The bits of ``mask`` have the fixed values in ``value``. ``excluded`` are pairs of mask and value that do not occur.
+    """
 
     piece: Piece = field(kw_only=True)
     mask: int = 0
     value: int = 0
     excluded: set[tuple[int, int]] = field(default_factory=set)
-    is_whole: bool = True  # whether it is what the file defines, and not bytes in its place
+    is_whole: bool = True  # False for bytes that replace an attribute that is not supported
 
     @property
     def is_ordered(self) -> bool:
-        """Whether it matters which of its bits or bytes is sent first."""
+        """Whether the byte or bit order affects the part."""
         is_number = self.item.get("type", "bytes") not in ("bytes", "text")
         return is_number and (self.piece.is_bits or self.piece.bits > 8 or (self.mask > 0 and "count" not in self.item))
 
     @property
     def place(self) -> Place:
+        """Position of the part in the message."""
         return Place(self.at, self.bits, self.piece.order)
 
 
@@ -68,14 +77,14 @@ def placed(path: tuple[str, ...], piece: Piece, at: int, counter: Counter | None
 
 @dataclass
 class Scope:
-    """What an expression can name within a type."""
+    """Names that expressions within a type can refer to."""
 
     type: Type
     outer: Scope | None = None
     names: dict[str, Part | Scope] = field(default_factory=dict)
 
     def find(self, path: str) -> Part:
-        """Raises `NotHeld`."""
+        """Return the part at a path such as ``_parent.header.length``. Raises `NotHeld` if no preceding part has it."""
         here: Part | Scope | None = self
         for name in path.split("."):
             if not isinstance(here, Scope):
@@ -94,12 +103,12 @@ class Scope:
 
 @dataclass
 class File(Reading):
-    """What all messages of a file share."""
+    """State that all messages of a file share."""
 
-    most_steps = 100_000  # attributes of all messages
+    most_steps = 100_000  # attributes of all messages; a small file can have many combinations of branches
 
-    structs: dict[int, Item] = field(default_factory=dict)  # by the type
+    structs: dict[int, Item] = field(default_factory=dict)  # by `id` of the type
 
     def note(self, code: str, message: str, help: str, severity: str, at: int | None) -> None:
-        """Once, however many messages it concerns."""
+        """Report a finding once, even if it applies to several messages."""
         self.heard(message).warn(code, message, help, severity, at)

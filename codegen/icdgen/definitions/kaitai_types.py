@@ -1,4 +1,4 @@
-"""Types of a .ksy: those that the file declares, within each other, and the numbers, texts and bytes that are built in."""
+"""Types of a .ksy: the nested types that the file declares, and the built-in numbers, texts and bytes."""
 
 from __future__ import annotations
 
@@ -19,20 +19,21 @@ _NUMBER = re.compile(r"([usf])([1248])(le|be)?\Z")
 _BITS = re.compile(r"b([1-9][0-9]?)(le|be)?\Z")
 _KINDS = {"u": "uint", "s": "int", "f": "float"}
 _ORDERS = {"le": LITTLE, "be": BIG}
+# Encodings with one byte for each ASCII character; text in other encodings is imported as bytes.
 _PLAIN = frozenset({"ASCII", "US-ASCII", "UTF-8", "ISO-8859-1"})
-_DEEPEST = 40
+_DEEPEST = 40  # levels of nested types
 
 
 @dataclass
 class Piece(containers.Piece):
-    """Field that the type of an attribute makes. ``bits`` are those of one element."""
+    """Field that the type of an attribute describes. ``bits`` is the width of one element."""
 
-    is_bits: bool = False  # whether it begins where the bit before it ended
+    is_bits: bool = False  # a bit-sized integer, which begins at the next bit; other types begin at a byte
 
 
 @dataclass
 class Type:
-    """A type of the file, and what it declares within."""
+    """Type that the file declares, with its nested types."""
 
     name: str
     body: Map
@@ -43,7 +44,7 @@ class Type:
 
     @property
     def seq(self) -> list[Map]:
-        """The attributes one after the other; none of a type that only computes, or tells cases apart. Raises `NotHeld`."""
+        """Attributes in their order; empty without a `seq`. Raises `NotHeld` if `seq` is not a list of mappings."""
         found = self.body.get("seq")
         if found is None:
             return []
@@ -53,11 +54,11 @@ class Type:
 
     @property
     def instances(self) -> Map | dict[str, Any]:
-        """What is computed, or stands elsewhere."""
+        """Computed values, and attributes at a stated position (`pos`)."""
         return mapping(self.body, "instances")
 
     def find(self, reference: str) -> Type:
-        """The type that is named here: of this type, or of one around it. Raises `NotHeld`."""
+        """Return the type that a reference names in this type or an enclosing one. Raises `NotHeld` if it is missing."""
         first, *rest = reference.split("::")
         around: Type | None = self
         while around is not None:
@@ -70,7 +71,7 @@ class Type:
         raise NotHeld(f"there is no type `{line(reference, 60)}`")
 
     def members(self, reference: str) -> dict[int, str]:
-        """The names of the values of an enumeration. Raises `NotHeld`."""
+        """Return the members of an enumeration by value. Raises `NotHeld` if this and the enclosing types lack it."""
         *path, name = reference.split("::")
         around: Type | None = self.find("::".join(path)) if path else self
         while around is not None:
@@ -86,13 +87,13 @@ class Type:
 
 
 def mapping(body: Map, key: str) -> Map | dict[str, Any]:
-    """What stands under a key, if that is a mapping."""
+    """Return the mapping of a key, an empty one if the key is missing or has no mapping."""
     found = body.get(key)
     return found if isinstance(found, Map) else {}
 
 
 def declared(name: str, body: Map, outer: Type | None = None, depth: int = 0) -> Type:
-    """A type with those that it declares."""
+    """Return a type with its nested types. A type inherits the byte order and bit order of the enclosing one."""
     meta = mapping(body, "meta")
     endian = outer.endian if outer else None
     if "endian" in meta:
@@ -106,7 +107,11 @@ def declared(name: str, body: Map, outer: Type | None = None, depth: int = 0) ->
 
 
 def built_in(name: str, attribute: Map, within: Type) -> Piece | None:
-    """A number, a text or bytes; None for a type that the file declares. Raises `NotHeld`."""
+    """Return the field of a built-in type, None for a type that the file declares.
+
+    ``within`` has the default byte order and encoding. A size that another field gives is 0 bits.
+    Raises `NotHeld` if the type is not supported.
+    """
     if (number := _NUMBER.match(name)) is not None:
         kind, size, said = number.groups()
         if kind == "f" and size in "12":
@@ -119,6 +124,7 @@ def built_in(name: str, attribute: Map, within: Type) -> Piece | None:
         width, order = int(bits[1]), _ORDERS[bits[2]] if bits[2] else within.bit_endian
         if width > 64:
             raise NotHeld(f"an integer has {width} bits")
+        # `b1` is a boolean in Kaitai Struct, wider types are integers.
         kind = "bool" if width == 1 and "enum" not in attribute else "uint"
         return Piece({"type": kind}, width, order, is_bits=True)
     if name not in ("str", "strz", ""):
@@ -128,7 +134,7 @@ def built_in(name: str, attribute: Map, within: Type) -> Piece | None:
     if (size := sized(attribute)) is not None:
         return Piece({"type": kind}, 8 * size)
     if "size" in attribute:
-        return Piece({"type": kind}, 0)  # a field says it
+        return Piece({"type": kind}, 0)  # a field gives the size
     if attribute.get("size-eos") is True:
         return Piece({"type": kind}, 0)
     if name == "strz" or "terminator" in attribute:
@@ -137,7 +143,7 @@ def built_in(name: str, attribute: Map, within: Type) -> Piece | None:
 
 
 def sized(attribute: Map) -> int | None:
-    """The bytes that an attribute has, where that is a number. Raises `NotHeld` for one that is none of a frame."""
+    """Return the `size` of an attribute in bytes, None if it is not a number. Raises `NotHeld` if it is out of range."""
     said = attribute.get("size")
     size = integer(said.strip()) if isinstance(said, str) else said
     if not isinstance(size, int) or isinstance(size, bool):
@@ -148,7 +154,7 @@ def sized(attribute: Map) -> int | None:
 
 
 def contents(attribute: Map) -> bytes | None:
-    """The bytes that an attribute always has; None if it may have any. Raises `NotHeld`."""
+    """Return the constant bytes of an attribute (`contents`), None without the key. Raises `NotHeld` for bad values."""
     said = attribute.get("contents")
     if said is None:
         return None
@@ -168,7 +174,7 @@ def contents(attribute: Map) -> bytes | None:
 
 
 def named(item: Item, bits: int, reference: str, within: Type, enums: Enumerations, to: Definitions) -> None:
-    """Gives the values of a number their names. Raises `NotHeld`."""
+    """Add the enumeration that ``reference`` names to an integer of ``bits``. Raises `NotHeld`."""
     choices = within.members(reference)
     if item["type"] not in ("uint", "int"):
         raise NotHeld(f"it has names for values, and is of the type {item['type']}")
@@ -176,6 +182,7 @@ def named(item: Item, bits: int, reference: str, within: Type, enums: Enumeratio
 
 
 def _encoding(within: Type) -> object:
+    """Return the default text encoding (`meta.encoding`) of a type or the nearest enclosing one."""
     around: Type | None = within
     while around is not None:
         if (said := mapping(around.body, "meta").get("encoding")) is not None:

@@ -1,4 +1,4 @@
-"""The YAML of a .ksy: the tree with the place of everything, and what Kaitai takes for a number as one."""
+"""YAML of a .ksy: a tree with source positions, and with integers in the notations of Kaitai Struct."""
 
 from __future__ import annotations
 
@@ -12,11 +12,15 @@ _INTEGER = re.compile(r"[-+]?(?:0[xX][0-9A-Fa-f_]+|0[bB][01_]+|0[oO][0-7_]+|[0-9
 _FLOAT = re.compile(r"[-+]?[0-9]+\.[0-9]*(?:[eE][-+]?[0-9]+)?\Z")
 _WORDS = {"true": True, "false": False, "null": None, "~": None, "": None}
 _LONGEST = 40  # characters of a number
-_MOST_TEXT = 20_000  # of a text, which then ends
+_MOST_TEXT = 20_000  # characters of a text; the remainder is dropped
 
 
 def parse(file: str, data: bytes) -> Map:
-    """The tree. Raises `Findings` for what is no YAML, or has anchors, of which a small text can make a huge tree."""
+    """Return the tree of a .ksy.
+
+    Raises `Findings` if the file is not YAML or has no `meta`. Anchors are rejected: aliases can expand a small text
+    to a huge tree.
+    """
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -37,9 +41,10 @@ def parse(file: str, data: bytes) -> Map:
 
 
 def integer(text: str) -> int | None:
-    """The number that a text is, however it is written; None if it is none."""
+    """Return the value of an integer in decimal, `0x`, `0b` or `0o` notation, None for any other text."""
     if len(text) > _LONGEST or not _INTEGER.match(text):
         return None
+    # Base 10 even with leading zeros: base 0 rejects `007`.
     try:
         return int(text.replace("_", ""), 10 if text.lstrip("+-").isdigit() else 0)
     except ValueError:
@@ -47,7 +52,10 @@ def integer(text: str) -> int | None:
 
 
 class _Builder(Builder):
+    """Builder of trees with the scalars of Kaitai Struct."""
+
     def scalar(self, event: Event) -> object:
+        """Return the value of a scalar. Only plain (unquoted) scalars can be numbers, booleans or null."""
         text = event.value
         if event.anchor is not None:
             self.refuse_alias(event)

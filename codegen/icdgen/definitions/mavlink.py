@@ -1,4 +1,4 @@
-"""Dialects of MAVLink: messages and enumerations of an XML and of what it includes, in the envelope of version 2, or 1."""
+"""Reader of MAVLink dialects: messages and enumerations of an XML file and its includes, with the framing of version 2 or 1."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from icdgen.icd.fmt.emit import Spelled
 
 TWICE = "IMP077"
 MOST_FILES = 100
-# How a ground station shows a value, and the number by which dialects are told apart.
+# Attributes for the display in ground stations, and the number of the dialect.
 _WITHOUT_MEANING = frozenset({"dialect", "print_format", "display", "schemaLocation", "noNamespaceSchemaLocation"})
 _BITS = {"int8_t": 8, "uint8_t": 8, "char": 8, "int16_t": 16, "uint16_t": 16, "int32_t": 32, "uint32_t": 32,
          "int64_t": 64, "uint64_t": 64, "float": 32, "double": 64}  # fmt: skip
 _VERSION_FIELD = "uint8_t_mavlink_version"
-# Units that say a factor: of integers the unit itself is imported, and the factor as a formula.
+# Units with a factor. For integers, the base unit is imported, and the factor as a formula.
 _SCALED = {
     "degE7": ("deg", "1e-7"), "degE5": ("deg", "1e-5"), "cdeg": ("deg", "0.01"), "ddeg/s": ("deg/s", "0.1"),
     "cm/s": ("m/s", "0.01"), "dm/s": ("m/s", "0.1"), "mm/s": ("m/s", "0.001"), "dm": ("m", "0.1"), "dam": ("m", "10"),
@@ -34,12 +34,13 @@ _SCALED = {
 }  # fmt: skip
 _SPELLED = {"m/s/s": "m/s^2", "bits/s": "bit/s", "bytes": "byte"}
 _NUMBER = re.compile(r"\s*(-?(?:0[xX][0-9A-Fa-f]+|[0-9]+))\s*(?:(<<|\*\*)\s*([0-9]{1,2})\s*)?\Z")
+# CRC-16/MCRF4XX. MAVLink calls it X.25, but X.25 inverts the result.
 _X25 = {"kind": "crc", "width": 16, "polynomial": Spelled("0x1021"), "init": Spelled("0xFFFF"),
         "reflect_in": True, "reflect_out": True, "xor_out": 0}  # fmt: skip
 
 
 class _Field(NamedTuple):
-    """A field as the XML has it. ``elements`` is 0 where it is no array."""
+    """Field of the XML. ``elements`` is 0 unless the field is an array."""
 
     name: str
     type: str
@@ -48,12 +49,12 @@ class _Field(NamedTuple):
 
     @property
     def bits(self) -> int:
-        """All of it."""
+        """Width of all elements."""
         return _BITS[self.type] * max(self.elements, 1)
 
 
 class MavLink2:
-    """What a link has today: ids of 24 bits, extensions, and zeros that are cut off."""
+    """Reader of a dialect for MAVLink 2: ids of 24 bits, extension fields, and truncation of trailing zeros."""
 
     name = "mavlink"
     title = "a MAVLink dialect"
@@ -66,7 +67,7 @@ class MavLink2:
         return safe_xml.root_of(start) == "mavlink"
 
     def read(self, file: str, data: bytes) -> Definitions:
-        """Raises `Findings` for an XML, or one that it includes, that cannot be read."""
+        """Return the messages of a dialect and its includes. Raises `Findings` if one of the files cannot be read."""
         to, account = Definitions(file), Account(_WITHOUT_MEANING)
         roots = dict(_with_included(file, data, account))
         enums = _enumerations(roots, to)
@@ -83,7 +84,7 @@ class MavLink2:
                 name, id = element.get("name", ""), _number(element.get("id", ""))
                 if id is not None and id >> self.id_bits and not self.has_extensions:
                     settle(element)
-                    continue  # of version 2 alone
+                    continue  # MAVLink 1 has no ids above 255
                 to.total += 1
                 try:
                     if id is None or id >> self.id_bits:
@@ -108,7 +109,7 @@ class MavLink2:
     def _message(
         self, element: Element, name: str, id: int, enums: dict[str, Item], version: int, to: Definitions
     ) -> tuple[int, Item]:
-        """The CRC_EXTRA of a message, and how it stands in an ICD."""
+        """Return the CRC_EXTRA of a message, and the message of the ICD. Raises `NotHeld`."""
         base: list[_Field] = []
         more: list[_Field] = []
         is_more = False
@@ -119,7 +120,9 @@ class MavLink2:
                 settle(one)
             if tag == "field":
                 (more if is_more else base).append(_field(one))
-        base.sort(key=lambda one: -_BITS[one.type])  # as they are sent; those of one width stay in their order
+        base.sort(
+            key=lambda one: -_BITS[one.type]
+        )  # wire order; the sort is stable for fields of equal width, as MAVLink requires
         item: Item = {"name": name, "id": id, "kind": "telemetry", "length": 0}
         if self.has_extensions:
             item["may_end_early"] = "zeros"
@@ -130,11 +133,11 @@ class MavLink2:
             at += field.bits
         item["length"] = at // 8
         if at <= 8:
-            item.pop("may_end_early", None)  # one byte is always sent
+            item.pop("may_end_early", None)  # MAVLink 2 never truncates the first byte of the payload
         return _extra(name, base), {**item, "fields": fields} if fields else item
 
     def envelope(self) -> Item:
-        """The section `protocol`; the system and the component are those of a ground station and of an autopilot."""
+        """Return the section `protocol`. Commands have the ids of a ground station (255, 190), telemetry of an autopilot (1, 1)."""
         flags: list[Item] = [
             {"bits": 8, "role": "constant", "value": 0},  # incompatibility flags: no signature
             {"bits": 8, "role": "flags"},
@@ -159,7 +162,7 @@ class MavLink2:
 
 
 class MavLink1(MavLink2):
-    """Links of old: ids of 8 bits, no extensions."""
+    """Reader of a dialect for MAVLink 1: ids of 8 bits, no extension fields."""
 
     name = "mavlink1"
     title = "a MAVLink dialect, of version 1"
@@ -168,11 +171,14 @@ class MavLink1(MavLink2):
     has_extensions = False
 
     def knows(self, start: str) -> bool:
-        return False  # the XML is the same: `--kind mavlink1` asks for it
+        return False  # the XML does not differ from version 2: `--kind mavlink1` selects it
 
 
 def _with_included(file: str, data: bytes, account: Account) -> Iterator[tuple[str, Element]]:
-    """The XML and what it includes, each once. Raises `Findings` for circles, for what is not there and for what lies elsewhere."""
+    """Yield the path and root of the XML and of all included files, each once.
+
+    Raises `Findings` for circular includes, and for files that are missing or in another folder.
+    """
     found: dict[str, Element] = {}
 
     def read(path: str, content: bytes, stack: tuple[str, ...]) -> None:
@@ -198,8 +204,9 @@ def _with_included(file: str, data: bytes, account: Account) -> Iterator[tuple[s
 
 
 def _field(element: Element) -> _Field:
-    """Raises `NotHeld` for a type that there is not."""
+    """Return the field of an XML element. Raises `NotHeld` if MAVLink has no such type."""
     match = re.fullmatch(r"(\w+?)(?:\[([0-9]{1,3})\])?", element.get("type", ""))
+    # As in pymavlink, `array` means `int8_t`, and the suffix `_t` is optional.
     type_ = "uint8_t" if match and match[1] == _VERSION_FIELD else match[1] if match else ""
     type_ = "int8_t" if type_ == "array" else type_ if type_ in _BITS else f"{type_}_t"
     if match is None or type_ not in _BITS:
@@ -208,10 +215,11 @@ def _field(element: Element) -> _Field:
 
 
 def _extra(name: str, fields: list[_Field]) -> int:
-    """CRC_EXTRA: what both sides must agree upon, in a byte; extensions are no part of it."""
+    """Return CRC_EXTRA, a checksum of the name and the base fields of a message in 8 bits. It excludes extensions."""
     data = f"{name} ".encode()
     for field in fields:
         data += f"{field.type} {field.name} ".encode() + (bytes([field.elements]) if field.elements else b"")
+    # `_X25` over these bytes: 0x8408 is the polynomial 0x1021 with its bits reversed.
     checksum = 0xFFFF
     for byte in data:
         checksum ^= byte
@@ -221,7 +229,7 @@ def _extra(name: str, fields: list[_Field]) -> int:
 
 
 def _held(owner: str, field: _Field, enums: dict[str, Item], version: int, to: Definitions) -> Item:
-    """A field as it stands in an ICD, without its place."""
+    """Return the field of the ICD without its position."""
     of = field.element
     if field.type == "char":
         return {"bits": field.bits, "name": field.name, "type": "text", **summary(_text(of))}
@@ -250,7 +258,7 @@ def _held(owner: str, field: _Field, enums: dict[str, Item], version: int, to: D
 
 
 def _formula(factor: str, multiplier: str) -> str:
-    """``raw*0.01``; the multiplier may be a quotient."""
+    """Return a formula such as ``raw*0.01``, empty without a scale. The multiplier may be a quotient: ``1E-2/3``."""
     match = re.fullmatch(r"\s*([0-9.]+(?:[eE][-+]?[0-9]+)?)(?:\s*/\s*([0-9]+))?\s*", multiplier)
     try:
         scale = Fraction(match[1]) if match else Fraction(1)
@@ -262,7 +270,7 @@ def _formula(factor: str, multiplier: str) -> str:
 
 
 def _name_values(one: Item, enum: Item, bits: int, where: str, to: Definitions) -> None:
-    """Give the values of an integer the names of an enumeration, which other fields may share."""
+    """Add an enumeration to an integer field, or its members as special values if the field cannot have all of them."""
     low, high = raws(bits, one["type"] == "int")
     named = [each for each in enum["members"] if low <= each["value"] and each.get("to", each["value"]) <= high]
     if len(named) < len(enum["members"]):
@@ -280,7 +288,7 @@ def _name_values(one: Item, enum: Item, bits: int, where: str, to: Definitions) 
 
 
 def _invalid(text: str, kind: str, bits: int) -> Item:
-    """What stands for 'not known', where the field can have it: `NaN`, of each element `[NaN]`, `UINT16_MAX`, `-1000`."""
+    """Return the special value for 'not known': `NaN`, `[NaN]` of arrays, `UINT16_MAX` or `-1000`. Empty if out of range."""
     text = text.strip("[]:, ")
     if kind == "float" and text.lower() == "nan":
         return {"value": "nan", "meaning": "not known"}
@@ -293,7 +301,7 @@ def _invalid(text: str, kind: str, bits: int) -> Item:
 
 
 def _enumerations(roots: dict[str, Element], to: Definitions) -> dict[str, Item]:
-    """The enumerations by name: those that several files have are one."""
+    """Return the enumerations by name. Entries from several files are merged."""
     found: dict[str, dict[int, tuple[str, str]]] = {}
     said: dict[str, str] = {}
     for root in roots.values():
@@ -302,6 +310,7 @@ def _enumerations(roots: dict[str, Element], to: Definitions) -> dict[str, Item]
             said[name] = said.get(name) or _said(enum)
             entries = found.setdefault(name, {})
             for entry in enum.iterfind("entry"):
+                # As in pymavlink, an entry without a value continues from the highest one.
                 value = _number(entry.get("value", str(max(entries, default=0) + 1)))
                 label = entry.get("name", "")
                 if value is None:
@@ -314,7 +323,7 @@ def _enumerations(roots: dict[str, Element], to: Definitions) -> dict[str, Item]
 
 
 def _enumeration(name: str, entries: dict[int, tuple[str, str]], said: str, to: Definitions) -> Item:
-    """Its members, without the words that all begin with."""
+    """Return an enumeration. Its members lose the words that are common to all of them."""
     labels = [label for label, _ in entries.values()]
     prefix = f"{name}_" if len(labels) < 2 else _begins_alike(min(labels), max(labels))
     short = {value: label.removeprefix(prefix) or label for value, (label, _) in entries.items()}
@@ -326,13 +335,16 @@ def _enumeration(name: str, entries: dict[int, tuple[str, str]], said: str, to: 
 
 
 def _begins_alike(one: str, other: str) -> str:
-    """The words with which both begin, and all between them."""
+    """Return the common first words of two names, up to an underscore.
+
+    All names between the two in alphabetical order begin with them, too.
+    """
     alike = next((at for at, pair in enumerate(zip(one, other, strict=False)) if pair[0] != pair[1]), len(one))
     return one[: one.rfind("_", 0, alike) + 1]
 
 
 def _said(element: Element) -> str:
-    """The description of a message, enumeration or entry, and what became of it."""
+    """Return the description of a message, enumeration or entry, with its deprecation."""
     text = line(next((_text(one) for one in element.iterfind("description")), ""))
     for gone in element.iterfind("deprecated"):
         by = f", replaced by {gone.get('replaced_by')}" if gone.get("replaced_by") else ""
@@ -341,11 +353,12 @@ def _said(element: Element) -> str:
 
 
 def _text(element: Element) -> str:
+    """Return the text of an element and of all elements within."""
     return "".join(element.itertext())
 
 
 def _number(text: str) -> Any:
-    """A number as enumerations have them, ``1<<3`` among them; None for what is none."""
+    """Return the value of ``12``, ``0x0C``, ``1<<3`` or ``2**3``, None for any other text."""
     match = _NUMBER.match(text)
     if match is None:
         return None

@@ -1,4 +1,4 @@
-"""Models of SunSpec (JSON): blocks of Modbus registers of 16 bits, the most significant byte and word first."""
+"""Reader of SunSpec models (JSON): blocks of 16-bit Modbus registers, most significant byte and word first."""
 
 from __future__ import annotations
 
@@ -16,24 +16,28 @@ from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS, REST
 
 RAW_ONLY = "IMP078"
 _REGISTER = 16  # bits
-_MOST_DEPTH = 8  # of groups within groups
+_MOST_DEPTH = 8  # levels of nested groups
 _MOST_POINTS = 20_000  # of a file
 _MOST_REGISTERS = MOST_BYTES // 2
-_LONGEST = 2048  # bytes of a model in which a group is repeated any number of times
-_HEAD = 2 * _REGISTER  # id and length, which each model has
-# Units that are another spelling of one that is built in.
+_LONGEST = 2048  # bytes of a model with a group that repeats any number of times
+_HEAD = 2 * _REGISTER  # bits of the id and length that begin each model
+# Units of SunSpec with a different spelling than the built-in unit.
 _SPELLED = {"Secs": "s", "mSecs": "ms", "Degrees": "deg", "Pct": "%", "HPa": "hPa", "mps": "m/s"}
 _NONE, _NOT_COUNTED = "not implemented", "not accumulated"
 
 
 class _Kind(NamedTuple):
-    """How a type of points is imported. ``registers`` is 0 where the point says it; ``none`` is the value that is none."""
+    """Field type of a point type.
+
+    ``registers`` is 0 if the point states its size. ``none`` is the value for 'not implemented', or 'not accumulated'.
+    """
 
     type: str
     registers: int
     none: int | str | None = None
 
 
+# Point types of the SunSpec information model, with their values for a point that is not implemented.
 _KINDS = {
     **{f"int{bits}": _Kind("int", bits // 16, -(1 << bits - 1)) for bits in (16, 32, 64)},
     **{f"uint{bits}": _Kind("uint", bits // 16, (1 << bits) - 1) for bits in (16, 32, 64)},
@@ -53,7 +57,7 @@ _KINDS = {
 
 
 class SunSpec:
-    """A model, or a list of those that a device has."""
+    """Reader of a SunSpec model, or of a list of models."""
 
     name = "sunspec"
     title = "a SunSpec model"
@@ -63,7 +67,7 @@ class SunSpec:
         return start.lstrip()[:1] in ("{", "[") and all(f'"{key}"' in start for key in ("group", "points", "name"))
 
     def read(self, file: str, data: bytes) -> Definitions:
-        """Raises `Findings` for what is no JSON, or no model."""
+        """Return each model as a message. Raises `Findings` if the file is not JSON, or not a model."""
         models = _parse(file, data)
         to, account = Definitions(file), Account()
         title = _text(models[0]["group"], "label") if len(models) == 1 else ""
@@ -88,11 +92,12 @@ class SunSpec:
 
 
 def _parse(file: str, data: bytes) -> list[AccountedMap]:
-    """The models. Raises `Findings`."""
+    """Return the models of a file, each with a group and an id of 16 bits. Raises `Findings` for any other content."""
     try:
         tree = accounted(json.loads(data.decode("utf-8-sig")))
     except json.JSONDecodeError as error:
         raise unreadable(file, f"not JSON: {error.msg}", "correct the file", error.lineno) from None
+    # `RecursionError`: deeply nested lists. `ValueError`: integers of more than 4,300 digits.
     except (UnicodeDecodeError, RecursionError, ValueError):
         raise unreadable(file, "not JSON", "a model is a JSON object with `id` and `group`") from None
     models = tree if isinstance(tree, list) else [tree]
@@ -108,7 +113,10 @@ def _parse(file: str, data: bytes) -> list[AccountedMap]:
 
 
 class _Model:
-    """A model on its way to a message; what is declared for it on the way are ``structs``."""
+    """Conversion of a model to a message. ``structs`` are the structs for its repeated groups.
+
+    ``left`` has the number of points that the file may still have. ``taken`` are names of structs of other models.
+    """
 
     def __init__(
         self, tree: dict[str, Any], enums: Enumerations, to: Definitions, left: list[int], taken: set[str]
@@ -120,7 +128,7 @@ class _Model:
         self.scaled: list[str] = []
 
     def message(self) -> Item:
-        """Raises `NotHeld`."""
+        """Return the message. Reports points with the scale factor in another register. Raises `NotHeld`."""
         fields: list[Item] = []
         end = self.block(self.group, fields, 0, "", 0)
         if not fields:
@@ -133,7 +141,10 @@ class _Model:
         return {**item, "fields": fields}
 
     def block(self, group: dict[str, Any], fields: list[Item], at: int, before: str, depth: int) -> int:
-        """Appends the points of a group and of those in it; the bit where what has a fixed place ends. Raises `NotHeld`."""
+        """Append the points of a group and of its nested groups to ``fields``, and return the bit behind them.
+
+        A group with any number of repetitions does not count. Raises `NotHeld`.
+        """
         if depth > _MOST_DEPTH:
             raise NotHeld(f"groups are nested more than {_MOST_DEPTH} deep")
         for point in _list(group, "points"):
@@ -151,7 +162,7 @@ class _Model:
         return at
 
     def repeated(self, group: dict[str, Any], fields: list[Item], at: int, before: str, depth: int) -> Item:
-        """A group that is there several times, as a struct. Raises `NotHeld`."""
+        """Declare a repeated group as a struct, and return the array of structs. Raises `NotHeld`."""
         count, name = group["count"], _text(group, "name")
         is_open = type(count) is not int or count <= 0
         if is_open and depth:
@@ -175,7 +186,7 @@ class _Model:
         return {**one, "count": count, "up_to": max(1, min((_LONGEST - at // 8) // length, MOST_ELEMENTS))}
 
     def point(self, point: dict[str, Any], before: str, at: int, is_head: bool) -> Item:
-        """A point as a field. Raises `NotHeld`."""
+        """Return the field of a point. ``is_head``: id or length of the model. Raises `NotHeld` if it is not supported."""
         self.left[0] -= 1
         if self.left[0] < 0:
             raise NotHeld(f"the file has more than {_MOST_POINTS:,} points")
@@ -197,10 +208,10 @@ class _Model:
             self.enums.hold(one, one["bits"], symbols, name, self.name, f"model `{self.name}`, `{name}`", self.to)
         if none and none["special"][0]["value"] not in symbols:
             one["special"] = [*one.pop("special", ()), *none["special"]]
-        return one  # the same mapping: an enumeration is named in it later
+        return one  # not a copy: `Enumerations` adds the name of the enumeration to this mapping later
 
     def scale(self, point: dict[str, Any], name: str, kind: _Kind) -> Item:
-        """Unit, formula and summary. Where another register has the factor, only the summary tells of both."""
+        """Return unit, formula and summary. If another register has the scale factor, the summary names unit and factor."""
         power, symbol, said = point.get("sf"), _text(point, "units"), _said(point)
         symbol = _SPELLED.get(symbol, symbol)
         if isinstance(power, str) and kind.type in ("int", "uint"):
@@ -215,13 +226,13 @@ class _Model:
 
 
 def _fixed_number_help(group: str, counter: object) -> str:
-    """Return what to do about a group whose number of repetitions must be known: most devices have only one."""
+    """Return the help for a group that needs a fixed number of repetitions."""
     text = f"if your device always has the same number, write it into a copy of the file: as `count` of `{line(group, 60)}`"
     return f"{text} and as `value` of the point `{line(counter, 60)}`" if isinstance(counter, str) else text
 
 
 def _symbols(point: dict[str, Any], is_bits: bool) -> dict[int, str]:
-    """The names of values; of bits those of the values that have this bit alone."""
+    """Return the names of values. The symbols of a bit field are bit numbers, which become values with this bit set."""
     result: dict[int, str] = {}
     for one in _list(point, "symbols"):
         value = one.get("value")
@@ -231,23 +242,26 @@ def _symbols(point: dict[str, Any], is_bits: bool) -> dict[int, str]:
 
 
 def _special(kind: _Kind, said: str) -> Item:
+    """Return the special value of a point type, empty if it has none."""
     if kind.none is None:
         return {}
     return {"special": [{"value": kind.none, "meaning": _NOT_COUNTED if said.startswith("acc") else _NONE}]}
 
 
 def _said(of: dict[str, Any]) -> dict[str, str]:
-    """The key of a label and a description, each once."""
+    """Return the summary of a label and a description, without the label if the description contains it."""
     label, text = _text(of, "label"), _text(of, "desc")
     same = label.casefold() in text.casefold()
     return summary(text if same else f"{label}. {text}" if text else label)
 
 
 def _list(of: dict[str, Any], key: str) -> Iterator[dict[str, Any]]:
+    """Yield the mappings in the list of a key."""
     found = of.get(key)
     yield from (one for one in found if isinstance(one, dict)) if isinstance(found, list) else ()
 
 
 def _text(of: dict[str, Any], key: str) -> str:
+    """Return the text of a key on one line, empty if the key has no text."""
     found = of.get(key)
     return line(found) if isinstance(found, str) else ""

@@ -1,4 +1,7 @@
-"""XTCE (CCSDS 660.0, OMG): containers of telemetry and commands, in space packets where they begin with their header."""
+"""Reader of XTCE databases (CCSDS 660.0, OMG): telemetry containers and commands as messages.
+
+Containers that begin with the primary header of a space packet become packets.
+"""
 
 from __future__ import annotations
 
@@ -21,11 +24,11 @@ _TELECOMMAND, _TELEMETRY = packets.TELECOMMAND, packets.TELEMETRY
 _WITHOUT_EFFECT = frozenset(
     {
         "schemaLocation",
-        "SpaceSystem.Header",  # who changed what when
-        "ArrayParameterType.numberOfDimensions",  # the dimensions themselves are read
+        "SpaceSystem.Header",  # author and history
+        "ArrayParameterType.numberOfDimensions",  # redundant: the dimensions are listed
         "ArrayArgumentType.numberOfDimensions",
     }
-    | {  # of the value after calibration; where there is no encoding they are read
+    | {  # they describe the calibrated value; `xtce_types` reads them only if there is no encoding
         f"{kind}{of}Type.{key}"
         for kind in ("Integer", "Float")
         for of in ("Parameter", "Argument")
@@ -37,7 +40,7 @@ _HAZARDOUS = frozenset({"vital", "critical", "severe"})
 
 
 class Xtce:
-    """Version 1.2, and that of 1.1."""
+    """Reader of XTCE 1.1 and 1.2."""
 
     name = "xtce"
     title = "telemetry and commands (XTCE)"
@@ -47,12 +50,15 @@ class Xtce:
         return safe_xml.root_of(start) == "SpaceSystem"
 
     def read(self, file: str, data: bytes) -> Definitions:
-        """Raises `Findings` for an XML that cannot be read."""
+        """Return the messages of one file. Raises `Findings` if its XML cannot be read."""
         root = safe_xml.parse(file, data, account=Account())
         return _define({file: root}, Definitions(file), node_name(file))
 
     def read_set(self, sources: Sequence[Source]) -> list[Definitions]:
-        """What each set of files defines in which one refers to another, called like their folder; and each other file."""
+        """Return the definitions of each database, a set of files with references between them.
+
+        A database of several files has the name of their common folder. A file that cannot be read gets an error.
+        """
         roots: dict[str, Element] = {}
         result: list[Definitions] = []
         for source in sources:
@@ -70,7 +76,7 @@ class Xtce:
 
 
 def _define(roots: Mapping[str, Element], to: Definitions, name: str) -> Definitions:
-    """Adds the ICD of the systems of files that are one database."""
+    """Add the network of one database, which may consist of several files, to its definitions and return them."""
     names = Names(roots, to)
     types = Types(to, names)
     found = _identified(list(_all(names, types, to)), to)
@@ -92,10 +98,10 @@ def _define(roots: Mapping[str, Element], to: Definitions, name: str) -> Definit
 
 
 class _Found:
-    """A container or command with its layout."""
+    """Container or command with its layout."""
 
     def __init__(self, kind: str, element: Element, layout: Layout, more: Item, is_base: bool = False) -> None:
-        """``more`` are keys of the message, ``is_base`` of a container on which others are based."""
+        """``more`` are further keys of the message. ``is_base`` is true for a container that others inherit."""
         self.is_base = is_base
         self.kind, self.element, self.layout, self.more = kind, element, layout, more
         self.name = called(element)
@@ -106,7 +112,10 @@ class _Found:
         self.front: tuple[Hashable, int] | None = (first.reference, first.bits) if first and is_id else None
 
     def message(self, id: int, start: int, to: Definitions) -> Item:
-        """As it stands in an ICD. Raises `NotHeld`."""
+        """Return the message of the ICD, with the fields from bit ``start`` on. Raises `NotHeld`.
+
+        Reports parts between the primary header and ``start``, which have no place in an ICD.
+        """
         made = {"name": self.name, "id": id, "kind": self.kind, "length": 0, **self.more}
         lost = [part for part in self.layout.parts if part.at < start and not self._is_ahead(part, start)]
         if lost:
@@ -119,13 +128,13 @@ class _Found:
         return message
 
     def _is_ahead(self, part: Part, start: int) -> bool:
-        """Whether a part is one of what stands in front of the data: of the primary header, or the id."""
+        """Whether a part belongs to the primary header or, without one, is the message id."""
         at, bits = part.at, part.bits
         return packets.is_of_header(at, bits) if self.header is not None else (at, bits) == (0, start)
 
 
 def _all(names: Names, types: Types, to: Definitions) -> Iterator[_Found]:
-    """Everything that is sent, in the order of the file; what is not imported is noted."""
+    """Return the telemetry containers and commands in the order of the file. Reports unsupported ones."""
     bases = _used(names, "BaseContainer")
     for element in _containers(names, bases):
         to.total += 1
@@ -164,7 +173,10 @@ def _all(names: Names, types: Types, to: Definitions) -> Iterator[_Found]:
 
 
 def _identified(found: list[_Found], to: Definitions) -> list[_Found]:
-    """The messages without containers that only others are based on: nothing says of which application process they are."""
+    """Remove base containers without an application process identifier (APID), and report them (IMP087).
+
+    Applies only to databases of space packets. The containers that inherit the base ones are the messages.
+    """
     is_packet = any(one.header is not None for one in found)
     bases = [one for one in found if is_packet and one.is_base and (one.header is None or one.header.apid is None)]
     if bases:
@@ -177,7 +189,7 @@ def _identified(found: list[_Found], to: Definitions) -> list[_Found]:
 
 
 def _containers(names: Names, bases: set[int]) -> list[Element]:
-    """Those that are sent by themselves: not abstract, and no mere part or base of others."""
+    """Return the containers that are messages: not abstract, and not only a base or a part of others."""
     parts = bases | _used(names, "EntryList/ContainerRefEntry")
     concrete = (
         one for one in names.all("container") if one.tag == "SequenceContainer" and one.get("abstract") != "true"
@@ -186,7 +198,7 @@ def _containers(names: Names, bases: set[int]) -> list[Element]:
 
 
 def _used(names: Names, path: str) -> set[int]:
-    """The containers to which elements of others refer, by `id`."""
+    """Return `id` of each container that an element at ``path`` of another container refers to."""
     used: set[int] = set()
     for one in (*names.all("container"), *names.all("command container")):
         for reference in one.iterfind(path):
@@ -198,6 +210,7 @@ def _used(names: Names, path: str) -> set[int]:
 
 
 def _arguments(chain: list[Element]) -> dict[str, Element]:
+    """Return the arguments of a command and of its base commands by name. The derived command takes precedence."""
     result: dict[str, Element] = {}
     for command in chain:
         for element in command.iterfind("ArgumentList/Argument"):
@@ -206,7 +219,7 @@ def _arguments(chain: list[Element]) -> dict[str, Element]:
 
 
 def _paired(messages: list[Item]) -> list[Item]:
-    """A telecommand and a telemetry frame of one name that have the same fields are one configuration message, set and got."""
+    """Merge each telecommand and telemetry frame with equal name, group and fields into one configuration message."""
     sent = {(message["name"], message.get("group")): message for message in messages if message["kind"] == _TELECOMMAND}
     made: list[Item] = []
     gone: set[int] = set()
@@ -223,7 +236,10 @@ def _paired(messages: list[Item]) -> list[Item]:
 
 
 def _is_same(one: Item, other: Item) -> bool:
-    """Whether messages have the same fields, but for constants, whose type only telemetry has, and views."""
+    """Whether the fields of two messages are equal.
+
+    Ignores overlay fields. Compares constants by position and raw value, as only telemetry has their type.
+    """
 
     def plain(message: Item) -> list[Item]:
         fields = (field for field in message.get("fields", ()) if not field.get("view"))
@@ -233,7 +249,7 @@ def _is_same(one: Item, other: Item) -> bool:
 
 
 def _group(names: Names, element: Element) -> Item:
-    """The system, but for the outermost; of what icdgen wrote the group of its ICD."""
+    """Return the group of a message: that of its ICD if icdgen wrote the file, else the path below the root system."""
     if group := beside(element).get("group"):
         return {"group": line(group, 200)}
     inner = names.system(element).split("/")[2:]
@@ -241,6 +257,7 @@ def _group(names: Names, element: Element) -> Item:
 
 
 def _hazard(chain: list[Element]) -> Item:
+    """Return the hazard of a command with a `DefaultSignificance` of vital, critical or severe consequences."""
     said = next((element for command in chain for element in command.iterfind("DefaultSignificance")), None)
     if said is None or said.get("consequenceLevel", "none") not in _HAZARDOUS:
         return {}

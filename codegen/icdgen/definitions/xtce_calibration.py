@@ -1,4 +1,4 @@
-"""Numbers of XTCE, and calibrations as formulas."""
+"""Numbers and calibrations of XTCE: polynomials as formulas, splines as lookup tables."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from icdgen.icd.formula import FormulaError
 
 NUMBER = re.compile(r"\s*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]{1,3})?)\s*\Z")
 _INTEGER = re.compile(r"\s*([-+]?[0-9]{1,40})\s*\Z")
-_MOST_POWER = 15
-_DIGITS = 15  # of numbers that are said as they were meant
+_MOST_POWER = 15  # of a polynomial
+_DIGITS = 15  # significant digits that a double always preserves; numbers with more may be rounded powers of two
 
 
 def calibration(encoding: Element) -> dict[str, Any]:
-    """The keys of a formula, or of a table; none where the raw value is meant.
+    """Return the keys of the calibration of an encoding: a formula, a lookup table, or no keys for the raw value.
 
-    Raises `ValueError`, with the reason, where neither says it.
+    Raises `ValueError` with the reason if the calibration is not supported.
     """
     if encoding.find("ContextCalibratorList") is not None:
         raise ValueError("its calibration depends on other parameters")
@@ -36,7 +36,10 @@ def calibration(encoding: Element) -> dict[str, Any]:
 
 
 def calibrated(calibrator: Element) -> dict[str, Any] | None:
-    """The keys of a polynomial or a spline within an element; None if there is neither. Raises `ValueError`."""
+    """Return the keys of a polynomial or spline calibrator, None if there is neither.
+
+    Raises `ValueError` if it is not supported.
+    """
     if terms := calibrator.findall("PolynomialCalibrator/Term"):
         return _said(polynomial(terms))
     spline = calibrator.find("SplineCalibrator")
@@ -50,11 +53,15 @@ def calibrated(calibrator: Element) -> dict[str, Any] | None:
 
 
 def _said(text: str) -> dict[str, Any]:
+    """Return the key of a formula, no key for the raw value."""
     return {"formula": text} if text else {}
 
 
 def _table(points: list[Element], goes_on: bool) -> dict[str, Any]:
-    """The points in the order of their raw values, as that of a definition does not matter."""
+    """Return the keys of a lookup table. XTCE allows points in any order, an ICD needs ascending raw values.
+
+    Raises `ValueError` if the points are not a valid table, or are too many.
+    """
     found = [[decimal(one.get(key, "")) for key in ("raw", "calibrated")] for one in points]
     found.sort(key=lambda point: Fraction(point[0]))
     try:
@@ -70,7 +77,10 @@ def _table(points: list[Element], goes_on: bool) -> dict[str, Any]:
 
 
 def ended(said: dict[str, Any], bits: int, is_signed: bool) -> dict[str, Any]:
-    """The keys of a table of integers: level lines at its ends are what `clamp` says, and beyond all values is nothing."""
+    """Return the keys of a lookup table of an integer, simplified if it covers all raw values.
+
+    Horizontal segments at the ends become `outside: clamp`. A table that covers all values needs no `outside`.
+    """
     low, high = raws(bits, is_signed)
     points = list(said["points"])
     (first, *_), (last, *_) = points[0], points[-1]
@@ -84,12 +94,12 @@ def ended(said: dict[str, Any], bits: int, is_signed: bool) -> dict[str, Any]:
 
 
 def _number(text: str) -> int | float | str:
-    """As an ICD has it: an exponent makes it a text."""
+    """Return a number as a value of an ICD. Numbers with an exponent or over 30 characters stay text."""
     return text if "e" in text.lower() or len(text) > 30 else float(text) if "." in text else int(text)
 
 
 def number(text: str, what: str) -> int:
-    """An integer. Raises `NotHeld`."""
+    """Return an integer of at most 40 digits. Raises `NotHeld` with ``what`` as the subject for any other text."""
     match = _INTEGER.match(text)
     if match is None:
         raise NotHeld(f"{what} is `{line(text, 60)}`")
@@ -97,7 +107,7 @@ def number(text: str, what: str) -> int:
 
 
 def decimal(text: str) -> str:
-    """A number as a formula has it. Raises `ValueError`."""
+    """Return a number in the notation of formulas. Raises `ValueError` if the text is not a number."""
     match = NUMBER.match(text)
     if match is None:
         raise ValueError(f"a coefficient is `{line(text, 60)}`")
@@ -105,7 +115,7 @@ def decimal(text: str) -> str:
 
 
 def fixed(element: Element | None, default: int | None = None) -> int | None:
-    """A number that is written down; None for one that something else says."""
+    """Return the `FixedValue` of an element, ``default`` without an element, None if a parameter gives the number."""
     if element is None:
         return default
     of = element.find("FixedValue")
@@ -113,7 +123,7 @@ def fixed(element: Element | None, default: int | None = None) -> int | None:
 
 
 def polynomial(terms: list[Element]) -> str:
-    """Raises `ValueError` for one that cannot be said."""
+    """Return the formula of a polynomial. Raises `ValueError` for exponents above 15 and repeated ones."""
     found: dict[int, str] = {}
     for term in terms:
         power = number(term.get("exponent", ""), "an exponent")
@@ -126,7 +136,7 @@ def polynomial(terms: list[Element]) -> str:
 
 
 def formula(terms: dict[int, str]) -> str:
-    """The highest power first; nothing where the raw value is meant."""
+    """Return the formula of coefficients by power, the highest power first. Empty if the value is the raw value."""
     text = ""
     terms = {power: value for power, value in terms.items() if Fraction(value)}
     if terms == {1: "1"}:
@@ -139,14 +149,14 @@ def formula(terms: dict[int, str]) -> str:
 
 
 def _binary(text: str) -> str:
-    """A power of two where a number is that, rounded to the digits of a double."""
+    """Return ``2^-n`` for the rounded decimal digits of a negative power of two, the text itself for other numbers."""
     top, bottom = float(text).as_integer_ratio()
     is_rounded = len(text) > _DIGITS and Fraction(text) != Fraction(top, bottom)
     return f"2^-{bottom.bit_length() - 1}" if top == 1 and is_rounded else text
 
 
 def through(points: list[Element]) -> str:
-    """Through two points."""
+    """Return the formula of the line through two points. Raises `ValueError` if their raw values are equal."""
     (x0, y0), (x1, y1) = ([decimal(point.get(key, "")) for key in ("raw", "calibrated")] for point in points)
     across, up = Fraction(x1) - Fraction(x0), Fraction(y1) - Fraction(y0)
     if not across:

@@ -1,4 +1,4 @@
-"""Files of XTCE that belong together, because one refers to what only another defines."""
+"""Grouping of XTCE files into databases: a file belongs to another if it refers to a name that only that one defines."""
 
 from __future__ import annotations
 
@@ -14,10 +14,13 @@ _REFERENCES = (
 )  # fmt: skip
 
 
+# `Element.get(element, ...)` bypasses `AccountedElement.get`: grouping files does not import their attributes.
+
+
 def sets(roots: Mapping[str, Element]) -> list[dict[str, Element]]:
-    """The files in sets, each in the order of the files."""
+    """Return the databases, each with its files in the order of ``roots``."""
     named = {file: _names(root) for file, root in roots.items()}
-    owner = {file: file for file in roots}  # the first file of the set
+    owner = {file: file for file in roots}  # union-find: a file leads to the first file of its set
 
     def first_of(file: str) -> str:
         while owner[file] != file:
@@ -39,7 +42,7 @@ def sets(roots: Mapping[str, Element]) -> list[dict[str, Element]]:
 
 
 def _systems(root: Element) -> Iterator[tuple[str, Element]]:
-    """Systems with their paths."""
+    """Yield the path of each system, and the system."""
     left = [("", root)]
     while left:
         above, system = left.pop()
@@ -49,12 +52,12 @@ def _systems(root: Element) -> Iterator[tuple[str, Element]]:
 
 
 def _names(root: Element) -> set[str]:
-    """Paths of everything that has a name in the systems of a file."""
+    """Return the paths of all named elements of a file."""
     return {f"{path}/{Element.get(one, 'name', '')}" for path, system in _systems(root) for one in _within(system)}
 
 
 def _within(system: Element) -> Iterator[Element]:
-    """The elements of a system but for those of systems within."""
+    """Yield the elements of a system without nested systems."""
     left = [one for one in system if safe_xml.local(one.tag) != "SpaceSystem"]
     while left:
         element = left.pop()
@@ -63,7 +66,7 @@ def _within(system: Element) -> Iterator[Element]:
 
 
 def _references(root: Element) -> Iterator[frozenset[str]]:
-    """Of each different reference the paths that it may mean: seen from its system and those around, members of it too."""
+    """Yield the possible target paths of each distinct reference of a file."""
     seen: set[tuple[str, str]] = set()
     for path, system in _systems(root):
         for element in _within(system):
@@ -75,6 +78,10 @@ def _references(root: Element) -> Iterator[frozenset[str]]:
 
 
 def _meant(path: str, reference: str) -> Iterator[str]:
+    """Yield the paths that a reference within the system ``path`` can mean.
+
+    The target can be in the system or in an enclosing one. The last names may be members of an aggregate.
+    """
     words = reference.split("/")
     for length in range(len(words), 0, -1):
         start, some = path, "/".join(words[:length])

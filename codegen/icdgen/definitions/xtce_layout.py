@@ -1,4 +1,4 @@
-"""Containers of XTCE as fields one after the other, with what they inherit and include, and what restricts them."""
+"""Layout of XTCE containers: their own, inherited and included entries, and the values that restrict them."""
 
 from __future__ import annotations
 
@@ -27,38 +27,37 @@ from icdgen.icd.roles import COUNTER, reasons_against
 from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS
 
 OPEN = "IMP080"
-MOST_PLACED = 500  # of one whose fields say where they stand
-_DEEPEST = 50  # containers that inherit or include each other
+MOST_PLACED = 500  # fields of a message with explicit positions
+_DEEPEST = 50  # levels of inheritance and inclusion
 _REFERENCES = {"ParameterRefEntry": "parameterRef", "ArgumentRefEntry": "argumentRef",
                "ArrayParameterRefEntry": "parameterRef", "ArrayArgumentRefEntry": "argumentRef"}  # fmt: skip
 
 
 class Reference(NamedTuple):
-    """A parameter or argument, or by ``path`` a member of an aggregate."""
+    """Parameter or argument. ``path`` leads to a member of an aggregate."""
 
     of: Element
     path: tuple[str, ...]
 
     @property
     def name(self) -> str:
-        """Name as in the file: ``Packet_ID/Version``."""
+        """Name in the notation of XTCE: ``Packet_ID/Version``."""
         return "/".join((self.of.get("name", ""), *self.path))
 
 
 @dataclass
 class Part(containers.Part):
-    """Entry of a container of XTCE in its place. A fixed value has no reference."""
+    """Entry of an XTCE container at its position. A fixed value has no reference."""
 
     piece: Piece = field(kw_only=True)
     reference: Reference | None = None
-    is_reserved: bool = False  # it has room and no meaning
-    conditions: list[tuple[Part, object]] = field(
-        default_factory=list
-    )  # parts, and the values with which this one is present
+    is_reserved: bool = False  # has a size but no meaning
+    # Earlier parts, and the values with which this one is present.
+    conditions: list[tuple[Part, object]] = field(default_factory=list)
 
 
 class Told(NamedTuple):
-    """A parameter, argument or member, and its only value in a message."""
+    """Parameter, argument or member that has a constant value in a message."""
 
     reference: Reference
     value: str
@@ -73,12 +72,16 @@ class Layout(Container[Part]):
     types: Types
     arguments: dict[str, Element] = field(default_factory=dict)  # of a command
     told: list[Told] = field(default_factory=list)
-    jumps: bool = False  # whether a part says where it stands
-    behind: str = ""  # the entry just before, where it is not always there
-    size: int = 0  # bits that every frame has, where that is said
+    jumps: bool = False  # whether a part has an explicit position
+    behind: str = ""  # the previous entry, if it is optional
+    size: int = 0  # bits of every frame if the container states a size, else 0
 
     def read(self, container: Element, within: tuple[Element, ...] = (), is_included: bool = False) -> None:
-        """Adds the entries of a container behind those that it inherits. Raises `NotHeld`."""
+        """Add the inherited entries of a container, then its own ones.
+
+        ``within`` are the enclosing containers. Positions of an included container are relative to its own start.
+        Raises `NotHeld` if an entry is not supported and the frame cannot end there.
+        """
         if any(container is one for one in within):
             circle = " -> ".join(one.get("name", "") for one in (*within, container))
             raise NotHeld(f"containers contain or inherit each other in a circle: {line(circle, 200)}")
@@ -116,7 +119,7 @@ class Layout(Container[Part]):
                 raise NotHeld(f"it has more than {MOST_FIELDS} fields")
 
     def _conditional(self, entry: Element, conditions: list[tuple[Part, object]], before: int) -> None:
-        """Makes what an entry added to ``before`` parts present only where other fields have some values."""
+        """Make the parts behind the first ``before`` optional. Raises `NotHeld` if their conditions are nested."""
         self.jumps, self.behind = True, _named(entry)
         for part in self.parts[before:]:
             if "when" in part.item:
@@ -125,6 +128,7 @@ class Layout(Container[Part]):
             part.item["when"] = {of.path[-1]: values for of, values in conditions}
 
     def _move(self, entry: Element, start: int) -> None:
+        """Move to the position of an entry in a container that begins at bit ``start``. Raises `NotHeld`."""
         location = entry.find("LocationInContainerInBits")
         said = "previousEntry" if location is None else location.get("referenceLocation", "previousEntry")
         if self.behind and said == "previousEntry":
@@ -141,6 +145,7 @@ class Layout(Container[Part]):
             raise NotHeld(f"`{_named(entry)}` is located in front of its container")
 
     def _entry(self, entry: Element, container: Element, within: tuple[Element, ...]) -> None:
+        """Add the parts of an entry of a container. Raises `NotHeld` if the entry is not supported."""
         count = _repeats(entry)
         if entry.tag == "ContainerRefEntry":
             inner = self.names.container(entry.get("containerRef", ""), container)
@@ -169,7 +174,7 @@ class Layout(Container[Part]):
         self._place(reference, name, repeated(piece, count, where), said)
 
     def _place(self, reference: Reference, name: str, piece: Piece, said: Item) -> None:
-        """Puts a piece where the last one ended; members of aggregates one after the other."""
+        """Add a field at the current position, or the members of an aggregate in their order. Raises `NotHeld`."""
         of, path = reference
         if len(path) > _DEEPEST:
             raise NotHeld(f"`{name}` has members nested without end")
@@ -185,14 +190,16 @@ class Layout(Container[Part]):
         if piece.order == LITTLE and (self.at % 8 or piece.bits % 8):
             if self.at // 8 == (self.at + piece.bits - 1) // 8:
                 raise NotHeld(f"the least significant byte of the {piece.bits} bits of `{name}` is sent first")
-            self.jumps = True  # its bits are counted from the least significant one, as Yamcs does
+            self.jumps = (
+                True  # little-endian within a byte: bits are counted from the least significant one, as in Yamcs
+            )
         item = again(piece.item, {**piece.item, **said})
         part = Part((name,), item, self.at, piece.bits, piece.order, item.get("bits", 8), piece=piece)
         part.reference, part.is_reserved = reference, "reserved" in beside(of)
         self.add(part)
 
     def _fixed(self, entry: Element) -> None:
-        """Bits that are always the same: in hexadecimal, the last ones of it."""
+        """Add a fixed value: the least significant `sizeInBits` bits of a hexadecimal number. Raises `NotHeld`."""
         bits, text = number(entry.get("sizeInBits", ""), "a size"), entry.get("binaryValue", "")
         if not 1 <= bits <= 8 * MOST_BYTES:
             raise NotHeld(f"a fixed value has {bits} bits")
@@ -209,17 +216,18 @@ class Layout(Container[Part]):
         self.add(part)
 
     def _parameter(self, name: str, seen_from: Element, is_argument: bool) -> Reference:
+        """Return the parameter or argument that an element refers to. Raises `NotHeld` if it does not exist."""
         return self.argument(name) if is_argument else Reference(*self.names.parameter(name, seen_from))
 
     def argument(self, name: str) -> Reference:
-        """The argument of that name, or a member of one. Raises `NotHeld`."""
+        """Return an argument of the command, or a member of it. Raises `NotHeld` if it does not exist."""
         first, *path = [name] if name in self.arguments else name.split("/")
         if first not in self.arguments:
             raise NotHeld(f"there is no argument `{line(name, 100)}`")
         return Reference(self.arguments[first], tuple(path))
 
     def _told(self, criteria: Element, seen_from: Element) -> Iterator[Told]:
-        """Equalities that must all hold. Raises `NotHeld` for anything else."""
+        """Yield the equalities of a conjunction. Raises `NotHeld` for any other condition."""
         for told in self._all_of(criteria, seen_from, "it depends on"):
             if len(told) > 1:
                 raise NotHeld("it depends on more than equalities that must all be true")
@@ -239,7 +247,10 @@ class Layout(Container[Part]):
         return conditions
 
     def _all_of(self, criteria: Iterable[Element], seen_from: Element, said: str) -> Iterator[list[Told]]:
-        """What must all hold: of each what is one of several. Raises `NotHeld`."""
+        """Yield the terms of a conjunction, each a list of alternative equalities.
+
+        Raises `NotHeld` for any other condition, with a message that begins with the given words.
+        """
         for one in criteria:
             if one.tag == "Comparison":
                 yield [self._compared(one, one.get("comparisonOperator", "=="), one.get("value", ""), seen_from, said)]
@@ -259,6 +270,7 @@ class Layout(Container[Part]):
                 raise NotHeld(f"{said} a `{line(one.tag, 60)}`")
 
     def _compared(self, one: Element, operator: str, value: str, seen_from: Element, said: str) -> Told:
+        """Return an equality of a parameter or argument and a value. Raises `NotHeld` for other operators."""
         of = next((inner for inner in one if inner.tag.endswith("InstanceRef")), one)
         is_argument = "argumentRef" in of.attrib
         name = of.get("argumentRef" if is_argument else "parameterRef", "")
@@ -269,7 +281,7 @@ class Layout(Container[Part]):
         return Told(reference, value, of.get("useCalibratedValue") == "false")
 
     def tell(self, told: Told) -> int:
-        """Makes the value of a parameter or argument the only one, and says which. Raises `NotHeld`."""
+        """Make the value of a parameter or argument constant, and return its raw value. Raises `NotHeld`."""
         part = self._part(told)
         raw = self._raw(part, told)
         check_only_value(part.item, raw, told.reference.name)
@@ -277,14 +289,14 @@ class Layout(Container[Part]):
         return raw
 
     def _part(self, told: Told, end: int | None = None) -> Part:
-        """The last part, of the first ``end``, that is the parameter, argument or member. Raises `NotHeld`."""
+        """Return the last of the first ``end`` parts that an equality refers to. Raises `NotHeld` if it does not exist."""
         part = next((one for one in reversed(self.parts[:end]) if one.reference == told.reference), None)
         if part is None:
             raise self.missing(told.reference.name)
         return part
 
     def _raw(self, part: Part, told: Told) -> int:
-        """The raw value that a comparison is about."""
+        """Return the raw value of an equality. Raises `NotHeld` if the part is calibrated, not an integer, or too narrow."""
         item, text, name = part.item, told.value.strip(), told.reference.name
         if part.piece.is_raw:
             raise NotHeld(f"it depends on `{name}`, of which only the raw bits are imported")
@@ -303,7 +315,7 @@ class Layout(Container[Part]):
         return raw
 
     def laid_out(self, message: Item, start: int, order: str, to: Definitions) -> Item:
-        """The message with the fields from a bit on. Raises `NotHeld`."""
+        """Return the message with its length and the fields from bit ``start`` on. Raises `NotHeld`."""
         always = max((part.end for part in self.parts if part.bits and "when" not in part.item), default=start)
         always = max(always, self.size)
         late = next((part for part in self.parts if "when" in part.item and part.end > always), None)
@@ -315,7 +327,7 @@ class Layout(Container[Part]):
         parts = [part for part in self.parts if part.at >= start and not part.is_reserved]
         names = _numbered(parts)
         for part in parts:
-            if part.conditions:  # on fields by the names that they have now
+            if part.conditions:  # conditions refer to the final, numbered names
                 part.item["when"] = {names.get(id(of), of.path[-1]): values for of, values in part.conditions}
         closed = [part for part in parts if part.bits]
         message["length"] = -(-end // 8)
@@ -340,7 +352,7 @@ class Layout(Container[Part]):
             if not part.bits:
                 if end % 8:
                     raise NotHeld(f"`{names[id(part)]}`, whose size is not fixed, begins within a byte")
-                message.pop("reserved", 0)  # what is in front of it, and has no name
+                message.pop("reserved", 0)  # the unnamed bytes in front of the field are part of the length
                 at = 8 * message["length"]
                 _count(part, names[id(part)], at, parts, message["name"], to)
                 field = variable_field(part, names[id(part)], at, names)
@@ -351,7 +363,7 @@ class Layout(Container[Part]):
 
 
 def _numbered(parts: Iterable[Part]) -> dict[int, str]:
-    """Names of parts by `id`: the second of one name has a 2 behind it."""
+    """Return the names of parts by `id`. Repeated names get a number: ``Mode``, ``Mode 2``."""
     times: dict[str, int] = {}
     names: dict[int, str] = {}
     for part in parts:
@@ -362,7 +374,7 @@ def _numbered(parts: Iterable[Part]) -> dict[int, str]:
 
 
 def _count(part: Part, name: str, at: int, parts: list[Part], message: str, to: Definitions) -> None:
-    """Give a part whose size is not fixed its counter, if another part can count it, and its greatest number of elements."""
+    """Set the counter of a variable-length part, if another part can count it, and its maximum number of elements."""
     item, piece = part.item, part.piece
     most = min(item["up_to"], (8 * MOST_BYTES - at) // part.element)
     if part.reference is not None and (said := beside(part.reference.of).get("up_to")) is not None:
@@ -378,12 +390,12 @@ def _count(part: Part, name: str, at: int, parts: list[Part], message: str, to: 
 
 
 def _is_named(part: Part, reference: str) -> bool:
-    """Whether a reference, which may lead through systems, ends with the name of a part."""
+    """Whether a reference, which may include a path of systems, ends with the name of a part."""
     return part.reference is not None and f"/{reference}".endswith(f"/{part.reference.name}")
 
 
 def _counted(counter: Part, piece: Piece, most: int) -> int:
-    """Return the most elements, or bytes, that a field can count; 0 if it cannot count them."""
+    """Return the maximum number of elements, or bytes, that a field can count; 0 if it cannot count them."""
     if piece.plus is None or not counter.bits or reasons_against(counter.item, COUNTER):
         return 0
     counted = min(most, (1 << counter.bits) - 1 + piece.plus)
@@ -391,17 +403,18 @@ def _counted(counter: Part, piece: Piece, most: int) -> int:
 
 
 def _reference(entry: Element) -> str:
-    """What an entry refers to; the standard of 2006 lets arrays of arguments call it ``parameterRef``."""
+    """Return the reference of an entry. XTCE 1.1 (2006) allows ``parameterRef`` for arrays of arguments."""
     return next((entry.attrib[key] for key in ("argumentRef", "parameterRef") if key in entry.attrib), "")
 
 
 def _named(entry: Element) -> str:
+    """Return the name of an entry for messages."""
     keys = (*_REFERENCES.values(), "containerRef", "name")
     return line(next((entry.attrib[key] for key in keys if key in entry.attrib), entry.tag), 100)
 
 
 def _repeats(entry: Element) -> int:
-    """How often an entry is there."""
+    """Return the number of repetitions of an entry. Raises `NotHeld` if it is not fixed, or there are gaps between."""
     repeat = entry.find("RepeatEntry")
     if repeat is None:
         return 1

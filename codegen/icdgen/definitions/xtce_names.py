@@ -1,4 +1,4 @@
-"""What has a name in a file of XTCE: systems within systems, and references between them."""
+"""Named elements of XTCE files: nested systems, and the resolution of references."""
 
 from __future__ import annotations
 
@@ -11,12 +11,11 @@ from icdgen.definitions import safe_xml
 from icdgen.definitions.model import Definitions, NotHeld, unreadable
 from icdgen.definitions.wording import line
 
-ICD = (
-    "ICD"  # the name space of names, and the beginning of what is said beside XTCE, as `icdgen --lang xtce` writes them
-)
+# Name space of aliases, and prefix of ancillary data, that `icdgen --lang xtce` writes.
+ICD = "ICD"
 TWICE = "IMP076"
 _TOGETHER = "if it is in another file, import both together: icdgen import FILE FILE, or the folder of both"
-_DEEPEST = 100  # systems within each other
+_DEEPEST = 100  # nested systems
 _SETS = {
     "ParameterTypeSet": "parameter type", "ArgumentTypeSet": "argument type", "ParameterSet": "parameter",
     "ContainerSet": "container", "CommandContainerSet": "container", "MetaCommandSet": "command",
@@ -24,12 +23,12 @@ _SETS = {
 
 
 class Names:
-    """Everything that references reach, by its kind and path."""
+    """Elements that references can name, by kind and path."""
 
     def __init__(self, roots: Mapping[str, Element], to: Definitions) -> None:
-        """``roots`` are the outermost systems by their file.
+        """Collect the elements of ``roots``, the root systems by file, and remove XML namespaces from their tags.
 
-        Elements lose their namespaces. Raises `Findings` for systems too deep within each other.
+        Raises `Findings` if systems are nested too deeply.
         """
         self._found: dict[tuple[str, str], Element] = {}
         self._systems: dict[int, str] = {}
@@ -42,6 +41,7 @@ class Names:
             self._note_file(file, root)
 
     def _note_file(self, file: str, root: Element) -> None:
+        """Register the named elements of all systems of a file."""
         left = [(root, "", 0)]
         while left:
             system, above, depth = left.pop()
@@ -55,6 +55,7 @@ class Names:
             left += [(element, path, depth + 1) for element in reversed(system.findall("SpaceSystem"))]
 
     def _note(self, kind: str, element: Element, path: str, file: str) -> None:
+        """Register an element of the system ``path``. Reports a name that two files define (IMP076); the first is used."""
         first = self._found.setdefault((kind, f"{path}/{element.get('name', '')}"), element)
         self._systems[id(element)] = path
         self._files[id(element)] = file
@@ -74,19 +75,19 @@ class Names:
             self._systems[id(argument)] = path
 
     def place(self, element: Element) -> tuple[int | None, str]:
-        """Line and file in which something stands."""
+        """Return line and file of an element."""
         return line_of(element), self._files.get(id(element), "")
 
     def all(self, kind: str) -> list[Element]:
-        """Those of a kind, as they stand in the file."""
+        """Return the elements of a kind in the order of the files."""
         return [one for (of, _), one in self._found.items() if of == kind]
 
     def system(self, element: Element) -> str:
-        """The path of the system in which something stands."""
+        """Return the path of the system that contains an element."""
         return self._systems[id(element)]
 
     def commands(self, element: Element) -> list[Element]:
-        """A command, and those on which it is based. Raises `NotHeld` for a circle."""
+        """Return a command and its base commands, the derived one first. Raises `NotHeld` for circular inheritance."""
         chain = [element]
         while (base := chain[-1].find("BaseMetaCommand")) is not None:
             found = self.find("command", base.get("metaCommandRef", ""), chain[-1])
@@ -96,15 +97,15 @@ class Names:
         return chain
 
     def container_of(self, command: Element) -> Element | None:
-        """The container of a command, or of the nearest on which it is based. Raises `NotHeld`."""
+        """Return the container of a command or of its nearest base command, None without a container. Raises `NotHeld`."""
         containers = (one.find("CommandContainer") for one in self.commands(command))
         return next((container for container in containers if container is not None), None)
 
     def base_of(self, container: Element) -> Element | None:
-        """The container that one extends. Raises `NotHeld`.
+        """Return the base of a container, None if it inherits no container. Raises `NotHeld`.
 
-        That of a command which names no base extends that of the base command: the standard leaves it open, Yamcs sends
-        it so, and its own databases rely on that.
+        A command container without `BaseContainer` inherits the container of the base command. The standard leaves
+        this open. Yamcs implements it, and its own databases rely on it.
         """
         if (base := container.find("BaseContainer")) is not None:
             return self.container(base.get("containerRef", ""), container)
@@ -115,7 +116,10 @@ class Names:
         return self.container_of(self.find("command", base_command.get("metaCommandRef", ""), command))
 
     def container(self, reference: str, seen_from: Element) -> Element:
-        """The container that a reference names: seen from a command one of commands, if there is one. Raises `NotHeld`."""
+        """Return the container that a reference names. Raises `NotHeld` if it does not exist.
+
+        References from command containers prefer command containers.
+        """
         if seen_from.tag == "CommandContainer":
             try:
                 return self.find("command container", reference, seen_from)
@@ -124,11 +128,11 @@ class Names:
         return self.find("container", reference, seen_from)
 
     def type_of(self, reference: str, seen_from: Element) -> Element:
-        """The type that a parameter, an argument or another type names. Raises `NotHeld`."""
+        """Return the type that a parameter, an argument or another type refers to. Raises `NotHeld` if it does not exist."""
         return self.find("argument type" if "Argument" in seen_from.tag else "parameter type", reference, seen_from)
 
     def parameter(self, reference: str, seen_from: Element) -> tuple[Element, tuple[str, ...]]:
-        """The parameter that a reference names, and the names that lead to a member of it. Raises `NotHeld`."""
+        """Return the parameter that a reference names, and the path to a member of an aggregate. Raises `NotHeld`."""
         words = reference.split("/")
         for length in range(len(words), 0, -1):
             try:
@@ -138,7 +142,7 @@ class Names:
         raise NotHeld(f"there is no parameter `{line(reference, 100)}`", _TOGETHER if "/" in reference else "")
 
     def find(self, kind: str, reference: str, seen_from: Element) -> Element:
-        """What a reference names: in the system, or one around it. Raises `NotHeld` if there is nothing."""
+        """Return the element that a reference names in the system or an enclosing one. Raises `NotHeld` if it does not exist."""
         path = self.system(seen_from)
         while True:
             found = self._found.get((kind, posixpath.normpath(posixpath.join(path, reference))))
@@ -150,22 +154,22 @@ class Names:
 
 
 def line_of(element: Element) -> int | None:
-    """The line in which an element begins."""
+    """Return the line in which an element begins, None if it is unknown."""
     return getattr(element, "line", None)
 
 
 def called(element: Element) -> str:
-    """The name of something; of what icdgen wrote that of its ICD."""
+    """Return the name of an element: that in its ICD if icdgen wrote the file, else the XTCE name."""
     return alias(element) or element.get("name", "")
 
 
 def alias(element: Element) -> str:
-    """The name that something has in an ICD, if icdgen wrote it."""
+    """Return the name of an element in its ICD, from an alias that icdgen wrote. Empty without one."""
     aliases = (one for one in element.iterfind("AliasSet/Alias") if one.get("nameSpace") == ICD)
     return next((said for one in aliases if (said := line(one.get("alias"), 200))), "")
 
 
 def beside(element: Element) -> dict[str, str]:
-    """What is said beside XTCE, by what it is: `group`, `reserved`, `special 255`."""
+    """Return the ancillary data that icdgen wrote for an element, by key: `group`, `reserved`, `special 255`."""
     found = ((one.get("name", ""), one.text or "") for one in element.iterfind("AncillaryDataSet/AncillaryData"))
     return {name.removeprefix(f"{ICD} "): line(text, 400) for name, text in found if name.startswith(f"{ICD} ")}

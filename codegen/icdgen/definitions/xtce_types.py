@@ -1,4 +1,4 @@
-"""Types of XTCE's parameters and arguments as fields: how they are encoded, calibrated and named."""
+"""Types of XTCE parameters and arguments as fields: encodings, calibrations, labels and limits."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from icdgen.definitions.xtce_calibration import NUMBER, calibration, decimal, en
 from icdgen.definitions.xtce_names import Names, alias, beside
 from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS
 
-_MOST_NAMED = 1024  # values of a range of labels
-_DEEPEST = 20  # types that say what another says
-_WORD = 64  # bits of the largest number
+_MOST_NAMED = 1024  # values that one label can cover
+_DEEPEST = 20  # types that inherit each other (`baseType`)
+_WORD = 64  # bits of the largest integer
 _ENCODINGS = ("IntegerDataEncoding", "FloatDataEncoding", "StringDataEncoding", "BinaryDataEncoding")
 _LINE = (("slope", "1"), ("intercept", "0"))
 _RANGES = ("ValidRange", "ValidRangeSet/ValidRange")
@@ -30,25 +30,27 @@ _LIMITS = {"minInclusive": "min", "maxInclusive": "max", "minExclusive": "above"
 
 @dataclass
 class Piece(containers.Piece):
-    """Field that a type makes, with what counts its elements and the labels of its raw values."""
+    """Field that a type describes, with its counter and the labels of its raw values."""
 
-    size: str = ""  # the parameter that says how much there is, if one does
-    plus: int | None = None  # so much more than it says; None where it does not count bytes or elements
+    size: str = ""  # parameter that gives the size; empty if the size is fixed
+    plus: int | None = None  # added to that parameter; None if it does not count bytes or elements
     values: dict[str, int] = field(default_factory=dict)  # by label
-    members: list[tuple[str, Element]] = field(default_factory=list)  # of an aggregate instead: names and types
-    is_raw: bool = False  # whether only the bits are imported, not what they mean
+    members: list[tuple[str, Element]] = field(
+        default_factory=list
+    )  # names and types of the members of an aggregate, which has no field of its own
+    is_raw: bool = False  # whether only the raw bits are imported, without their meaning
 
 
 @dataclass
 class Types(Reading):
-    """Makes pieces of types, and enumerations of those with labels."""
+    """Types of a database as fields, and their enumerations."""
 
     most_steps = 1_000_000  # entries, members and labels of all messages
 
     names: Names
 
     def piece(self, element: Element, where: str) -> Piece:
-        """Raises `NotHeld` with the reason."""
+        """Return the field of a type. ``where`` names the parameter in messages. Raises `NotHeld` if it is not supported."""
         self.step()
         chain = self._chain(element)
         kind = re.sub("(Parameter|Argument)Type$", "", element.tag)
@@ -74,14 +76,14 @@ class Types(Reading):
         return made
 
     def member(self, element: Element, name: str, where: str) -> Element:
-        """The type of a member of an aggregate. Raises `NotHeld`."""
+        """Return the type of a member of an aggregate. Raises `NotHeld` if it does not exist."""
         for member, type_ in self.piece(element, where).members:
             if member == name:
                 return type_
         raise NotHeld(f"{where}: `{element.get('name', '')}` has no member `{line(name, 60)}`")
 
     def array(self, element: Element, dimensions: Element | None, where: str) -> Piece:
-        """So many elements of a type one after the other."""
+        """Return an array of one dimension with a fixed or counted number of elements. Raises `NotHeld` for other arrays."""
         of = self.names.type_of(element.get("arrayTypeRef", ""), element)
         listed = [] if dimensions is None else dimensions.findall("Dimension")
         if len(listed) != 1:
@@ -94,12 +96,13 @@ class Types(Reading):
         return _array(self._element(of, where), last - first + 1, where)
 
     def _element(self, of: Element, where: str) -> Piece:
+        """Return the element of an array. Raises `NotHeld` for an array of arrays."""
         if of.tag.startswith("Array"):
             raise NotHeld(f"{where} is an array of arrays")
         return self.piece(of, where)
 
     def _chain(self, element: Element) -> list[Element]:
-        """The type, and those that it is based on."""
+        """Return a type and its base types, the derived one first. Raises `NotHeld` for circular or too deep inheritance."""
         chain = [element]
         while (base := chain[-1].get("baseType")) is not None:
             found = self.names.type_of(base, chain[-1])
@@ -111,7 +114,7 @@ class Types(Reading):
         return chain
 
     def _encoded(self, chain: list[Element], kind: str, encoding: Element | None) -> Piece:
-        """Numbers, text and bytes as they are sent."""
+        """Return the field of an encoding, or of an integer or float type without one. Raises `NotHeld`."""
         if encoding is None:
             if kind not in ("Integer", "Float"):
                 raise NotHeld(f"the type `{chain[0].get('name', '')}` has no encoding")
@@ -122,6 +125,7 @@ class Types(Reading):
             raise NotHeld("its least significant bit is sent first")
         if encoding.tag == "IntegerDataEncoding":
             said = encoding.get("encoding", "unsigned")
+            # XTCE 1.1 spells the value `twosCompliment`, 1.2 `twosComplement`.
             type_ = {"unsigned": "uint", "twosComplement": "int", "twosCompliment": "int"}.get(said)
             if type_ is None:
                 raise NotHeld(f"an integer is encoded as `{line(said, 60)}`")
@@ -134,7 +138,7 @@ class Types(Reading):
         return _bytes(encoding, "text" if encoding.tag == "StringDataEncoding" else "bytes")
 
     def _raw(self, chain: list[Element], encoding: Element | None, where: str, why: NotHeld) -> Piece:
-        """Bits whose number is written down, but not their meaning. Raises ``why`` where it is not."""
+        """Return the raw bits of a type that is not supported, and note it. Raises ``why`` if its size is not fixed."""
         if encoding is None:
             raise why
         default = {"IntegerDataEncoding": "8", "FloatDataEncoding": "32"}.get(encoding.tag)
@@ -149,6 +153,7 @@ class Types(Reading):
         return Piece({"type": "uint" if bits <= _WORD else "bytes"}, bits, is_raw=True)
 
     def _labels(self, made: Piece, chain: list[Element], element: Element, where: str) -> None:
+        """Add the enumeration of a type with labels. Raises `NotHeld` if it is not an integer, or a label covers too much."""
         if made.item["type"] not in ("uint", "int"):
             raise NotHeld(f"{where} has labels, and is encoded as {made.item['type']}")
         choices: dict[int, str] = {}
@@ -161,14 +166,16 @@ class Types(Reading):
             for value in range(first, last + 1):
                 choices.setdefault(value, one.get("label", ""))
         made.values = {label: value for value, label in reversed(choices.items())}
-        notes = self.heard(f"labels of {id(element)}")  # it is said once of a type
+        notes = self.heard(f"labels of {id(element)}")  # report once per type
         called = _called(element)
         self.enums.hold(made.item, made.bits, choices, called, self._owner(element), f"`{called}`", notes)
 
     def _owner(self, element: Element) -> str:
+        """Return the name of the system that contains a type."""
         return self.names.system(element).rsplit("/", 1)[-1]
 
     def _flag(self, made: Piece, chain: list[Element], element: Element) -> None:
+        """Make a field a flag, or an enumeration of two members if it has several bits. Raises `NotHeld`."""
         if made.item["type"] not in ("uint", "int"):
             raise NotHeld(f"a flag is encoded as {made.item['type']}")
         zero, one = _attribute(chain, "zeroStringValue", "False"), _attribute(chain, "oneStringValue", "True")
@@ -180,7 +187,7 @@ class Types(Reading):
         self.enums.hold(made.item, made.bits, choices, called, self._owner(element), f"`{called}`", self.to)
 
     def _calibrated(self, made: Piece, chain: list[Element], encoding: Element | None, kind: str, where: str) -> bool:
-        """Adds the formula. False if there is a calibration that cannot be said, so that the raw value is all that is imported."""
+        """Add the calibration of a number, and return whether it is supported. If not, the raw value is imported."""
         try:
             is_time = kind in ("AbsoluteTime", "RelativeTime")
             said = _time(made.item, chain) if is_time else {} if encoding is None else calibration(encoding)
@@ -195,7 +202,7 @@ class Types(Reading):
         return True
 
     def _limits(self, item: Item, chain: list[Element]) -> Item:
-        """The keys of the range that is valid, if there is one and it is that of the value that is imported."""
+        """Return the limits of the valid range. Empty if there are several, or it applies to raw values of a calibrated number."""
         ranges = [element for type_ in chain for path in _RANGES for element in type_.iterfind(path)]
         owners = [one for type_ in chain if (one := type_.find("ValidRangeSet")) is not None]
         of_raw = any(one.get("validRangeAppliesToCalibrated") == "false" for one in (*ranges, *owners))
@@ -212,11 +219,12 @@ class Types(Reading):
 
 
 def repeated(piece: Piece, count: int, where: str) -> Piece:
-    """An array of what a piece is, if there are several."""
+    """Return an array of a field, or the field itself if ``count`` is 1. Raises `NotHeld`."""
     return piece if count == 1 else _array(piece, count, where)
 
 
 def _array(piece: Piece, count: int, where: str) -> Piece:
+    """Return an array of ``count`` elements of a fixed size. Raises `NotHeld`."""
     if piece.members or "count" in piece.item or not piece.bits:
         raise NotHeld(f"{where} is an array of elements of variable size")
     if not 1 <= count <= MOST_ELEMENTS:
@@ -226,7 +234,7 @@ def _array(piece: Piece, count: int, where: str) -> Piece:
 
 
 def _counted(piece: Piece, dynamic: Element, where: str) -> Piece:
-    """An array whose last index a parameter or argument says."""
+    """Return an array with a last index that a parameter or argument gives. Raises `NotHeld` if it is not supported."""
     name, slope, intercept = _adjusted(dynamic)
     if piece.members or "count" in piece.item or not piece.bits or piece.bits % 8:
         raise NotHeld(f"{where} is an array of elements without a fixed size in bytes")
@@ -238,7 +246,7 @@ def _counted(piece: Piece, dynamic: Element, where: str) -> Piece:
 
 
 def meant(element: Element) -> Item:
-    """The key of the values of a parameter or argument that stand for something else, as icdgen writes them."""
+    """Return the special values of a parameter or argument, which icdgen writes as ancillary data."""
     found = []
     for name, text in beside(element).items():
         kind, _, value = name.partition(" ")
@@ -249,7 +257,7 @@ def meant(element: Element) -> Item:
 
 
 def said(element: Element) -> str:
-    """What an element is for: both descriptions if there are two."""
+    """Return the short and the long description of an element, without repetition."""
     parts = (element.get("shortDescription"), next((one.text for one in element.iterfind("LongDescription")), None))
     texts = [text for text in map(line, parts) if text]
     if len(texts) == 2 and (texts[0] in texts[1] or texts[1] in texts[0]):
@@ -258,7 +266,10 @@ def said(element: Element) -> str:
 
 
 def _time(item: Item, chain: list[Element]) -> dict[str, Any]:
-    """The key of the formula of seconds, or what the encoding says, since an epoch; adds the unit. Raises `ValueError`."""
+    """Return the formula of a time from its scale and offset, and add the unit to ``item``.
+
+    Raises `ValueError` if scale or offset is not a number.
+    """
     of = next((element for type_ in chain for element in type_.iterfind("Encoding")), None)
     if of is None:
         return {}
@@ -268,18 +279,19 @@ def _time(item: Item, chain: list[Element]) -> dict[str, Any]:
 
 
 def described(*elements: Element) -> dict[str, str]:
-    """The key of the first that is described."""
+    """Return the summary of the first element that has a description."""
     return summary(next((text for text in map(said, elements) if text), ""))
 
 
 def _below(chain: list[Element]) -> Iterator[Element]:
-    """Encodings: of times they stand deeper."""
+    """Yield the children of types. The encoding of a time is within another element, `Encoding`."""
     for type_ in chain:
         yield from type_
         yield from type_.iterfind("Encoding/*")
 
 
 def _numbers(type_: str, bits: int, order: str) -> Piece:
+    """Return an integer of 1 to 64 bits, or a float of 32 or 64 bits. Raises `NotHeld` for other widths."""
     if type_ == "float" and bits not in (32, 64):
         raise NotHeld(f"a float has {bits} bits")
     if not 1 <= bits <= 64:
@@ -288,7 +300,7 @@ def _numbers(type_: str, bits: int, order: str) -> Piece:
 
 
 def _order(encoding: Element) -> str:
-    """Which byte is sent first: an attribute of XTCE 1.2, a list in 1.1."""
+    """Return the byte order of an encoding: an attribute in XTCE 1.2, a list of bytes in 1.1. Raises `NotHeld`."""
     said = encoding.get("byteOrder", "mostSignificantByteFirst")
     bytes_ = [
         number(element.get("byteSignificance", ""), "a byte") for element in encoding.iterfind("ByteOrderList/Byte")
@@ -301,7 +313,7 @@ def _order(encoding: Element) -> str:
 
 
 def _bytes(encoding: Element, type_: str) -> Piece:
-    """Text or bytes, of a size that is written down, or up to the end."""
+    """Return text or bytes of a fixed or variable length. Raises `NotHeld` for length prefixes and terminators."""
     size = encoding.find("SizeInBits")
     if size is None:
         variable = encoding.find("Variable")
@@ -323,7 +335,7 @@ def _bytes(encoding: Element, type_: str) -> Piece:
 
 
 def _open(type_: str, of: Element) -> Piece:
-    """What has as many bytes as another parameter says."""
+    """Return text or bytes of a length that another parameter gives. Raises `NotHeld` if there is no parameter."""
     dynamic = of.find("DynamicValue")
     name, slope, intercept = ("", 0, None) if dynamic is None else _adjusted(dynamic)
     if not name:
@@ -333,7 +345,10 @@ def _open(type_: str, of: Element) -> Piece:
 
 
 def _adjusted(dynamic: Element) -> tuple[str, int, int | None]:
-    """The parameter or argument that says a number, a factor and what is added; None for that where it is no whole number."""
+    """Return the parameter or argument of a `DynamicValue`, its factor and its offset.
+
+    The factor is 0 and the offset None if one of them is not an integer. The name is empty without a reference.
+    """
     reference = next((one for one in dynamic if one.tag.endswith("InstanceRef")), None)
     if reference is None:
         return "", 0, None
@@ -348,7 +363,7 @@ def _adjusted(dynamic: Element) -> tuple[str, int, int | None]:
 
 
 def _unit(chain: list[Element]) -> dict[str, str]:
-    """The first type that has units: `m` and `s` to the power of -2 are `m/s^2`."""
+    """Return the unit of the first type that has one: `m` and `s` to the power of -2 are `m/s^2`."""
     sets = [element for type_ in chain for element in type_.iterfind("UnitSet")]  # many are empty
     units = next((found for one in sets if (found := one.findall("Unit"))), [])
     parts = ""
@@ -366,9 +381,10 @@ def _unit(chain: list[Element]) -> dict[str, str]:
 
 
 def _attribute(chain: list[Element], name: str, default: str) -> str:
+    """Return an attribute of a type or the nearest base type that has it."""
     return next((type_.attrib[name] for type_ in chain if name in type_.attrib), default)
 
 
 def _called(element: Element) -> str:
-    """What an enumeration is called."""
+    """Return the name of the enumeration of a type."""
     return alias(element) or without_type(element.get("name", ""))
